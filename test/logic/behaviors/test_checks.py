@@ -9,7 +9,7 @@ import pytest
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.behaviors import BehaviorError, check, read
 from nao_library_modules.behaviors.language.preview import preview_of, waits_of
-from nao_library_modules.behaviors.language.program import Goal, Pause, SequenceNode, servers_in, walk
+from nao_library_modules.behaviors.language.program import GoalNode, Pause, SequenceNode, servers_in, walk
 from nao_library_modules.behaviors.language.servers import FunctionTables, NotDescribed
 from nao_library_msgs.msg import ArgumentDescription, FunctionDescription
 from nao_library_msgs.srv import DescribeFunctionsResponse
@@ -27,7 +27,7 @@ def bow(texts):
 
 
 def goals(program):
-    return [node for node in walk(program) if isinstance(node, Goal)]
+    return [node for node in walk(program) if isinstance(node, GoalNode)]
 
 
 def test_values_take_the_place_of_parameters(program):

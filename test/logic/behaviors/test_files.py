@@ -34,12 +34,12 @@ from nao_library_modules.behaviors.language.model import (
     Timeline,
     Wait,
 )
-from nao_library_modules.behaviors.language.program import Goal, walk
+from nao_library_modules.behaviors.language.program import GoalNode, walk
 from nao_library_modules.behaviors.language.servers import NAMES
 from nao_library_modules.behaviors.language.times import At
 from nao_library_modules.behaviors.language.writer import text_of
 from nao_library_modules.behaviors.language.yaml_text import dump, load
-from nao_library_modules.behaviors.run.recording import Recording
+from nao_library_modules.behaviors.run.recording import BehaviorRecording
 from nao_library_msgs.msg import LedFunction, MotionFunction
 
 GUIDE = (Path(__file__).parents[3] / "docs" / "behaviors.md").read_text(encoding="utf-8")
@@ -267,12 +267,12 @@ MOVE = NaoMotionGoal(
 
 
 def goals_in(text):
-    return [each for each in walk(bind(read(text, "test"), {}, lambda name: None)) if isinstance(each, Goal)]
+    return [each for each in walk(bind(read(text, "test"), {}, lambda name: None)) if isinstance(each, GoalNode)]
 
 
 def recorded(*goals, servers=NAMES):
     """A recording of goals: server, goal, when it was sent, how and when it ended, s."""
-    recording = Recording("x", servers)
+    recording = BehaviorRecording("x", servers)
     for number, (server, goal, sent, *_) in enumerate(goals):
         recording.sent(server, str(number), goal, sent)
     for number, (_, _, _, *end) in sorted(enumerate(goals), key=lambda each: each[1][4:]):

@@ -16,7 +16,7 @@ from nao_library_modules.behaviors.language.servers import FunctionTables
 from nao_library_modules.cli import offline
 from nao_library_modules.cli.offline import described_by_code
 from nao_library_modules.functions import fields
-from nao_library_modules.functions.chain import Binding, FunctionChain, checked_by, declared_fields
+from nao_library_modules.functions.chain import BoundFunction, FunctionChain, checked_by, declared_fields
 from nao_library_modules.functions.describe import Description
 from nao_library_modules.functions.fields import Annotated, Field, fields_of
 from nao_library_modules.functions.server_types import server_type
@@ -114,7 +114,7 @@ def test_a_duration_is_checked_in_seconds():
     kind = type("Message", (), {"__slots__": ["function", "time_on"], "_type": ""})
     told = []
     glow.__annotations__["time_on"] = Annotated[float, Field("", check=lambda name, value: told.append(value))]
-    binding = Binding(glow.__get__(object()), kind)
+    binding = BoundFunction(glow.__get__(object()), kind)
     message.time_on = Duration(1.5)
     binding.check_fields(message)
     assert told == [1.5]

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.processes.supervisor import State, Status
+from nao_library_modules.processes.supervisor import Status, SupervisorState
 from nao_library_modules.ros.health import GoalCounter, Level, connection_report, launch_report
 
 
@@ -39,10 +39,14 @@ def test_goals_are_counted_by_their_end_and_the_last_error_is_kept():
 @pytest.mark.parametrize(
     "status, level, text",
     [
-        (Status(State.RUNNING, 7, 0, ""), Level.OK, "running"),
-        (Status(State.RUNNING, 7, 2, "ended"), Level.WARN, "running"),
-        (Status(State.WAITING, None, 0, "ended by itself"), Level.ERROR, "ended by itself; it is started again"),
-        (Status(State.STOPPED, None, 0, ""), Level.WARN, "not started"),
+        (Status(SupervisorState.RUNNING, 7, 0, ""), Level.OK, "running"),
+        (Status(SupervisorState.RUNNING, 7, 2, "ended"), Level.WARN, "running"),
+        (
+            Status(SupervisorState.WAITING, None, 0, "ended by itself"),
+            Level.ERROR,
+            "ended by itself; it is started again",
+        ),
+        (Status(SupervisorState.STOPPED, None, 0, ""), Level.WARN, "not started"),
     ],
 )
 def test_launch_file(status, level, text):

@@ -11,7 +11,7 @@ from nao_library_modules.processes.launcher import (  # fmt: skip
     launch_arguments,
     launch_supervisor,
 )
-from nao_library_modules.processes.supervisor import State
+from nao_library_modules.processes.supervisor import SupervisorState
 from nao_library_modules.ros.node import launch_path, robot_address, robot_parser
 from naoqi.errors import NaoError
 
@@ -76,4 +76,4 @@ def test_a_launch_path_that_leads_nowhere_is_refused_and_making_a_supervisor_sta
     for path in (("nao_library", "nonexistent.launch"), ("nonexistent_package", "nao.launch"), ("one",), None):
         with pytest.raises(BadLaunchPath, match=r"it is \(package, launchfile\)"):
             launch_supervisor(path, "10.0.0.7", 9559, "/")
-    assert launch_supervisor(PATH, "10.0.0.7", 9559, "/robot1/").status.state is State.STOPPED
+    assert launch_supervisor(PATH, "10.0.0.7", 9559, "/robot1/").status.state is SupervisorState.STOPPED

@@ -11,10 +11,10 @@ import threading
 import pytest
 
 from nao_library_modules.processes.process_tree import descendants, identify
-from nao_library_modules.processes.supervisor import State, Supervisor, Timing
+from nao_library_modules.processes.supervisor import RestartTiming, Supervisor, SupervisorState
 
 LIMIT = 15.0
-QUICK = Timing(first_delay=0.01, longest_delay=0.04, interrupt=LIMIT, terminate=0.2, kill=LIMIT)
+QUICK = RestartTiming(first_delay=0.01, longest_delay=0.04, interrupt=LIMIT, terminate=0.2, kill=LIMIT)
 SAY = "import os, sys; pipe = open(sys.argv[1], 'w', buffering=1); say = lambda *a: print(*a, file=pipe); "
 FOREVER = "import signal, threading; threading.Event().wait()"
 
@@ -61,9 +61,9 @@ def test_it_runs_with_its_environment_until_stopped_and_again(supervise, pipe):
     supervisor = supervise(program, environment={"ROS_NAMESPACE": "/robot1/"})
     pid, namespace = pipe.line().split()
     assert namespace == "/robot1/"
-    assert (supervisor.status.state, supervisor.status.pid) == (State.RUNNING, int(pid))
+    assert (supervisor.status.state, supervisor.status.pid) == (SupervisorState.RUNNING, int(pid))
     supervisor.stop()
-    assert identify(int(pid)) is None and supervisor.status.state is State.STOPPED
+    assert identify(int(pid)) is None and supervisor.status.state is SupervisorState.STOPPED
     supervisor.start()
     assert pipe.line().split()[0] != pid
     Supervisor(["true"], "the program").stop()  # what never started
@@ -82,7 +82,7 @@ def test_a_program_that_dies_is_started_again_and_the_log_says_how_it_ended(supe
 
 def test_a_program_that_ignores_polite_signals_is_killed(supervise, pipe, caplog):
     deaf = SAY + "import signal; [signal.signal(s, signal.SIG_IGN) for s in (2, 15)]; say(os.getpid()); " + FOREVER
-    supervisor = supervise(deaf, timing=Timing(interrupt=0.05, terminate=0.05, kill=LIMIT))
+    supervisor = supervise(deaf, timing=RestartTiming(interrupt=0.05, terminate=0.05, kill=LIMIT))
     pid = int(pipe.line())
     supervisor.stop()
     assert identify(pid) is None and "did not end within 0.05 s of SIGTERM" in caplog.text
@@ -102,10 +102,10 @@ def test_nothing_it_started_is_left_behind_not_even_in_a_session_of_its_own(supe
 
 
 def test_stopping_during_the_delay_does_not_start_it_again(supervise, pipe):
-    supervisor = supervise(SAY + "say('up')", timing=Timing(first_delay=60.0, interrupt=LIMIT, kill=LIMIT))
+    supervisor = supervise(SAY + "say('up')", timing=RestartTiming(first_delay=60.0, interrupt=LIMIT, kill=LIMIT))
     pipe.line()
     supervisor.stop()
-    assert (supervisor.status.state, supervisor.status.restarts) == (State.STOPPED, 0)
+    assert (supervisor.status.state, supervisor.status.restarts) == (SupervisorState.STOPPED, 0)
 
 
 def test_it_ends_when_the_process_that_supervises_it_is_killed(pipe):

@@ -18,9 +18,9 @@ from nao_library_modules.base.places import Place
 from nao_library_modules.driver.base import reconfigure
 from nao_library_modules.driver.joints.planar_frames import read_place, read_transform
 from nao_library_modules.driver.life.blinking import Blinks
-from nao_library_modules.driver.memory.memory_rules import Rule
+from nao_library_modules.driver.memory.memory_rules import MemoryRule
 from nao_library_modules.driver.path_follower.courses import TargetCourse
-from nao_library_modules.driver.path_follower.settings import Settings
+from nao_library_modules.driver.path_follower.settings import FollowerSettings
 from nao_library_modules.driver.teleop.joy_control import JoyControl, JoySettings
 from nao_library_modules.driver.walk.footsteps import read_steps
 from nao_library_modules.driver.walk.walk_commands import read_gait_config, read_step, read_target, read_velocity
@@ -89,7 +89,7 @@ def test_blinks_and_rules_of_memory_have_bounds():
             Blinks([(1.0, 0.0, 0.0)], (0.0, 0.0, 0.0), *numbers).check()
     for rate in (1e-320, math.nan, 1e6):
         with pytest.raises(BadGoal, match="rate"):
-            Rule("Device/*", rate).check()
+            MemoryRule("Device/*", rate).check()
 
 
 def test_a_target_out_of_all_reach_ends_the_goal_that_follows_it():
@@ -111,7 +111,7 @@ def test_a_parameter_of_a_node_is_a_number_within_its_bounds(value):
     with pytest.raises(NaoError, match=r"~rate is .*: 0\.001 to 125 Hz"):
         number_parameter("~rate", value, limit("reading rate"))
     with pytest.raises(NaoError, match="stuck_time"):
-        Settings(stuck_time=value)
+        FollowerSettings(stuck_time=value)
     with pytest.raises(NaoError, match="StepHeight"):
         read_gait_config("~gait", {"StepHeight": value if value != -5.0 else math.nan})
 
@@ -125,7 +125,7 @@ def test_a_parameter_that_is_changed_to_no_number_is_refused(monkeypatch):
 
     monkeypatch.setattr(reconfigure, "Server", server)
     node = MagicMock(param=lambda name, default: default)
-    field = reconfigure.Field("gain", 1.0, "", 0.0, 2.0)
+    field = reconfigure.ReconfigureField("gain", 1.0, "", 0.0, 2.0)
     reconfigure.serve(node, [field], lambda before, after: after)
     with pytest.raises(reconfigure.rospy.ServiceException, match="gain is nan"):
         kept["callback"]({"gain": math.nan}, 0)

@@ -12,8 +12,8 @@ from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import BadGoal, Preempted, RobotLost
 from nao_library_modules.driver.base import reconfigure
 from nao_library_modules.driver.base.rate import Rate
-from nao_library_modules.driver.base.reconfigure import Field
-from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, Outcome
+from nao_library_modules.driver.base.reconfigure import ReconfigureField
+from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, GoalOutcome
 from naoqi.errors import NaoError
 
 PATIENCE = 10.0
@@ -57,8 +57,8 @@ class Work:
         try:
             interrupt.check()
         except Preempted as reason:
-            return Outcome(f"{type(reason).__name__} {joints}", preempted=True)
-        return Outcome(f"done {joints}")
+            return GoalOutcome(f"{type(reason).__name__} {joints}", preempted=True)
+        return GoalOutcome(f"done {joints}")
 
     def begun(self, *joints):
         pause, end = threading.Event(), WallClock().now() + PATIENCE
@@ -119,7 +119,7 @@ def test_goals_that_will_not_do_abort_with_their_text_and_feedback_goes_to_its_g
 
     def execute(joints, interrupt, publish):
         publish(f"half of {joints[0]}")
-        return Outcome("done")
+        return GoalOutcome("done")
 
     assert send(ConcurrentActionServer(claims, work), "Tail").wait()[0] == "aborted"
     assert "division by zero" in send(ConcurrentActionServer(frozenset, lambda *_: 1 / 0), "HeadYaw").wait()[2]
@@ -160,11 +160,13 @@ def test_work_and_delays_do_not_add_up_and_a_long_round_is_made_up_for_once():
 
 
 FIELDS = (
-    Field("volume", -1, "how loud", -1, 100),
-    Field("voice", "", "who speaks"),
-    Field("beep", True, "whether it beeps"),
-    Field("speed", 1.5, "how fast"),
-    Field("frequency", 16000, "samples a second", 16000, 48000, {16000: "one channel", 48000: "four channels"}),
+    ReconfigureField("volume", -1, "how loud", -1, 100),
+    ReconfigureField("voice", "", "who speaks"),
+    ReconfigureField("beep", True, "whether it beeps"),
+    ReconfigureField("speed", 1.5, "how fast"),
+    ReconfigureField(
+        "frequency", 16000, "samples a second", 16000, 48000, {16000: "one channel", 48000: "four channels"}
+    ),
 )
 
 

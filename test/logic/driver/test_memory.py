@@ -12,7 +12,7 @@ from rosgraph.names import is_legal_name
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.driver.memory.memory_key import WatchedKey
 from nao_library_modules.driver.memory.memory_names import is_pattern, matches, matching, topic_of, topics_of
-from nao_library_modules.driver.memory.memory_rules import Rule, Rules, read_rules
+from nao_library_modules.driver.memory.memory_rules import MemoryRule, MemoryRules, read_rules
 from nao_library_modules.driver.memory.memory_values import converted, kind_of, parse_value, type_of
 from nao_library_modules.functions.memory_functions import parse_assignment, parse_pairs
 from naoqi.errors import NaoError
@@ -47,32 +47,36 @@ def test_topics_are_legal_and_no_two_keys_have_the_same(keys):
 
 
 def rules_of(*rules):
-    rules_ = Rules()
+    rules_ = MemoryRules()
     for rule in rules:
         rules_.add(rule)
     return rules_
 
 
 def test_the_last_rule_for_a_key_counts():
-    wanted = rules_of(Rule("*", 1.0), Rule("Head/*", 5.0), Rule("Head/Rear", on=False)).wanted_of(KNOWN)
+    wanted = rules_of(MemoryRule("*", 1.0), MemoryRule("Head/*", 5.0), MemoryRule("Head/Rear", on=False)).wanted_of(
+        KNOWN
+    )
     rates = {key: rule.rate for key, rule in wanted.items()}
     assert rates == {"Battery/Charge": 1.0, "Battery/Current": 1.0, "Head/Front": 5.0}
-    by_name = rules_of(Rule("New/Key"), Rule("New/*"))
-    assert not rules_of(Rule("Head/Front"), Rule("Battery/*"), Rule("*", on=False))  # nothing is left behind
+    by_name = rules_of(MemoryRule("New/Key"), MemoryRule("New/*"))
+    assert not rules_of(
+        MemoryRule("Head/Front"), MemoryRule("Battery/*"), MemoryRule("*", on=False)
+    )  # nothing is left behind
     assert list(by_name.wanted_of(KNOWN)) == ["New/Key"] and by_name.has_patterns  # before it is there
 
 
 def test_rules_are_read_from_a_parameter_and_what_is_wrong_is_told():
     entries = ["FrontTactilTouched", {"key": "Battery/*", "rate": 2, "type": "float"}]
-    assert read_rules(entries, "~keys") == [Rule("FrontTactilTouched"), Rule("Battery/*", 2.0, "float")]
-    assert read_rules("a, b c", "~keys") == [Rule("a"), Rule("b"), Rule("c")]
+    assert read_rules(entries, "~keys") == [MemoryRule("FrontTactilTouched"), MemoryRule("Battery/*", 2.0, "float")]
+    assert read_rules("a, b c", "~keys") == [MemoryRule("a"), MemoryRule("b"), MemoryRule("c")]
     for entries, words in ((7, "~keys is 7"), (["b", {"key": "a", "hz": 2}], r"~keys\[1\]")):
         with pytest.raises(NaoError, match=words):
             read_rules(entries, "~keys")
     wrong = {
-        Rule(" "): "pattern: it is empty",
-        Rule("a", -1.0): "0.001..100 Hz",
-        Rule("a", kind="double"): "one of bool",
+        MemoryRule(" "): "pattern: it is empty",
+        MemoryRule("a", -1.0): "0.001..100 Hz",
+        MemoryRule("a", kind="double"): "one of bool",
     }
     for rule, words in wrong.items():
         with pytest.raises(BadGoal, match=words):
@@ -127,7 +131,7 @@ def watched(opened):
         return topic
 
     def make(rate=0.0, kind="", event=False):
-        key = WatchedKey("Some/Key", "topic", Rule("Some/Key", rate, kind), make_topic)
+        key = WatchedKey("Some/Key", "topic", MemoryRule("Some/Key", rate, kind), make_topic)
         key.is_event = event
         return key
 

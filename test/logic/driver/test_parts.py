@@ -8,7 +8,7 @@ import threading
 import pytest
 
 from nao_library_modules.driver import nao_driver
-from nao_library_modules.driver.nao_driver import Driver, Part
+from nao_library_modules.driver.nao_driver import Driver, DriverPart
 from nao_library_modules.driver.parts import PARTS, chosen, part_class
 from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
@@ -108,6 +108,6 @@ def test_a_part_that_runs_is_closed(parts):
 
 def test_a_part_that_ends_while_it_cannot_be_started_ends(monkeypatch):
     monkeypatch.setattr(nao_driver, "part_class", lambda word: {}[word])
-    part = Part("leds", None)
+    part = DriverPart("leds", None)
     part.close()
     assert not part.started.is_set()

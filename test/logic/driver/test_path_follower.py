@@ -25,13 +25,13 @@ from nao_library_modules.driver.joints.planar_frames import (
 from nao_library_modules.driver.path_follower import walk as path_follower_walk
 from nao_library_modules.driver.path_follower.courses import PathCourse, TargetCourse, reached
 from nao_library_modules.driver.path_follower.path import WalkPath
-from nao_library_modules.driver.path_follower.settings import Settings
+from nao_library_modules.driver.path_follower.settings import FollowerSettings
 from nao_library_modules.driver.path_follower.steering import velocity
 from nao_library_modules.driver.path_follower.walk import lead
 from naoqi.errors import NaoError
 
 QUARTER, NAN = math.pi / 2, math.nan
-SETTINGS, LIMITED = Settings(), Settings(max_vel_x=0.8, max_vel_y=0.4, max_vel_yaw=0.5)
+SETTINGS, LIMITED = FollowerSettings(), FollowerSettings(max_vel_x=0.8, max_vel_y=0.4, max_vel_yaw=0.5)
 WAYPOINTS = [Place(0.0, 0.0, 3.0), Place(1.0, 0.0, 3.0), Place(1.0, 1.0, 0.25)]
 CORNER = WalkPath(WAYPOINTS)
 SQUARE = WalkPath([Place(x, y, 0.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))])
@@ -89,7 +89,7 @@ def test_velocities_along_a_way():
 
 def test_in_one_round_the_robot_does_not_get_past_its_target():
     for frequency, speed in ((0.0, 0.04 / 0.6), (1.0, 0.04 / 0.42)):  # m/s
-        seldom = Settings(controller_frequency=0.5, threshold_damp_xy=0.01, max_vel_x=1.0, step_freq=frequency)
+        seldom = FollowerSettings(controller_frequency=0.5, threshold_damp_xy=0.01, max_vel_x=1.0, step_freq=frequency)
         ahead, _, turn = velocity(Place(0.05, 0.0, 0.05), seldom)
         assert ahead * speed * 2.0 == pytest.approx(0.05) and 0.0 < turn * 2.0 * 0.349 / 0.6 <= 0.05
 
@@ -120,15 +120,15 @@ def test_a_path_that_begins_elsewhere_is_refused_and_where_it_comes_back_it_does
 
 def test_names_of_parameters_are_those_of_the_settings_and_those_that_will_not_do_are_named():
     given = {"~target_distance_threshold": 0.02, "~use_vel_ctrl": True, "~controller_frequency": 20}
-    read = Settings.read(lambda name, default: given.get(name, default))
-    assert read == Settings(target_distance_threshold=0.02, use_vel_ctrl=True, controller_frequency=20)
+    read = FollowerSettings.read(lambda name, default: given.get(name, default))
+    assert read == FollowerSettings(target_distance_threshold=0.02, use_vel_ctrl=True, controller_frequency=20)
     wrong = {"controller_frequency": 0, "max_vel_x": 1.5, "step_freq": 2.0, "use_vel_ctrl": 1, "straight_offset": NAN}
     for name, value in wrong.items():
-        refused(f"~{name} is", lambda name=name, value=value: Settings(**{name: value}))
+        refused(f"~{name} is", lambda name=name, value=value: FollowerSettings(**{name: value}))
 
 
 SPEED, TURN = 0.095, 0.83
-BY_POSES = Settings()
+BY_POSES = FollowerSettings()
 BY_VELOCITIES = dataclasses.replace(BY_POSES, use_vel_ctrl=True)
 BOTH = pytest.mark.parametrize("control", [BY_POSES, BY_VELOCITIES], ids=["poses", "velocities"])
 

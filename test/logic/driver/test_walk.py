@@ -31,7 +31,7 @@ from nao_library_modules.driver.joints.slope import SlopeEstimator
 from nao_library_modules.driver.walk import walk_commands as commands
 from nao_library_modules.driver.walk.footsteps import read_steps, step_target
 from nao_library_modules.driver.walk.footsteps_walk import LEFT_BOX, RIGHT_BOX, check_legs, clip
-from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity, read_gait_config, read_step
+from nao_library_modules.driver.walk.walk_commands import FootStep, Target, Velocity, read_gait_config, read_step
 from nao_library_modules.driver.walk.walk_inhibition import NotInhibited, WalkInhibition
 from nao_library_modules.driver.walk.walk_orders import Mailbox, Order, Stop, WalkEnded
 from nao_library_modules.driver.walk.walk_report import WalkJournal
@@ -76,7 +76,7 @@ def test_a_velocity_is_forward_left_and_turning_and_clamped_when_out_of_range():
     assert clamped == "linear.x is 1.5, taken as 1, angular.z is -3, taken as -1"
     assert commands.read_target(pose(1, -0.5, 3.1)) == Target(1.0, -0.5, 3.1)
     step = read_step(SimpleNamespace(leg=1, pose=pose(0.04, 0.1, 0.2)))
-    assert step == Step("LLeg", 0.04, 0.1, 0.2)
+    assert step == FootStep("LLeg", 0.04, 0.1, 0.2)
     for read, message, field in (
         (commands.read_velocity, twist(NAN, 0, 0), "linear.x"),
         (commands.read_velocity, twist(0, 0, -INFINITE), "angular.z"),
@@ -90,7 +90,7 @@ def test_a_velocity_is_forward_left_and_turning_and_clamped_when_out_of_range():
 
 
 def test_a_stop_is_never_left_out_and_leaves_steps_out_which_queue_up():
-    box, step = Mailbox(), Step("LLeg", 0.02, 0.1, 0.0)
+    box, step = Mailbox(), FootStep("LLeg", 0.02, 0.1, 0.0)
     wanted = (FORWARD, step, step, Stop(), STAND, FORWARD)
     orders = [Order(command, f"source {n}") for n, command in enumerate(wanted)]
     assert [order.halts for order in orders] == [False, False, False, True, True, False]
@@ -106,7 +106,7 @@ def test_a_stop_is_never_left_out_and_leaves_steps_out_which_queue_up():
 
 
 def test_steps_that_wait_have_a_bound_and_a_stop_comes_through_all_the_same():
-    box, step = Mailbox(), Step("LLeg", 0.02, 0.1, 0.0)
+    box, step = Mailbox(), FootStep("LLeg", 0.02, 0.1, 0.0)
     orders = [Order(step, "") for _ in range(1001)]
     for order in orders:
         box.put(order)
@@ -196,7 +196,7 @@ SIDES = pytest.mark.parametrize("leg, side", [("LLeg", 1.0), ("RLeg", -1.0)])
 
 
 def test_a_step_is_the_same_there_and_back_and_the_first_that_will_not_do_is_named():
-    step = Step("RLeg", 0.04, -0.1, 0.2)
+    step = FootStep("RLeg", 0.04, -0.1, 0.2)
     assert (read_step(step_target(step)), step_target(step).leg) == (step, StepTarget.right)
     good, bad = StepTarget(leg=1), StepTarget(leg=0)
     bad.pose.theta = NAN

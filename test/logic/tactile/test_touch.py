@@ -11,7 +11,7 @@ from nao_library_modules.functions.fields import fields_of
 from nao_library_modules.nao import body_devices as devices
 from nao_library_modules.nao.touch_names import GROUPS, SENSORS, names_of, sensors_of
 from nao_library_modules.tactile.fields import require_touch
-from nao_library_modules.tactile.touch import COUNT, HOLD, PRESS, RELEASE, TouchWatch, Wanted
+from nao_library_modules.tactile.touch import COUNT, HOLD, PRESS, RELEASE, TouchWatch, WantedTouch
 from nao_library_modules.tactile.waiting import WaitingFunctions
 
 HEAD, LEFT_HAND = ["front head", "middle head", "rear head"], ["left hand back", "left hand left", "left hand right"]
@@ -32,9 +32,9 @@ def test_sensors_are_known_by_short_names_events_devices_and_groups():
 
 
 def test_what_is_pressed_already_is_no_press_and_a_hold_is_told_once():
-    watch = TouchWatch(Wanted(PRESS), {"chest": -3.0}, 0.0)
+    watch = TouchWatch(WantedTouch(PRESS), {"chest": -3.0}, 0.0)
     assert watch.pressed == ["chest"] and watch.tell("chest", False, 0.5) == []
-    watch = TouchWatch(Wanted(HOLD, duration=1.0), {}, 0.0)
+    watch = TouchWatch(WantedTouch(HOLD, duration=1.0), {}, 0.0)
     assert watch.due is None
     watch.tell("chest", True, 2.0)
     assert watch.due == pytest.approx(3.0) and watch.look(2.9) == []
@@ -43,34 +43,34 @@ def test_what_is_pressed_already_is_no_press_and_a_hold_is_told_once():
 
 
 def test_a_touch_that_began_before_is_held_from_now_on_and_its_first_contact_is_told():
-    watch = TouchWatch(Wanted(HOLD, duration=1.0), {"chest": -3.0}, 0.0)
+    watch = TouchWatch(WantedTouch(HOLD, duration=1.0), {"chest": -3.0}, 0.0)
     assert watch.due == pytest.approx(1.0) and watch.look(0.5) == []
     assert watch.look(1.0) == [("chest", -3.0, 0.0)]
-    watch = TouchWatch(Wanted(RELEASE), {"chest": -3.0}, 0.0)
+    watch = TouchWatch(WantedTouch(RELEASE), {"chest": -3.0}, 0.0)
     assert watch.tell("chest", False, 0.5) == [("chest", -3.0, 0.5)]
 
 
 def test_a_hold_lasts_as_long_as_the_sensor_says_however_late_that_is_heard_of():
     for let_go, held in ((2.99, []), (3.25, [("chest", 2.0, 3.25)])):
-        watch = TouchWatch(Wanted(HOLD, duration=1.0), {}, 0.0)
+        watch = TouchWatch(WantedTouch(HOLD, duration=1.0), {}, 0.0)
         watch.tell("chest", True, 2.0)
         assert watch.tell("chest", False, let_go) == held
 
 
 def test_a_count_needs_its_presses_within_its_time_and_tells_every_sensor():
-    watch, told = TouchWatch(Wanted(COUNT, count=3, duration=1.0), {}, 0.0), []
+    watch, told = TouchWatch(WantedTouch(COUNT, count=3, duration=1.0), {}, 0.0), []
     for time in (0.0, 0.8, 1.6, 1.7, 1.75):
         told.append(watch.tell("chest", True, time))
         watch.tell("chest", False, time + 0.02)
     assert told == [[], [], [], [("chest", 0.8, 0.0)], []], "0.0 is too old for 1.6; then the counting begins anew"
-    watch = TouchWatch(Wanted(COUNT, count=2, duration=1.0), {}, 0.0)
+    watch = TouchWatch(WantedTouch(COUNT, count=2, duration=1.0), {}, 0.0)
     assert watch.tell("rear head", True, 0.1) == []
     assert watch.tell("front head", True, 0.4) == [("rear head", 0.1, 0.0), ("front head", 0.4, 0.0)]
 
 
 @pytest.mark.parametrize("kind", [PRESS, RELEASE, COUNT])
 def test_a_short_touch_counts_whose_release_comes_before_its_press_and_the_next_one_as_well(kind):
-    watch = TouchWatch(Wanted(kind, count=1), {}, 10.0)
+    watch = TouchWatch(WantedTouch(kind, count=1), {}, 10.0)
     for begin in (11.0, 12.0):
         assert watch.tell("front head", False, begin + 0.004) == []
         (contact,) = watch.tell("front head", True, begin)

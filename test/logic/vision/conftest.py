@@ -6,7 +6,7 @@ import pytest
 from camera_topics import CAMERA, OUT, HandClock, Topics, numbered_image
 
 from nao_library_modules.vision.capture.files import VisionFiles
-from nao_library_modules.vision.capture.recorder import Recording, VideoSpec
+from nao_library_modules.vision.capture.recorder import VideoRecording, VideoSpec
 from nao_library_modules.vision.capture.stream import Stream
 
 
@@ -51,7 +51,7 @@ def stream(topics, clock, started):
 def recording(topics, clock, files, started):
     def make(name="walk.mp4", rate=0.0, **fields):
         spec = VideoSpec(files.folder / name if name else None, "mp4", "h264", **fields)
-        return started(Recording("r", CAMERA, rate, topics, clock, files, spec))
+        return started(VideoRecording("r", CAMERA, rate, topics, clock, files, spec))
 
     return make
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from nao_library_modules.motion.facts import JointLimits
-from nao_library_modules.vision.detection.detectors import Wanted, seen_messages
+from nao_library_modules.vision.detection.detectors import WantedDetection, seen_messages
 from nao_library_modules.vision.detection.events import (
     BALL,
     CODE,
@@ -107,10 +107,13 @@ def test_nothing_is_nothing_and_what_cannot_be_is_told(read):
 
 def test_what_is_wanted():
     anna, ball = Detection(FACE, "anna", "1", 0.5, 0, 0, 1, 1), Detection(BALL, "", BALL, 0.5, 0, 0, 1, 1)
-    assert Wanted(FACE, confidence=0.4).picks(anna) is anna
-    assert Wanted(FACE, confidence=0.6).picks(anna).name == "", "with less than asked for it is somebody"
-    assert Wanted(FACE, "anna", 0.6).picks(anna) is Wanted(FACE, "ben").picks(anna) is None
-    assert Wanted(BALL, confidence=0.6).picks(ball) is None and Wanted(BALL, confidence=0.5).picks(ball) is ball
+    assert WantedDetection(FACE, confidence=0.4).picks(anna) is anna
+    assert WantedDetection(FACE, confidence=0.6).picks(anna).name == "", "with less than asked for it is somebody"
+    assert WantedDetection(FACE, "anna", 0.6).picks(anna) is WantedDetection(FACE, "ben").picks(anna) is None
+    assert (
+        WantedDetection(BALL, confidence=0.6).picks(ball) is None
+        and WantedDetection(BALL, confidence=0.5).picks(ball) is ball
+    )
 
 
 @pytest.mark.parametrize("offset", [(1.0, 0.0, 0.0), (0.5, 0.12, -0.1), (2.0, -0.8, 0.6), (0.3, -0.1, 0.05)])

@@ -15,7 +15,7 @@ from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.joints.joint_sensors import JointSensors
 from nao_library_modules.driver.life.blinking import Blinks, blink, fade
 from nao_library_modules.driver.memory.memory_access import MemoryAccess
-from nao_library_modules.driver.memory.memory_rules import Rule
+from nao_library_modules.driver.memory.memory_rules import MemoryRule
 from nao_library_modules.driver.memory.memory_watch import MemoryWatch
 from nao_library_modules.driver.sensors.sonars import Sonars
 from nao_library_modules.driver.sensors.touch_sensors import BUMPER, FEET, HAND, HEAD, TouchSensors
@@ -238,7 +238,7 @@ def test_keys_are_found_by_name_and_pattern_and_written_as_they_are(robot, drive
 
 
 def test_data_is_published_at_its_rate_while_somebody_listens(watch, robot, topics, until, eventually):
-    watch.watch([Rule(CHARGE, 20.0), Rule("Device/SubDeviceList/*/Position/Sensor/Value", 10.0)])
+    watch.watch([MemoryRule(CHARGE, 20.0), MemoryRule("Device/SubDeviceList/*/Position/Sensor/Value", 10.0)])
     assert watch.watched(CHARGE) == {CHARGE: CHARGE} and topics[CHARGE].kind == "float"
     assert len(watch.watched("*/Position/Sensor/Value")) >= 25
     head = topics["Device/SubDeviceList/HeadYaw/Position/Sensor/Value"]
@@ -261,7 +261,7 @@ def test_events_are_published_as_they_stand_and_while_somebody_listens_also_afte
     watch, robot, driver_robot, topics, eventually, until
 ):
     robot.ALMemory.raiseEvent(FRONT, 0.0)
-    watch.watch([Rule(FRONT), Rule(CHARGE, 20.0)])
+    watch.watch([MemoryRule(FRONT), MemoryRule(CHARGE, 20.0)])
     for name in (FRONT, CHARGE):
         topics[name].tell(True)
     until(lambda: topics[CHARGE].messages and topics[FRONT].messages)
@@ -287,7 +287,7 @@ def test_how_an_event_stands_is_asked_again_when_it_could_not_be_read(watch, rob
         return values(access, keys)
 
     robot.ALMemory.raiseEvent(FRONT, 0.0)
-    watch.watch([Rule(FRONT)])
+    watch.watch([MemoryRule(FRONT)])
     monkeypatch.setattr(MemoryAccess, "values", sometimes)
     topics[FRONT].tell(True)
     eventually(lambda: topics[FRONT].messages == [0.0])
@@ -296,9 +296,9 @@ def test_how_an_event_stands_is_asked_again_when_it_could_not_be_read(watch, rob
 def test_unwatching_closes_topics_and_too_many_are_refused(robot, driver_robot, clock, topics, closing, eventually):
     watch = closing(MemoryWatch(driver_robot, clock, topics.make, 3))
     robot.ALMemory.insertListData([["Few/1", 1], ["Few/2", "two"]])
-    watch.watch([Rule(CHARGE), Rule("Few/*")])
+    watch.watch([MemoryRule(CHARGE), MemoryRule("Few/*")])
     with pytest.raises(BadGoal, match="keys.*3 at most"):
-        watch.watch([Rule("*")])
+        watch.watch([MemoryRule("*")])
     assert set(watch.watched()) == {CHARGE, "Few/1", "Few/2"}
     assert sorted(watch.unwatch("Few/*")) == ["Few/1", "Few/2"]
     assert set(topics) == {CHARGE}

@@ -13,8 +13,8 @@ from nao_library_modules.driver.audio.audio_directions import SoundDirections
 from nao_library_modules.driver.audio.audio_player import AudioPlayer
 from nao_library_modules.driver.audio.audio_requests import read_recording
 from nao_library_modules.driver.audio.microphone import Microphone
-from nao_library_modules.driver.audio.speech import LONGEST_QUEUE, Speech
-from nao_library_modules.driver.audio.speech_recognition import Recognition, RecognitionInUse, RecognizedWords
+from nao_library_modules.driver.audio.speech import LONGEST_QUEUE, RobotSpeech
+from nao_library_modules.driver.audio.speech_recognition import RecognitionInUse, RecognizedWords, WordRecognition
 from nao_library_modules.driver.audio.speech_settings import SpeechSettings
 from nao_library_modules.driver.base import lazy_subscription
 from naoqi.errors import NaoError, RobotError
@@ -136,7 +136,7 @@ def settings():
 
 @pytest.fixture
 def speech(robot, driver_robot, clock, settings, closing):
-    return closing(Speech(driver_robot, clock, lambda: settings[0]))
+    return closing(RobotSpeech(driver_robot, clock, lambda: settings[0]))
 
 
 def voice(robot):
@@ -227,7 +227,7 @@ def heard():
 def recognition(robot, driver_robot, settings, heard, closing):
     robot.ALSpeechRecognition.setVocabulary(["yes"], False)  # its engine starts with the first words
     settings[0] = SpeechSettings(vocabulary=("yes", "no"), word_spotting=True, audio_expression=False)
-    return closing(Recognition(driver_robot, "ros_nao_speech", lambda: settings[0], heard.append))
+    return closing(WordRecognition(driver_robot, "ros_nao_speech", lambda: settings[0], heard.append))
 
 
 def listeners(robot):

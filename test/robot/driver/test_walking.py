@@ -11,7 +11,7 @@ from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.walk.footsteps_walk import FootstepWalk
 from nao_library_modules.driver.walk.head_scan import AFTERWARDS, DOWN, UP, HeadScan
 from nao_library_modules.driver.walk.moveto_walk import MoveToWalk, WalkGoal
-from nao_library_modules.driver.walk.walk_commands import Step, Target, Velocity
+from nao_library_modules.driver.walk.walk_commands import FootStep, Target, Velocity
 from nao_library_modules.driver.walk.walk_orders import Stop, Superseded, WalkEnded
 from nao_library_modules.driver.walk.walker import Walker
 from nao_library_modules.ros.health import Level
@@ -136,14 +136,14 @@ def test_a_robot_that_others_stop_on_the_way_is_told_and_left_alone(walker, robo
 
 def test_steps_queue_up_and_can_be_waited_for_or_stopped(walker, robot, until):
     start = place(robot)
-    done(walker.order(Step("LLeg", 0.04, 0.1, 0.0), "cmd_step from /me"))
-    last = walker.order(Step("RLeg", 0.04, -0.1, 0.0), "cmd_step_srv from /me", to_the_end=True)
+    done(walker.order(FootStep("LLeg", 0.04, 0.1, 0.0), "cmd_step from /me"))
+    last = walker.order(FootStep("RLeg", 0.04, -0.1, 0.0), "cmd_step_srv from /me", to_the_end=True)
     robot.settled()
     assert not last.answer.done()
     until(last.answer.done)
     done(last)
     assert not walking(robot) and place(robot).seen_from(start).x > 0.02
-    stopped = walker.order(Step("LLeg", 0.02, 0.1, 0.0), "cmd_step_srv from /me", to_the_end=True)
+    stopped = walker.order(FootStep("LLeg", 0.02, 0.1, 0.0), "cmd_step_srv from /me", to_the_end=True)
     until(lambda: walking(robot), limit=2.0)
     stop = walker.order(Stop(), "stop_walk_srv from /you")
     until(stop.answer.done)
@@ -190,7 +190,7 @@ def test_without_a_limit_a_velocity_lasts_until_the_end_which_takes_no_orders(st
         done(steer(walker, FORWARD))
 
 
-STEPS = [Step(leg, 0.04, side * 0.1, 0.0) for leg, side in (("LLeg", 1), ("RLeg", -1), ("LLeg", 1), ("RLeg", -1))]
+STEPS = [FootStep(leg, 0.04, side * 0.1, 0.0) for leg, side in (("LLeg", 1), ("RLeg", -1), ("LLeg", 1), ("RLeg", -1))]
 
 
 @pytest.fixture

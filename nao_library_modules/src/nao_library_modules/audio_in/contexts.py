@@ -24,7 +24,7 @@ from .fields import (
     SlotWords,
 )
 from .recogniser import Recogniser
-from .recording import RecordingFunctions
+from .recording import SoundRecordingFunctions
 
 
 class ContextFunctions(Part):
@@ -38,7 +38,7 @@ class ContextFunctions(Part):
 
     left_by_goals = frozenset({"saved_sets"})
 
-    def __init__(self, recogniser: Recogniser, recordings: RecordingFunctions) -> None:
+    def __init__(self, recogniser: Recogniser, recordings: SoundRecordingFunctions) -> None:
         self._recogniser = recogniser
         self._recordings = recordings
         self.saved_sets: set[str] = set()

@@ -66,7 +66,7 @@ def length_of(file: Path) -> float | None:
     return info.frames / info.samplerate
 
 
-class RecordingFunctions(Part):
+class SoundRecordingFunctions(Part):
     """Recordings. Parameters are fields of AudioInFunction."""
 
     def __init__(

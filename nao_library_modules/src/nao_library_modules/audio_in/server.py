@@ -24,7 +24,7 @@ from .fields import SENSES, Parameter, SetParameter, Value
 from .hearing import Heard, Hearing, LeftGoing, Recognition, Recording
 from .recogniser import RECOGNITION, Recogniser
 from .recognition import RecognitionFunctions
-from .recording import RecordingFunctions
+from .recording import SoundRecordingFunctions
 from .sounds import SoundFunctions
 
 log = logging.getLogger(__name__)
@@ -46,7 +46,14 @@ class NaoAudioInput(NaoBasic):
         "listen record stopRecording stopMicrophonesRecording detectSound localizeSound "
         "getEnergy getLeftMicEnergy getRightMicEnergy getFrontMicEnergy getRearMicEnergy".split()
     )
-    part_types = (NaoAudio, RecordingFunctions, RecognitionFunctions, ContextFunctions, SoundFunctions, EnergyFunctions)
+    part_types = (
+        NaoAudio,
+        SoundRecordingFunctions,
+        RecognitionFunctions,
+        ContextFunctions,
+        SoundFunctions,
+        EnergyFunctions,
+    )
 
     def __init__(
         self,
@@ -74,7 +81,7 @@ class NaoAudioInput(NaoBasic):
         self.left = LeftGoing(self.kept)
         self.card = NaoAudio(self)
         self.recogniser = Recogniser(self, self.hearing, *delays)
-        self.recordings = RecordingFunctions(self, self.hearing, self.left, self.card, home)
+        self.recordings = SoundRecordingFunctions(self, self.hearing, self.left, self.card, home)
         self.recognition = RecognitionFunctions(self, self.hearing, self.left, self.recogniser)
         self.energies = EnergyFunctions(self, self.hearing, self.left, self.card)
         contexts = ContextFunctions(self.recogniser, self.recordings)

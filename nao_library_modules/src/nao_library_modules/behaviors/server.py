@@ -20,7 +20,7 @@ from .language.servers import NAMES, FunctionTables
 from .language.store import BehaviorStore
 from .run.clients import Clients, GoalLog, describe, running
 from .run.library_functions import LibraryFunctions
-from .run.recording_functions import RecordingFunctions
+from .run.recording_functions import BehaviorRecordingFunctions
 from .run.running import RunningFunctions, info_message, step_message
 
 PARAMETERS = {"behavior_dir": "~/.ros/nao_behaviors"}
@@ -47,7 +47,7 @@ class NaoBehavior(NaoBasic):
         others send. Parameter `~behavior_dir`: folder of the user's behaviours.
     """
 
-    part_types = (RunningFunctions, LibraryFunctions, RecordingFunctions)
+    part_types = (RunningFunctions, LibraryFunctions, BehaviorRecordingFunctions)
     without_robot = frozenset(joined(part_types))
     """The servers of the steps need it."""
 
@@ -72,7 +72,7 @@ class NaoBehavior(NaoBasic):
         self.tables = FunctionTables(describe, running)
         goals = GoalLog(self._node, map(self.tables.server, NAMES))
         self.runs = RunningFunctions(self, self.store, self.tables, clients or Clients(self.tables.server))
-        self.recordings = RecordingFunctions(self, self.store, self.tables, goals)
+        self.recordings = BehaviorRecordingFunctions(self, self.store, self.tables, goals)
         self.add_parts(self.runs, LibraryFunctions(self, self.store, self.tables, goals), self.recordings)
         self._node.serve("NaoBehavior/list", ListBehaviors, self.answer_list)
         self.serve("NaoBehavior", NaoBehaviorAction)

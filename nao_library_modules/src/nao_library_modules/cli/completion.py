@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from .settings import Settings, quietly
+from .settings import CliSettings, quietly
 
 
 @quietly
-def servers(settings: Settings, start: str) -> list[str]:
+def servers(settings: CliSettings, start: str) -> list[str]:
     """Names of servers."""
     return settings.stack.servers()
 
 
 @quietly
-def all_functions(settings: Settings, start: str) -> list[str]:
+def all_functions(settings: CliSettings, start: str) -> list[str]:
     """Names of all functions of all servers, and of the servers."""
     names = dict.fromkeys(settings.stack.servers())
     for _, told in settings.stack.described(names=True):
@@ -24,7 +24,7 @@ def all_functions(settings: Settings, start: str) -> list[str]:
 
 
 @quietly
-def chain(settings: Settings, start: str, server: str, before: Sequence[str]) -> list[str]:
+def chain(settings: CliSettings, start: str, server: str, before: Sequence[str]) -> list[str]:
     """Next word of a chain: a function, a field, a value."""
     from .chain_text import ASSIGN, NEXT
 
@@ -46,7 +46,7 @@ def chain(settings: Settings, start: str, server: str, before: Sequence[str]) ->
 
 
 @quietly
-def choices(settings: Settings, start: str, server: str, function: str, field: str) -> list[str]:
+def choices(settings: CliSettings, start: str, server: str, function: str, field: str) -> list[str]:
     """Words that a field of a function may hold."""
     for described in settings.stack.describe(server, [function]).functions:
         for argument in described.arguments:
@@ -56,24 +56,24 @@ def choices(settings: Settings, start: str, server: str, function: str, field: s
 
 
 @quietly
-def behaviors(settings: Settings, start: str) -> list[str]:
+def behaviors(settings: CliSettings, start: str) -> list[str]:
     """Names of the stored behaviours."""
     return [behavior["name"] for behavior in settings.stack.behaviors()]
 
 
 @quietly
-def parameters(settings: Settings, start: str, behavior: str) -> list[str]:
+def parameters(settings: CliSettings, start: str, behavior: str) -> list[str]:
     """Parameters of a behaviour."""
     return [f"{p['name']}=" for found in settings.stack.behaviors(behavior) for p in found["parameters"]]
 
 
 @quietly
-def keys(settings: Settings, start: str) -> list[str]:
+def keys(settings: CliSettings, start: str) -> list[str]:
     """Keys and events of the robot's memory; up to the next slash, for there are more than a thousand."""
-    from .robot_link import RobotLink
+    from .robot_link import DirectRobot
     from .settings import QUICK
 
-    with RobotLink(settings.stack.robot_address(), QUICK) as robot:
+    with DirectRobot(settings.stack.robot_address(), QUICK) as robot:
         names = [name for name in robot.memory_names() if name.startswith(start)]
     return sorted({start + _to_slash(name[len(start) :]) for name in names})
 

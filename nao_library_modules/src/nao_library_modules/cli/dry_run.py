@@ -12,7 +12,7 @@ from ..functions.goal_checks import GoalCheck
 from .errors import CommandFailed
 from .goals import message_class
 from .output import say_json
-from .settings import Settings
+from .settings import CliSettings
 from .stack import Stack
 
 
@@ -33,7 +33,7 @@ def ask(stack: Stack, server: str, goals: Sequence[Any]) -> GoalCheck:
         raise NotValidated(error.message) from None
 
 
-def tell_dry_run(settings: Settings, server: str, functions: Sequence[Any]) -> None:
+def tell_dry_run(settings: CliSettings, server: str, functions: Sequence[Any]) -> None:
     """Print what a server says of a goal.
 
     Raises:

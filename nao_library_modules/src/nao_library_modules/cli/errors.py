@@ -27,7 +27,7 @@ class StackMissing(click.ClickException):
     exit_code = MISSING
 
 
-class Interrupted(click.ClickException):
+class CommandInterrupted(click.ClickException):
     """Somebody pressed Ctrl-C; the goal that ran is over."""
 
     exit_code = INTERRUPTED

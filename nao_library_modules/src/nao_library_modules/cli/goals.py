@@ -15,10 +15,10 @@ from typing import Any
 import click
 
 from ..functions.server_types import DESCRIBE
-from .errors import CommandFailed, Interrupted, StackMissing
+from .errors import CommandFailed, CommandInterrupted, StackMissing
 from .output import plain, say_json, say_result
 from .progress import NO_NAMES, Progress
-from .settings import Settings
+from .settings import CliSettings
 
 SERVER_LIMIT = 10.0
 """s until a server that is there must have been found."""
@@ -51,7 +51,7 @@ class GoalEnd:
         return self.state == "succeeded"
 
 
-def run_functions(settings: Settings, server: str, functions: Sequence[Any]) -> GoalEnd:
+def run_functions(settings: CliSettings, server: str, functions: Sequence[Any]) -> GoalEnd:
     """Send function messages as one goal and wait for its end.
 
     Raises:
@@ -65,7 +65,7 @@ def run_functions(settings: Settings, server: str, functions: Sequence[Any]) -> 
     return end
 
 
-def carry_out(settings: Settings, server: str, functions: Sequence[Any], quiet: bool = False) -> GoalEnd:
+def carry_out(settings: CliSettings, server: str, functions: Sequence[Any], quiet: bool = False) -> GoalEnd:
     """Run functions and print what came of it.
 
     Args:
@@ -77,7 +77,7 @@ def carry_out(settings: Settings, server: str, functions: Sequence[Any], quiet: 
     return end
 
 
-def show(settings: Settings, end: GoalEnd) -> None:
+def show(settings: CliSettings, end: GoalEnd) -> None:
     """Print what came of a goal."""
     if settings.json:
         say_json(vars(end))
@@ -85,7 +85,7 @@ def show(settings: Settings, end: GoalEnd) -> None:
         say_result(end.result, end.text, failed=not end.succeeded)
 
 
-def fail(settings: Settings, end: GoalEnd) -> None:
+def fail(settings: CliSettings, end: GoalEnd) -> None:
     """Tell that a goal did not succeed, with what was done until then.
 
     Raises:
@@ -108,7 +108,7 @@ class GoalRun:
         last: How it ended, also if it was interrupted; None before.
     """
 
-    def __init__(self, settings: Settings, server: str, called: Mapping[str, str] = NO_NAMES) -> None:
+    def __init__(self, settings: CliSettings, server: str, called: Mapping[str, str] = NO_NAMES) -> None:
         self._settings = settings
         self._called = called
         self._name = settings.stack.server(server)
@@ -147,11 +147,11 @@ class GoalRun:
                     raise CommandFailed(f"not done within {self._settings.timeout:g} s: cancelled") from None
             except KeyboardInterrupt:
                 if handle is None:
-                    raise Interrupted("stopped before anything was sent") from None
+                    raise CommandInterrupted("stopped before anything was sent") from None
                 cancelled = self._cancel(handle, progress)
                 self.last = self._end(handle, began)
                 became = "stopped" if cancelled else f"the goal was over before: {self.last.state}"
-                raise Interrupted(self.last.text or became) from None
+                raise CommandInterrupted(self.last.text or became) from None
         self.last = self._end(handle, began)
         return self.last
 
@@ -219,7 +219,7 @@ def start_node() -> None:
             raise StackMissing(f"this program cannot become a node: {error}") from None
 
 
-def function_message(settings: Settings, server: str, **fields: Any) -> Any:
+def function_message(settings: CliSettings, server: str, **fields: Any) -> Any:
     """A function message of a server.
 
     Args:

@@ -17,7 +17,7 @@ LIMIT = 5.0
 MEMORY = "ALMemory"
 
 
-class RobotLink:
+class DirectRobot:
     """A connection to one robot, for a `with` block.
 
     Args:
@@ -30,7 +30,7 @@ class RobotLink:
         self._limit = limit
         self._proxies: dict[str, Any] = {}
 
-    def __enter__(self) -> RobotLink:
+    def __enter__(self) -> DirectRobot:
         logging.getLogger("naoqi").addHandler(logging.NullHandler())
         import naoqi
 

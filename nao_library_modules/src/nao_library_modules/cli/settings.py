@@ -18,7 +18,7 @@ QUICK = 1.0
 
 
 @dataclass
-class Settings:
+class CliSettings:
     """Of one run.
 
     Attributes:
@@ -44,9 +44,9 @@ class Settings:
         return self._stack
 
 
-def settings_of(context: click.Context) -> Settings:
+def settings_of(context: click.Context) -> CliSettings:
     """The settings of a run, made when they are asked for first."""
-    return context.ensure_object(Settings)
+    return context.ensure_object(CliSettings)
 
 
 def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
@@ -66,7 +66,7 @@ def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
 
 
 @quietly
-def robots(settings: Settings, start: str) -> list[str]:
+def robots(settings: CliSettings, start: str) -> list[str]:
     """Namespaces of robots."""
     return [name.strip("/") or "/" for name in settings.stack.robots()]
 

@@ -55,10 +55,10 @@ def _server(stack: Stack, name: str) -> dict[str, Any]:
 
 
 def _robot(address: tuple[str, int]) -> dict[str, Any]:
-    from .robot_link import RobotLink
+    from .robot_link import DirectRobot
 
     try:
-        with RobotLink(address, limit=3.0) as robot:
+        with DirectRobot(address, limit=3.0) as robot:
             stiffnesses = list(robot.call("ALMotion", "getStiffnesses", "Body"))
             return {
                 "connected": True,

@@ -25,7 +25,7 @@ RETRY = 5.0
 """s after which a part that could not be started is tried again."""
 
 
-class Part:
+class DriverPart:
     """One part of the driver: started in a thread of its own, and tried again as long as that fails."""
 
     def __init__(self, word: str, robot: Any) -> None:
@@ -87,7 +87,7 @@ class Driver:
 
     def __init__(self, robot: Any, words: Sequence[str]) -> None:
         self._robot = robot
-        self.parts = [Part(word, robot) for word in words]
+        self.parts = [DriverPart(word, robot) for word in words]
 
     def reports(self) -> Mapping[str, Callable[[], Report]]:
         connection = lambda: connection_report(self._robot.address, self._robot.connection)  # noqa: E731

@@ -23,7 +23,7 @@ PARTS = {
     "audio": ("nao_audio", "audio.nao_audio.NaoAudioServices"),
     "cameras": ("nao_camera", "camera.nao_camera.NaoCamera"),
     "vision": ("nao_vision", "sensors.nao_vision.NaoVisionServices"),
-    "tactile": ("nao_tactile", "sensors.nao_tactile.NaoTactile"),
+    "tactile": ("nao_tactile", "sensors.nao_tactile.NaoTactileNode"),
     "sonar": ("nao_sonar", "sensors.nao_sonar.NaoSonar"),
     "memory": ("nao_memory", "memory.nao_memory.NaoMemory"),
     "leds": ("nao_leds", "life.nao_leds.NaoLeds"),

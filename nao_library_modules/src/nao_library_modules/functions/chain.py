@@ -64,7 +64,7 @@ def checked_by(check: Callable[..., None]) -> Callable[[Function], Function]:
 
 
 @dataclass(frozen=True)
-class Step:
+class ChainStep:
     """One function of a chain, ready to run.
 
     Attributes:
@@ -173,7 +173,7 @@ def _value(
     )
 
 
-class Binding:
+class BoundFunction:
     """A table entry bound to a message type: its arguments, and its check with the check's arguments.
 
     Attributes:
@@ -259,7 +259,7 @@ class FunctionChain:
         """
         self.server = server
         self.table = function_table
-        self._bindings: dict[tuple[str, type], Binding] = {}
+        self._bindings: dict[tuple[str, type], BoundFunction] = {}
 
     def look_up(self, name: str) -> Callable[..., Any]:
         """The callable of a name.
@@ -275,7 +275,7 @@ class FunctionChain:
         except KeyError:
             raise UnknownFunction(name, self.table, self.server) from None
 
-    def read(self, messages: Sequence[Any], before_check: Callable[[int], None] = lambda _: None) -> list[Step]:
+    def read(self, messages: Sequence[Any], before_check: Callable[[int], None] = lambda _: None) -> list[ChainStep]:
         """Check a whole chain and bind it; nothing runs.
 
         Args:
@@ -293,7 +293,7 @@ class FunctionChain:
         for i, (message, binding) in enumerate(zip(messages, bindings), start=1):
             before_check(i)
             arguments = binding.arguments(message, context)
-            step = Step(i, message.function, arguments, seconds(message.time), _policy(message))
+            step = ChainStep(i, message.function, arguments, seconds(message.time), _policy(message))
             self._guarded(i, message, lambda m, b=binding: b.run_check(m, context))
             steps.append(step)
         return steps
@@ -328,7 +328,7 @@ class FunctionChain:
                 found.append(failed)
         return found
 
-    def bind(self, messages: Sequence[Any]) -> list[Binding]:
+    def bind(self, messages: Sequence[Any]) -> list[BoundFunction]:
         """Look at what concerns no robot: names of functions, times, failure policies, what fields declare.
 
         Returns:
@@ -350,7 +350,7 @@ class FunctionChain:
         except Exception as error:  # a check with a mistake in it as well: the text names the function
             raise FunctionFailed(position, message.function, _text_for_list(message, error) or error) from error
 
-    def bind_one(self, message: Any) -> Binding:
+    def bind_one(self, message: Any) -> BoundFunction:
         """As `bind`, for one message; raises what is wrong with it, BadGoal or UnknownFunction."""
         _require_lengths(message)
         COMMON["time"].require("time", seconds(message.time))
@@ -359,7 +359,7 @@ class FunctionChain:
         key = (message.function, type(message))
         binding = self._bindings.get(key)
         if binding is None or binding.function is not function:
-            binding = self._bindings[key] = Binding(function, type(message))
+            binding = self._bindings[key] = BoundFunction(function, type(message))
         binding.check_fields(message)
         return binding
 

@@ -14,7 +14,7 @@ from ..base.answers import Outcome
 from ..base.errors import PutToRest, RobotFell
 from ..base.paths import config_file
 from ..base.places import Place
-from ..functions.chain import Step
+from ..functions.chain import ChainStep
 from ..functions.goal_checks import NotKnownHere
 from ..functions.memory_functions import MEMORY
 from ..processes.launcher import LaunchPath
@@ -154,7 +154,7 @@ class NaoMotion(NaoBasic):
         """Tell the plan which function comes."""
         self.body.plan.begin_function(position)
 
-    def steps_to_run(self, goal: Any, steps: Sequence[Step], outcomes: list[Outcome]) -> Sequence[Step]:
+    def steps_to_run(self, goal: Any, steps: Sequence[ChainStep], outcomes: list[Outcome]) -> Sequence[ChainStep]:
         """Nothing for a dry run: each function answers how long it would take, with the wait after it, s."""
         self._dry_run = any(function.dry_run for function in goal.functions)
         if not self._dry_run:

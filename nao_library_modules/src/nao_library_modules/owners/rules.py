@@ -15,7 +15,7 @@ NAMES, FIRST, NONE = "names", "first", "none"
 
 
 @dataclass(frozen=True)
-class Rule:
+class OwnershipRule:
     """One kind of thing that goes on by itself."""
 
     what: str  # name of it, for texts
@@ -42,7 +42,7 @@ class Rule:
 
 
 @lru_cache(maxsize=1)
-def rules() -> dict[tuple[str, str], Rule]:
+def rules() -> dict[tuple[str, str], OwnershipRule]:
     """Module and method of a call -> its rule."""
     owned = json.loads(config_file(FILE).read_text(encoding="utf-8"))["owned"]
     return {
@@ -50,10 +50,10 @@ def rules() -> dict[tuple[str, str], Rule]:
     }
 
 
-def _rule(entry: dict[str, Any]) -> Rule:
+def _rule(entry: dict[str, Any]) -> OwnershipRule:
     named = {"from": "begins", "to": "ends"}
     fields = {named.get(name, name): value for name, value in entry.items()}
     for name in ("during", "begins", "ends"):
         fields[name] = frozenset(fields.get(name, ()))
     fields["cure"] = tuple(fields["cure"])
-    return Rule(**fields)
+    return OwnershipRule(**fields)

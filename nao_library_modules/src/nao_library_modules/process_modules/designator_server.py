@@ -15,7 +15,7 @@ from ..base.cancellation import CancellationToken
 from ..base.yaml_values import Budget
 from ..processes.closing import close_all
 from ..ros.action_server import ActionServer
-from ..ros.concurrent_action_server import ConcurrentActionServer, Outcome
+from ..ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from .core.registry import perform, start_process_modules, stop_process_modules
 from .designators.designator import Designator, designator, read_yaml, require_short, text_budget
 from .language.control import do, top_level
@@ -53,7 +53,7 @@ class DesignatorServer:
     def close(self) -> None:
         close_all(self._closing.trigger, lambda: self._server.close(SHUTDOWN_LIMIT), stop_process_modules)
 
-    def _perform_goal(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> Outcome:
+    def _perform_goal(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> GoalOutcome:
         def tell(task: Task) -> None:
             publish(PerformDesignatorFeedback(task=task.path, state=task.state.value))
 
@@ -61,9 +61,9 @@ class DesignatorServer:
             answer = self._perform(read(goal), interrupt, tell)
         except (PlanFailure, PlanError) as failure:
             result = PerformDesignatorResult(failure=type(failure).__name__, text=str(failure))
-            return Outcome(result, interrupt.is_set(), "" if interrupt.is_set() else str(failure))
+            return GoalOutcome(result, interrupt.is_set(), "" if interrupt.is_set() else str(failure))
         value = answer.as_json() if isinstance(answer, Grip) else answer
-        return Outcome(PerformDesignatorResult(result=json_of(value)))
+        return GoalOutcome(PerformDesignatorResult(result=json_of(value)))
 
     def _perform(self, desig: Designator, interrupt: CancellationToken, tell: Callable[[Task], None]) -> Any:
         roots: list[Task] = []

@@ -22,14 +22,14 @@ WITH_ITS_PARENT = ("setpriv", "--pdeathsig", "TERM")
 killed. roslaunch ends its nodes then."""
 
 
-class State(enum.Enum):
+class SupervisorState(enum.Enum):
     STOPPED = "stopped"
     RUNNING = "running"
     WAITING = "waiting to be started again"
 
 
 @dataclass(frozen=True)
-class Timing:
+class RestartTiming:
     """Delays of a supervisor, in s."""
 
     first_delay: float = 1.0  # before the first restart; doubles with each one
@@ -42,7 +42,7 @@ class Timing:
 
 @dataclass(frozen=True)
 class Status:
-    state: State
+    state: SupervisorState
     pid: int | None  # None when no process is running
     restarts: int
     last_end: str  # how it ended last, empty if it never did
@@ -74,17 +74,17 @@ class Supervisor:
         command: Sequence[str],
         name: str,
         environment: Mapping[str, str] | None = None,
-        timing: Timing | None = None,
+        timing: RestartTiming | None = None,
     ) -> None:
         self._command = list(command)
         self._name = name
         self._environment = {**os.environ, **(environment or {})}
-        self._timing = timing or Timing()
+        self._timing = timing or RestartTiming()
         self._lock = threading.RLock()
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
         self._running: _Running | None = None
-        self._status = Status(State.STOPPED, None, 0, "")
+        self._status = Status(SupervisorState.STOPPED, None, 0, "")
 
     @property
     def status(self) -> Status:
@@ -120,18 +120,18 @@ class Supervisor:
             end = self._run_once(stopping)
             if stopping.is_set():
                 log.info("%s %s", self._name, end)
-                self._note(State.STOPPED, None, last_end=end)
+                self._note(SupervisorState.STOPPED, None, last_end=end)
                 return
             if time.monotonic() - began >= self._timing.settled:
                 delay = self._timing.first_delay
             log.error("%s %s; it is started again in %g s", self._name, end, delay)
-            self._note(State.WAITING, None, last_end=end)
+            self._note(SupervisorState.WAITING, None, last_end=end)
             if stopping.wait(delay):
-                self._note(State.STOPPED, None)
+                self._note(SupervisorState.STOPPED, None)
                 return
             delay = min(2.0 * delay, self._timing.longest_delay)
             with self._lock:
-                self._status = Status(State.WAITING, None, self._status.restarts + 1, end)
+                self._status = Status(SupervisorState.WAITING, None, self._status.restarts + 1, end)
 
     def _run_once(self, stopping: threading.Event) -> str:
         with self._lock:
@@ -147,7 +147,7 @@ class Supervisor:
                 return f"cannot be started: {error}"
             running = self._running = _Running(process.pid, threading.Event())
         log.info("%s started (process %d)", self._name, process.pid)
-        self._note(State.RUNNING, process.pid)
+        self._note(SupervisorState.RUNNING, process.pid)
         code = process.wait()
         with self._lock:
             self._running = None
@@ -156,7 +156,7 @@ class Supervisor:
             return "was stopped"
         return f"was ended by {signal.Signals(-code).name}" if code < 0 else f"ended by itself with exit status {code}"
 
-    def _note(self, state: State, pid: int | None, last_end: str | None = None) -> None:
+    def _note(self, state: SupervisorState, pid: int | None, last_end: str | None = None) -> None:
         with self._lock:
             old = self._status
             self._status = Status(state, pid, old.restarts, old.last_end if last_end is None else last_end)

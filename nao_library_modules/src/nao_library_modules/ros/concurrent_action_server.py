@@ -33,7 +33,7 @@ class Replaced(Preempted):  # noqa: N818  a signal, like Preempted
 
 
 @dataclass
-class Outcome:
+class GoalOutcome:
     """How a goal ended, as its executor tells it.
 
     Attributes:
@@ -71,7 +71,7 @@ class ConcurrentActionServer:
     def __init__(
         self,
         claims: Callable[[Any], frozenset[str]],
-        execute: Callable[..., Outcome],
+        execute: Callable[..., GoalOutcome],
         with_feedback: bool = False,
         robot: Any = None,
     ) -> None:

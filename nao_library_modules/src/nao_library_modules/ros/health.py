@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
 
-from ..processes.supervisor import State, Supervisor
+from ..processes.supervisor import Supervisor, SupervisorState
 
 SLOW_ANSWER = 0.5
 """A robot that takes longer than this (s) to answer is reported as slow."""
@@ -98,8 +98,8 @@ def launch_report(supervisor: Supervisor | None) -> Report:
         "restarts": str(status.restarts),
         "last end": status.last_end,
     }
-    if status.state is State.RUNNING:
+    if status.state is SupervisorState.RUNNING:
         return Report(Level.WARN if status.restarts else Level.OK, "running", values)
-    if status.state is State.WAITING:
+    if status.state is SupervisorState.WAITING:
         return Report(Level.ERROR, f"{status.last_end}; it is started again", values)
     return Report(Level.WARN, status.last_end or "not started", values)

@@ -16,7 +16,7 @@ from naoqi.errors import NaoError
 
 from ..base.answers import Outcome, values_of
 from ..base.errors import FunctionFailed, Preempted, RobotLost, cut
-from ..functions.chain import FunctionTable, Step, require_callable
+from ..functions.chain import ChainStep, FunctionTable, require_callable
 from ..functions.check_service import CHECK, CheckService
 from ..functions.describe import Description
 from ..functions.describe_choices import Choices
@@ -393,7 +393,7 @@ class NaoBasic(FunctionRunner):
         """
         return ()
 
-    def steps_to_run(self, goal: Any, steps: Sequence[Step], outcomes: list[Outcome]) -> Sequence[Step]:
+    def steps_to_run(self, goal: Any, steps: Sequence[ChainStep], outcomes: list[Outcome]) -> Sequence[ChainStep]:
         """What of a checked chain is to be run: all of it.
 
         For modules whose goals can ask for less.
@@ -477,7 +477,7 @@ class NaoBasic(FunctionRunner):
             return "aborted", _why(error, position, function)
         return "succeeded", "; ".join(self._remarks)
 
-    def _run_step(self, step: Step, count: int, outcomes: list[Outcome]) -> None:
+    def _run_step(self, step: ChainStep, count: int, outcomes: list[Outcome]) -> None:
         """Run one function of a chain, as often as its policy says."""
         for tries_left in range(step.policy.retries, -1, -1):
             self._tell_progress(step.position, step.function, count)
@@ -509,11 +509,11 @@ class NaoBasic(FunctionRunner):
                 log.warning("%s failed, the chain goes on: %s", step.function, _told(error))
                 return
 
-    def _note_failure(self, step: Step, began: float, error: Exception) -> None:
+    def _note_failure(self, step: ChainStep, began: float, error: Exception) -> None:
         outcome = Outcome(step.position, step.function, [], self._since(began), _told(error), began, self.happened)
         self._failures.append(outcome)
 
-    def _answered(self, step: Step, answer: Any, began: float, outcomes: list[Outcome]) -> None:
+    def _answered(self, step: ChainStep, answer: Any, began: float, outcomes: list[Outcome]) -> None:
         elapsed = self._since(began)
         outcome = Outcome(step.position, step.function, values_of(answer), elapsed, "", began, self.happened)
         outcomes.append(outcome)

@@ -15,7 +15,7 @@ from ..base.cancellation import CancellationToken
 from ..nao.touch_names import BY_EVENT, Sensor, names_of
 from ..robot.event_relay import EventRelay
 from ..server.extractor_use import Event
-from .touch import Contact, TouchWatch, Wanted
+from .touch import Contact, TouchWatch, WantedTouch
 
 log = logging.getLogger(__name__)
 
@@ -38,7 +38,7 @@ class Binding:
 
     name: str
     sensors: tuple[Sensor, ...]
-    wanted: Wanted
+    wanted: WantedTouch
     behavior: str
     parameters: tuple[str, ...] = ()
     cooldown: float = 0.0

@@ -11,7 +11,7 @@ from ..base.field_checks import require_known
 from ..functions.fields import Annotated, flag, free, number, text, whole, word
 from ..nao.body_devices import SIDES
 from ..nao.touch_names import BUMPERS, GROUPS, SENSORS, names_of, sensors_of
-from .touch import COUNT, HOLD, KINDS, PRESS, Wanted
+from .touch import COUNT, HOLD, KINDS, PRESS, WantedTouch
 
 DEFAULT_TIMEOUT, DEFAULT_HOLD = 10.0, 1.0
 DEFAULT_WINDOW, DEFAULT_COUNT = 2.0, 2
@@ -30,11 +30,11 @@ def timeout_of(timeout: float) -> float:
     return timeout or DEFAULT_TIMEOUT
 
 
-def wanted_of(touch: str, count: int, duration: float) -> Wanted:
+def wanted_of(touch: str, count: int, duration: float) -> WantedTouch:
     """The kind of touch that fields ask for; they have been checked."""
     kind = touch.strip() or PRESS
     usual = DEFAULT_WINDOW if kind == COUNT else DEFAULT_HOLD
-    return Wanted(kind, count or DEFAULT_COUNT, duration or usual)
+    return WantedTouch(kind, count or DEFAULT_COUNT, duration or usual)
 
 
 def words_of(words: Sequence[str], known: Sequence[str], kind: str) -> list[str]:

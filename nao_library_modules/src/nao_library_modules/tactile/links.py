@@ -34,7 +34,7 @@ from .fields import (
     wanted_of,
 )
 from .reading import Senses
-from .touch import Wanted
+from .touch import WantedTouch
 
 log = logging.getLogger(__name__)
 
@@ -138,7 +138,7 @@ def _told(binding: Binding) -> dict[str, Any]:
 
 def _binding(told: dict[str, Any]) -> Binding:
     """A link from words of JSON."""
-    read = {"sensors": sensors_of(told["sensors"]), "wanted": Wanted(**told["wanted"])}
+    read = {"sensors": sensors_of(told["sensors"]), "wanted": WantedTouch(**told["wanted"])}
     return Binding(**{**told, **read, "parameters": tuple(told["parameters"])})
 
 

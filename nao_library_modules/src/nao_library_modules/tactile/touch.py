@@ -14,7 +14,7 @@ SWAPPED = 0.05
 
 
 @dataclass(frozen=True)
-class Wanted:
+class WantedTouch:
     """A kind of touch.
 
     Attributes:
@@ -53,7 +53,7 @@ class TouchWatch:
         now: When the watch begins.
     """
 
-    def __init__(self, wanted: Wanted, pressed: Mapping[str, float], now: float) -> None:
+    def __init__(self, wanted: WantedTouch, pressed: Mapping[str, float], now: float) -> None:
         self._wanted = wanted
         self._begin = now
         self._since = dict(pressed)

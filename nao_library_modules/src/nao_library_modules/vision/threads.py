@@ -21,7 +21,7 @@ from ..ros.ros_clock import RosClock
 from .capture.files import DEFAULT_RECORD_DIR, VisionFiles
 from .capture.job import CaptureJob
 from .capture.jobs import CaptureJobs
-from .capture.recorder import Recording, VideoSpec
+from .capture.recorder import VideoRecording, VideoSpec
 from .capture.stream import Stream
 from .capture.topics import VisionTopics
 from .capture.video import VIDEO_TYPES, codec_name
@@ -43,7 +43,7 @@ class ImageThread:
         """End it, and answer its report; of a recording the file, which is complete."""
         self._job.stop()
         self._jobs.remove(self.name)
-        return self._job.video if isinstance(self._job, Recording) else self._job.report()
+        return self._job.video if isinstance(self._job, VideoRecording) else self._job.report()
 
 
 class ImageThreads:
@@ -107,7 +107,7 @@ class ImageThreads:
         """
         kind = self._files.file_type(file, "", VIDEO_TYPES)
         spec = VideoSpec(self._files.path(file, kind), kind, codec_name(codec, kind), width, height, overwrite)
-        return self._start(Recording(name, topic, rate, self._topics, self._clock, self._files, spec))
+        return self._start(VideoRecording(name, topic, rate, self._topics, self._clock, self._files, spec))
 
     def reports(self) -> list[VisionThread]:
         """State of all now, in the order of their names."""

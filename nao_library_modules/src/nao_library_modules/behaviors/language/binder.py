@@ -28,7 +28,7 @@ from .model import (
     path_text,
 )
 from .parameters import arguments
-from .program import BarrierNode, Goal, Node, OnTimeline, ParallelNode, Pause, RepeatNode, SequenceNode, servers_in
+from .program import BarrierNode, GoalNode, Node, OnTimeline, ParallelNode, Pause, RepeatNode, SequenceNode, servers_in
 from .servers import FunctionTables
 from .times import At
 
@@ -202,7 +202,7 @@ class _Binder:
         for failed in failures:
             if failed.position not in wrong:  # a field without its value would be told as another mistake
                 self._note(step, scope, str(failed if len(messages) > 1 else failed.cause))
-        return None if wrong else Goal(**common, server=server.name, goal=server.goal(messages))
+        return None if wrong else GoalNode(**common, server=server.name, goal=server.goal(messages))
 
     def _box(self, step: Box, scope: _Scope, common: dict[str, Any]) -> Node:
         if step.name in scope.boxes:

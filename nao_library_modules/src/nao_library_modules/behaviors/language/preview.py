@@ -7,7 +7,18 @@ from dataclasses import dataclass
 from typing import Any
 
 from .messages import fields_of
-from .program import BarrierNode, Goal, Node, OnTimeline, ParallelNode, Pause, RepeatNode, SequenceNode, name_of, walk
+from .program import (
+    BarrierNode,
+    GoalNode,
+    Node,
+    OnTimeline,
+    ParallelNode,
+    Pause,
+    RepeatNode,
+    SequenceNode,
+    name_of,
+    walk,
+)
 from .servers import FunctionTables
 from .yaml_text import dump_line
 
@@ -42,7 +53,7 @@ def preview_of(program: SequenceNode, tables: FunctionTables) -> Preview:
         _few([_told(node) for node in nodes]),
         tuple(boxes),
         waits_of(program),
-        _few([text for node in nodes if isinstance(node, Goal) for text in _unchecked(node, tables)]),
+        _few([text for node in nodes if isinstance(node, GoalNode) for text in _unchecked(node, tables)]),
     )
 
 
@@ -55,7 +66,7 @@ def waits_of(node: Node) -> float:
 def _waits_inside(node: Node) -> float:
     if isinstance(node, Pause):
         return node.duration
-    if isinstance(node, Goal):
+    if isinstance(node, GoalNode):
         return sum(message.time.to_sec() for message in _messages(node))
     if isinstance(node, RepeatNode):
         return node.count * sum(map(waits_of, node.parts))
@@ -105,20 +116,20 @@ def _told(node: Node) -> str:
         text += f" {node.duration:g} s"
     elif isinstance(node, RepeatNode):
         text += f" {node.count} times"
-    elif isinstance(node, Goal):
+    elif isinstance(node, GoalNode):
         told = [_fields(message) for message in _messages(node)]
         text += f": {'; '.join(told)}" if any(told) else ""
     return _cut(text)
 
 
-def _unchecked(node: Goal, tables: FunctionTables) -> Iterator[str]:
+def _unchecked(node: GoalNode, tables: FunctionTables) -> Iterator[str]:
     messages = _messages(node)
     for position in tables.check(tables.server(node.server), messages)[1]:
         message = messages[position - 1]
         yield _cut(f"{node.where} {node.server}.{message.function}: {_fields(message)}")
 
 
-def _messages(node: Goal) -> list[Any]:
+def _messages(node: GoalNode) -> list[Any]:
     return list(getattr(node.goal, node.goal.__slots__[0]))
 
 

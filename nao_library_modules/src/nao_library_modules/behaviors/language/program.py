@@ -47,7 +47,7 @@ class Node:
 
 
 @dataclass(frozen=True)
-class Goal(Node):
+class GoalNode(Node):
     """A goal for a server."""
 
     server: str = ""
@@ -164,7 +164,7 @@ def _in_rounds(node: Node, rounds: tuple[tuple[int, int], ...]) -> Node:
 
 def servers_in(node: Node) -> dict[str, None]:
     """Servers that a node uses, in the order in which they come."""
-    return dict.fromkeys(each.server for each in walk(node) if isinstance(each, Goal))
+    return dict.fromkeys(each.server for each in walk(node) if isinstance(each, GoalNode))
 
 
 def name_of(node: Node) -> str:

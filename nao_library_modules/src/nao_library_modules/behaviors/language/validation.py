@@ -10,7 +10,7 @@ from ...functions.check_service import NotValidated
 from ...functions.goal_checks import GoalCheck, GoalProblem
 from .errors import Problem
 from .preview import in_order_of_time
-from .program import Goal, Node, RepeatNode
+from .program import GoalNode, Node, RepeatNode
 from .servers import FunctionTables
 
 Ask = Callable[[str, Sequence[Any]], GoalCheck]
@@ -42,7 +42,7 @@ def validate(program: Node, ask: Ask, tables: FunctionTables) -> Validation:
     problems: list[Problem] = []
     unvalidated: list[str] = []
     unchecked: list[str] = []
-    of_server: dict[str, list[Goal]] = {}
+    of_server: dict[str, list[GoalNode]] = {}
     may_fail: set[int] = set()
     for node, skipped in goals_of(program):
         of_server.setdefault(node.server, []).append(node)
@@ -71,7 +71,7 @@ def validate(program: Node, ask: Ask, tables: FunctionTables) -> Validation:
     return Validation(problems, unvalidated, unchecked)
 
 
-def goals_of(node: Node, skipped: bool = False) -> Iterator[tuple[Goal, bool]]:
+def goals_of(node: Node, skipped: bool = False) -> Iterator[tuple[GoalNode, bool]]:
     """Goals of a program in the order in which they are sent, as far as that is known.
 
     Of repetitions those of the first round, and those of the last one that differ.
@@ -80,7 +80,7 @@ def goals_of(node: Node, skipped: bool = False) -> Iterator[tuple[Goal, bool]]:
         Goal, and whether the behaviour goes on if it fails.
     """
     skipped = skipped or node.policy.skip
-    if isinstance(node, Goal):
+    if isinstance(node, GoalNode):
         yield node, skipped
         return
     first = [pair for part in in_order_of_time(node) for pair in goals_of(part, skipped)]
@@ -91,11 +91,11 @@ def goals_of(node: Node, skipped: bool = False) -> Iterator[tuple[Goal, bool]]:
                 yield goal, of_last
 
 
-def _problem(node: Goal, problem: GoalProblem) -> Problem:
+def _problem(node: GoalNode, problem: GoalProblem) -> Problem:
     inside = f" in {node.behavior}" if any(separator == "/" for separator, _ in node.path) else ""
     single = len(getattr(node.goal, node.goal.__slots__[0])) == 1
     return Problem(f"step {node.where}{inside}", problem.text if single else str(problem), node.line, node.file)
 
 
-def _told(node: Goal, problem: GoalProblem) -> str:
+def _told(node: GoalNode, problem: GoalProblem) -> str:
     return f"{node.where} {node.server}.{problem.function}"

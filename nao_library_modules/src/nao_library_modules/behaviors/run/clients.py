@@ -17,7 +17,7 @@ from ...process_modules.robot.action_client import PlanActionClient
 from ...ros.check_client import check_goals
 from ...ros.service_call import NotAnswered, call_service
 from ..language.servers import NotDescribed
-from .recording import Recording
+from .recording import BehaviorRecording
 
 CLOCKS_APART = 1.0
 """s that the stamp of a goal may lie before its arrival, or after it where simulated time reaches one program later
@@ -101,7 +101,7 @@ class GoalLog:
         self._clock = node.clock
         self._heard: set[str] = set()
         self._last: dict[str, Any] = {}
-        self._recording: Recording | None = None
+        self._recording: BehaviorRecording | None = None
         self._lock = threading.Lock()
         for server in servers:
             self.listen(server)
@@ -121,7 +121,7 @@ class GoalLog:
         with self._lock:
             return self._last.get(server)
 
-    def record(self, recording: Recording | None) -> None:
+    def record(self, recording: BehaviorRecording | None) -> None:
         """Tell a recording what is sent from now on; None ends that."""
         with self._lock:
             self._recording = recording

@@ -20,10 +20,20 @@ from ...process_modules.language.fluents import Fluent
 from ...process_modules.language.tasks import current_task
 from ..language.errors import StepFailed
 from ..language.model import PathParts
-from ..language.program import BarrierNode, Goal, Node, OnTimeline, ParallelNode, Pause, RepeatNode, servers_in, walk
+from ..language.program import (
+    BarrierNode,
+    GoalNode,
+    Node,
+    OnTimeline,
+    ParallelNode,
+    Pause,
+    RepeatNode,
+    servers_in,
+    walk,
+)
 from .fifo_lock import FifoLock
-from .report import ENDED, FAILED, LATE, PREEMPTED, RETRIED, SKIPPED, TOLD, Event, Record, Report
-from .timeline import Timeline
+from .report import ENDED, FAILED, LATE, PREEMPTED, RETRIED, SKIPPED, TOLD, RunReport, StepEvent, StepRecord
+from .timeline import TimelineRun
 
 NOTED_LATE = 0.05
 """s after its time from which on it is told that a step is late."""
@@ -42,13 +52,13 @@ class Execution:
         tell: Gets everything that happens to steps.
     """
 
-    def __init__(self, program: Node, clients: Clients, clock: Any, tell: Callable[[Event], None]) -> None:
+    def __init__(self, program: Node, clients: Clients, clock: Any, tell: Callable[[StepEvent], None]) -> None:
         self._program = program
         self._clients = {server: clients(server) for server in servers_in(program)}
         self._clock = clock
         self._turns = FifoLock(self._clients)
         self._meetings: dict[PathParts, tuple[Node, Fluent]] = {}
-        self.report = Report(clock, tell)
+        self.report = RunReport(clock, tell)
 
     def run(self, interrupt: CancellationToken) -> None:
         """Run it; a trigger of `interrupt` ends it.
@@ -86,11 +96,11 @@ class Execution:
         """
         wanted = self.report.now() if due is None else due
         retries = node.policy.retries
-        former: list[Record] = []
+        former: list[StepRecord] = []
         while True:
-            record: list[Record] = []
+            record: list[StepRecord] = []
 
-            def begin(record: list[Record] = record) -> Record:
+            def begin(record: list[StepRecord] = record) -> StepRecord:
                 late = max(self.report.now() - wanted, 0.0)
                 record.append(self.report.began(node, late))
                 if late > NOTED_LATE and record[0].attempts == 1:
@@ -123,14 +133,14 @@ class Execution:
             self.report.ended(record[0], ENDED)
             return
 
-    def _limited(self, node: Node, begin: Callable[[], Record]) -> None:
+    def _limited(self, node: Node, begin: Callable[[], StepRecord]) -> None:
         if node.limit is None:
             self._do(node, begin)
             return
         # The time of a step begins with the step, not while it waits for its server.
         started = Fluent(f"{node.what} began", False)
 
-        def begin_and_note() -> Record:
+        def begin_and_note() -> StepRecord:
             record = begin()
             started.value = True
             return record
@@ -141,8 +151,8 @@ class Execution:
 
         pursue(do(self._do, node, begin_and_note, name=node.what), do(watch, name=f"for {node.limit:g} s"))
 
-    def _do(self, node: Node, begin: Callable[[], Record]) -> None:
-        if isinstance(node, Goal):
+    def _do(self, node: Node, begin: Callable[[], StepRecord]) -> None:
+        if isinstance(node, GoalNode):
             self._goal(node, begin)
             return
         record = begin()
@@ -151,7 +161,7 @@ class Execution:
         elif isinstance(node, BarrierNode):
             self._meet(node)
         elif isinstance(node, OnTimeline):
-            Timeline(node, self.report, self._step, record.tried).run()
+            TimelineRun(node, self.report, self._step, record.tried).run()
         elif isinstance(node, ParallelNode):
             self._at_once(node)
         elif isinstance(node, RepeatNode):
@@ -162,7 +172,7 @@ class Execution:
 
     # --- kinds --------------------------------------------------------------------------------------------------------
 
-    def _goal(self, node: Goal, begin: Callable[[], Record]) -> None:
+    def _goal(self, node: GoalNode, begin: Callable[[], StepRecord]) -> None:
         with self._turns.of(node.server, self.report.now(), node.path):
             record = begin()
             told: list[str] = []

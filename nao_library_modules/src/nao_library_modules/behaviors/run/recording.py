@@ -37,7 +37,7 @@ class HeardGoal:
     status: int = GoalStatus.PENDING
 
 
-class Recording:
+class BehaviorRecording:
     """A recording that goes on. Any thread may call its methods.
 
     Args:

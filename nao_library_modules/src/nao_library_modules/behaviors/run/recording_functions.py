@@ -23,7 +23,7 @@ from ..language.store import BehaviorStore
 from ..language.writer import text_of
 from .clients import GoalLog
 from .fields import Length, Overwrite, Servers, StoredName
-from .recording import Recording
+from .recording import BehaviorRecording
 
 log = logging.getLogger(__name__)
 
@@ -35,7 +35,7 @@ LONGEST_NAMES = 200
 """Characters of the feedback for a goal that was recorded."""
 
 
-class RecordingFunctions(Part):
+class BehaviorRecordingFunctions(Part):
     """Functions that record behaviours. Parameters are fields of BehaviorFunction.
 
     Attributes:
@@ -48,7 +48,7 @@ class RecordingFunctions(Part):
         self._store = store
         self.tables = tables
         self._goals = goals
-        self.recording: Recording | None = None
+        self.recording: BehaviorRecording | None = None
         self.cut_short: list[FunctionResult] = []
 
     def _check_recording(
@@ -77,7 +77,7 @@ class RecordingFunctions(Part):
         """Record what anybody sends to the servers, for `duration`, or on until stopRecording; answers as that does."""
         for server in servers:
             self._goals.listen(self.tables.server(server, "servers"))
-        self.recording = Recording(str_param, servers or NAMES, overwrite, self._publish_recorded)
+        self.recording = BehaviorRecording(str_param, servers or NAMES, overwrite, self._publish_recorded)
         self._goals.record(self.recording)
         self._module.publish_feedback(behavior=str_param, what="recordBehavior", state="recording")
         if duration == 0.0:

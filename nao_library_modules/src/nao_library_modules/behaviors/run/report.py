@@ -20,7 +20,7 @@ MOST_NOT_RUN = 1_000
 
 
 @dataclass
-class Record:
+class StepRecord:
     """What became of one step; times in s from the beginning of the behaviour, -1 if there is none.
 
     Attributes:
@@ -45,7 +45,7 @@ class Record:
 
 
 @dataclass(frozen=True)
-class Event:
+class StepEvent:
     """Something that happened to a step.
 
     Attributes:
@@ -60,7 +60,7 @@ class Event:
     text: str = ""
 
 
-class Report:
+class RunReport:
     """Keeps the records of one run. Branches write from threads of their own; the lock is held for bookkeeping only.
 
     Args:
@@ -68,10 +68,10 @@ class Report:
         tell: Gets every event, one after the other.
     """
 
-    def __init__(self, clock: Any, tell: Callable[[Event], None]) -> None:
+    def __init__(self, clock: Any, tell: Callable[[StepEvent], None]) -> None:
         self._clock = clock
         self._tell = tell
-        self._records: dict[PathParts, Record] = {}
+        self._records: dict[PathParts, StepRecord] = {}
         self._lock = threading.Lock()
         self._telling = threading.Lock()
         self._closed = False
@@ -81,7 +81,7 @@ class Report:
         """Time from the beginning of the behaviour, s."""
         return self._clock.now() - self._zero
 
-    def began(self, node: Node, late: float = 0.0) -> Record:
+    def began(self, node: Node, late: float = 0.0) -> StepRecord:
         """A step begins, perhaps once more.
 
         Args:
@@ -91,7 +91,7 @@ class Report:
         with self._lock:
             record = self._records.get(node.path)
             if record is None:
-                record = Record(node)
+                record = StepRecord(node)
                 if len(self._records) < MOST_RECORDS:
                     self._records[node.path] = record
             if record.began < 0.0:
@@ -102,7 +102,7 @@ class Report:
         self.tell(node, BEGAN)
         return record
 
-    def ended(self, record: Record, state: str, error: str = "") -> None:
+    def ended(self, record: StepRecord, state: str, error: str = "") -> None:
         """A step is over."""
         with self._lock:
             record.state, record.error, record.ended = state, error, self.now()
@@ -113,7 +113,7 @@ class Report:
         with self._lock:
             for each in walk(node):
                 if len(self._records) < MOST_RECORDS:
-                    self._records.setdefault(each.path, Record(each))
+                    self._records.setdefault(each.path, StepRecord(each))
 
     def rounds_not_run(self, node: Node) -> None:
         """The behaviour is over: rounds of repetitions in this step did not begin, but for those that did."""
@@ -128,7 +128,7 @@ class Report:
                 continue
             if listed >= MOST_NOT_RUN or len(self._records) >= MOST_RECORDS:
                 return
-            self._records[each.path] = Record(each)
+            self._records[each.path] = StepRecord(each)
             listed += 1
 
     def _had_enough(self, path: PathParts) -> bool:
@@ -143,14 +143,14 @@ class Report:
         """Tell of something that happened."""
         with self._telling:
             if not self._closed:
-                self._tell(Event(node, state, self.now(), text))
+                self._tell(StepEvent(node, state, self.now(), text))
 
     def close(self) -> None:
         """Tell nothing any more: feedback of a server may come when its goal is over and another one runs."""
         with self._telling:
             self._closed = True
 
-    def records(self) -> list[Record]:
+    def records(self) -> list[StepRecord]:
         """All records, in the order of the file."""
         with self._lock:
             return sorted(self._records.values(), key=lambda record: [number for _, number in record.node.path])

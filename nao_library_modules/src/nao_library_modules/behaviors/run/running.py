@@ -26,7 +26,7 @@ from ..language.store import BehaviorStore
 from ..language.yaml_text import dump_line
 from .execution import Execution
 from .fields import EITHER, File, Name, NameOrNone, Text, Values
-from .report import Event, Record
+from .report import StepEvent, StepRecord
 
 UNNAMED = "text"
 """What a behaviour is called that has no name yet."""
@@ -62,7 +62,7 @@ class RunningFunctions(Part):
         self._store = store
         self.tables = tables
         self._clients = clients
-        self.steps: list[Record] = []
+        self.steps: list[StepRecord] = []
         self.shown: list[Facts] = []
         self._replaced = ""  # behaviour that the goal before ran when this one came
         self._ended = ""  # behaviour that this goal ran when the next one came
@@ -171,7 +171,7 @@ class RunningFunctions(Part):
             raise NotValidated("it cannot be asked")
         return check(goals)
 
-    def _publish(self, event: Event) -> None:
+    def _publish(self, event: StepEvent) -> None:
         """Publish what happens to a step. Called from threads of the plan, one after the other."""
         node = event.node
         self._module.publish_feedback(
@@ -194,7 +194,7 @@ class RunningFunctions(Part):
     }
 
 
-def step_message(record: Record) -> BehaviorStep:
+def step_message(record: StepRecord) -> BehaviorStep:
     """What became of a step, as a message."""
     node = record.node
     return BehaviorStep(

@@ -8,7 +8,7 @@ from ...process_modules.language.control import do, par
 from ...process_modules.language.flow import sleep, wait_until
 from ...process_modules.language.fluents import Fluent
 from ..language.program import BarrierNode, Node, OnTimeline, name_of, servers_in
-from .report import Report
+from .report import RunReport
 
 
 class _Moments:
@@ -19,7 +19,7 @@ class _Moments:
         self.over = Fluent(f"{name} ended", None)
 
 
-class Timeline:
+class TimelineRun:
     """One run of a timeline.
 
     Args:
@@ -28,7 +28,7 @@ class Timeline:
         zero: When the timeline began, s from the beginning of the behaviour.
     """
 
-    def __init__(self, node: OnTimeline, report: Report, step: Callable[..., Any], zero: float) -> None:
+    def __init__(self, node: OnTimeline, report: RunReport, step: Callable[..., Any], zero: float) -> None:
         self._entries = node.nodes
         self._report = report
         self._step = step

@@ -9,7 +9,7 @@ import click
 
 from ..errors import StackMissing
 from ..output import plain, say_json, table
-from ..settings import NaoCommand, Settings, settings_of
+from ..settings import CliSettings, NaoCommand, settings_of
 from ..stack import same_server
 
 INDENT = "  "
@@ -95,7 +95,7 @@ def help_command(context: click.Context, name: str, function: str) -> None:
         _print(function_lines(server, told, described))
 
 
-def _find(settings: Settings, function: str, server: str) -> list[tuple[str, Any, Any]]:
+def _find(settings: CliSettings, function: str, server: str) -> list[tuple[str, Any, Any]]:
     """Functions of a name: the server of each, what that says about itself, and the description."""
     found = []
     for name, told in described_servers(settings, server=server, names=True):
@@ -107,7 +107,7 @@ def _find(settings: Settings, function: str, server: str) -> list[tuple[str, Any
 
 
 def described_servers(
-    settings: Settings, server: str = "", brief: bool = False, names: bool = False, functions: Sequence[str] = ()
+    settings: CliSettings, server: str = "", brief: bool = False, names: bool = False, functions: Sequence[str] = ()
 ) -> list[tuple[str, Any]]:
     """Servers with what they say about themselves: those that run, or what the code says where none does.
 
@@ -141,7 +141,7 @@ def described_servers(
         return described_by_code(server, brief, names, functions)
 
 
-def _help_server(settings: Settings, name: str, function: str) -> None:
+def _help_server(settings: CliSettings, name: str, function: str) -> None:
     """Help for a server; or what looks like a name that is not there.
 
     Raises:

@@ -12,7 +12,7 @@ from ...base.suggestion import did_you_mean
 from ..errors import CommandFailed, StackMissing
 from ..goals import carry_out, function_message
 from ..output import plain, say_json, table
-from ..settings import NaoCommand, Settings, settings_of
+from ..settings import CliSettings, NaoCommand, settings_of
 
 SERVER = "NaoBehavior"
 SUFFIX = ".yaml"
@@ -30,7 +30,7 @@ def _complete_parameter(context: click.Context, _parameter: click.Parameter, sta
     return parameters(context, start, context.params.get("name") or "")
 
 
-def _the_stored(settings: Settings, name: str) -> dict[str, Any]:
+def _the_stored(settings: CliSettings, name: str) -> dict[str, Any]:
     """The stored behaviour of a name, as plain values.
 
     Raises:

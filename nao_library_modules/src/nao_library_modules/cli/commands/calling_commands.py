@@ -9,7 +9,7 @@ import click
 from ..chain_text import NEXT, TypedFunction, build_message, read_chain
 from ..dry_run import tell_dry_run
 from ..goals import carry_out, message_class
-from ..settings import Settings, SignedCommand, settings_of
+from ..settings import CliSettings, SignedCommand, settings_of
 
 
 def _complete_server(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
@@ -69,7 +69,7 @@ def _tell_of_unread(typed: Sequence[TypedFunction], taken: Mapping[str, Sequence
             click.echo(f"{function.name} does not read {', '.join(unread)}; it reads {', '.join(reads)}", err=True)
 
 
-def _require_not_elsewhere(settings: Settings, server: str, unknown: Sequence[str]) -> None:
+def _require_not_elsewhere(settings: CliSettings, server: str, unknown: Sequence[str]) -> None:
     """See that no function that a server does not know is one of another; of what nobody knows, the server tells.
 
     Raises:

@@ -138,9 +138,9 @@ def walk_command(context: click.Context, x: float, y: float, theta: float) -> No
 
 def _stands(settings: Any) -> bool:
     """Whether the robot is awake and on its feet."""
-    from ..robot_link import RobotLink
+    from ..robot_link import DirectRobot
 
-    with RobotLink(settings.stack.robot_address()) as robot:
+    with DirectRobot(settings.stack.robot_address()) as robot:
         awake = robot.call("ALMotion", "robotIsWakeUp")
         return bool(awake and robot.call("ALRobotPosture", "getPostureFamily") == "Standing")
 

@@ -31,10 +31,10 @@ def _complete_key(context: click.Context, _parameter: click.Parameter, start: st
 @click.pass_context
 def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
     """Values of KEYs; wildcards mean all that fit: 'Device/SubDeviceList/*/Temperature/Sensor/Value'."""
-    from ..robot_link import RobotLink
+    from ..robot_link import DirectRobot
 
     settings = settings_of(context)
-    with RobotLink(settings.stack.robot_address()) as robot:
+    with DirectRobot(settings.stack.robot_address()) as robot:
         names = robot.matching(keys)
         if len(names) == 1:
             values = [robot.value(names[0])]
@@ -57,11 +57,11 @@ def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
 def set_command(context: click.Context, key: str, value: str, event: bool) -> None:
     """Write VALUE, JSON or plain text, into KEY."""
     from ...functions.memory_functions import parse_assignment
-    from ..robot_link import RobotLink
+    from ..robot_link import DirectRobot
 
     settings = settings_of(context)
     _, content = parse_assignment(f"key={value}")
-    with RobotLink(settings.stack.robot_address()) as robot:
+    with DirectRobot(settings.stack.robot_address()) as robot:
         robot.memory("raiseEvent" if event else "insertData", key, content)
     if settings.json:
         say_json({key: content})
@@ -84,10 +84,10 @@ def watch_command(context: click.Context, names: tuple[str, ...], count: int | N
 
     Events are told each time, values when they change. Ends with Ctrl-C, after --count or --timeout.
     """
-    from ..robot_link import RobotLink
+    from ..robot_link import DirectRobot
 
     settings = settings_of(context)
-    with RobotLink(settings.stack.robot_address()) as robot:
+    with DirectRobot(settings.stack.robot_address()) as robot:
         wanted = robot.matching(names)
         known = frozenset(robot.events())
         for text in robot.unknown(names):  # they may come, or be misspelt

@@ -13,12 +13,12 @@ import click
 
 from ...base.limits import limit
 from ..chain_text import Number
-from ..errors import CommandFailed, Interrupted
+from ..errors import CommandFailed, CommandInterrupted
 from ..files import bring, names_file, overwrite_option, passing_name, wanted_file
 from ..goals import GoalEnd, GoalRun, fail, function_message, run_functions, show
 from ..output import say_json
 from ..progress import NO_NAMES
-from ..settings import NaoCommand, NaoGroup, OneOf, Settings, settings_of
+from ..settings import CliSettings, NaoCommand, NaoGroup, OneOf, settings_of
 from .simulator_commands import read_size
 
 VISION, AUDIO_IN, MOTION, BEHAVIOR = "NaoVision", "nao_audio_in", "NaoMotion", "NaoBehavior"
@@ -212,7 +212,11 @@ class Recorded:
 
 
 def _record(
-    settings: Settings, server: str, functions: list[Any], seconds: float | None, called: Mapping[str, str] = NO_NAMES
+    settings: CliSettings,
+    server: str,
+    functions: list[Any],
+    seconds: float | None,
+    called: Mapping[str, str] = NO_NAMES,
 ) -> Recorded:
     """Run a recording, with words for functions in its progress. Without a time Ctrl-C is its end, no interruption.
 
@@ -223,15 +227,15 @@ def _record(
     run = GoalRun(quiet, server, called)
     try:
         return Recorded(run.run(functions))
-    except (Interrupted, CommandFailed) as error:
+    except (CommandInterrupted, CommandFailed) as error:
         if run.last is None:
             raise
-        if isinstance(error, Interrupted) and seconds is None and run.last.state in ("preempted", "succeeded"):
+        if isinstance(error, CommandInterrupted) and seconds is None and run.last.state in ("preempted", "succeeded"):
             return Recorded(run.last, by_hand=True)
         return Recorded(run.last, interruption=error)
 
 
-def _completed(settings: Settings, stop: Any) -> list[dict[str, Any]]:
+def _completed(settings: CliSettings, stop: Any) -> list[dict[str, Any]]:
     """End a recording of a video that goes on without its goal; what its file holds."""
     try:
         end = GoalRun(replace(settings, timeout=COMPLETION_LIMIT, json=False), VISION, STEPS).run([stop])
@@ -245,7 +249,7 @@ def _completed(settings: Settings, stop: Any) -> list[dict[str, Any]]:
 
 
 def _hand_over(
-    settings: Settings, recorded: Recorded, field: str, place: Callable[[dict[str, Any]], str], alone: bool = False
+    settings: CliSettings, recorded: Recorded, field: str, place: Callable[[dict[str, Any]], str], alone: bool = False
 ) -> None:
     """Put the file that a goal has left where it is wanted, tell of it, and then fail if the goal did.
 
@@ -275,7 +279,7 @@ def _hand_over(
     _check(settings, recorded)
 
 
-def _check(settings: Settings, recorded: Recorded) -> None:
+def _check(settings: CliSettings, recorded: Recorded) -> None:
     """Fail as a recording did, when all of it is told."""
     if recorded.interruption is not None:
         raise recorded.interruption

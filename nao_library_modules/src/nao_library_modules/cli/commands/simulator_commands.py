@@ -10,7 +10,7 @@ from ..chain_text import Number
 from ..errors import CommandFailed
 from ..files import bring, names_file, overwrite_option, passing_name, wanted_file
 from ..output import say_json
-from ..settings import NaoGroup, OneOf, Settings, SignedCommand, settings_of
+from ..settings import CliSettings, NaoGroup, OneOf, SignedCommand, settings_of
 from ..stack import SIMULATOR
 
 VIEWS = ("front", "three_quarter", "side", "back", "far", "room", "face")
@@ -21,7 +21,7 @@ def sim_command() -> None:
     """Touch, push and picture a simulated robot, and rule its time."""
 
 
-def _call(settings: Settings, name: str, kind: Any, **fields: Any) -> Any:
+def _call(settings: CliSettings, name: str, kind: Any, **fields: Any) -> Any:
     """Call a service of the simulator."""
     stack = settings.stack
     service = stack.service(f"{SIMULATOR}/{name}")
@@ -69,7 +69,7 @@ def touch(context: click.Context, sensors: tuple[str, ...], seconds: float | Non
         say_json({"pressed": devices if seconds is None else []})
 
 
-def _pass_time(settings: Settings, seconds: float) -> None:
+def _pass_time(settings: CliSettings, seconds: float) -> None:
     """Wait until so much of the robot's time is over."""
     import rospy
 

@@ -56,10 +56,10 @@ def _cancel(topics: list[str]) -> None:
 
 def _stop_walk(settings: object) -> str:
     """Stop a walk that no goal holds any more; tells how that went."""
-    from ..robot_link import RobotLink
+    from ..robot_link import DirectRobot
 
     try:
-        with RobotLink(settings.stack.robot_address()) as robot:
+        with DirectRobot(settings.stack.robot_address()) as robot:
             robot.call("ALMotion", "stopMove")
     except click.ClickException as error:
         return f"the robot was not told to stop walking: {error.message}"

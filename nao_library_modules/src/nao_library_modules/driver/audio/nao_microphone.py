@@ -15,7 +15,7 @@ from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
 from ..base.node import frame_parameter, name_for_robot, publish
-from ..base.reconfigure import Field, serve
+from ..base.reconfigure import ReconfigureField, serve
 from .microphone import Block, Microphone
 from .microphone_blocks import FORMATS, RATES
 
@@ -39,8 +39,12 @@ class NaoMicrophone:
         self._microphone = Microphone(robot, name_for_robot(node.name), RosClock(), self._publish)
         node.if_it_fails(self._microphone.close)
         fields = (
-            Field("frequency", min(FORMATS), "samples a second and channel", min(FORMATS), max(FORMATS), RATES),
-            Field("use_ros_time", is_wallclock(), "whether stamps are in ROS time, instead of the robot's own"),
+            ReconfigureField(
+                "frequency", min(FORMATS), "samples a second and channel", min(FORMATS), max(FORMATS), RATES
+            ),
+            ReconfigureField(
+                "use_ros_time", is_wallclock(), "whether stamps are in ROS time, instead of the robot's own"
+            ),
         )
         self._server = serve(node, fields, self._changed)
         self._audio = node.publisher("~audio_raw", AudioBuffer, queue_size=QUEUE)

@@ -24,14 +24,14 @@ from naoqi.errors import NaoError, UnknownModule
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal
 from ...base.suggestion import of_those
-from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface, node_that_offers
 from ...ros.ros_clock import RosClock
 from ..base.node import name_for_robot, publish
-from ..base.reconfigure import Field, serve, update
-from .speech import Speech
-from .speech_recognition import Recognition, RecognizedWords
+from ..base.reconfigure import ReconfigureField, serve, update
+from .speech import RobotSpeech
+from .speech_recognition import RecognizedWords, WordRecognition
 from .speech_settings import (
     FORMER_NAMES,
     FULL_VOLUME,
@@ -50,13 +50,15 @@ PROBE_LIMIT = 1.0
 VOICE = frozenset({"the voice"})
 VOCABULARY = frozenset({"the vocabulary"})
 PARAMETERS = (
-    Field("voice", "", "name of the voice; empty: the robot's own"),
-    Field("language", "", "name of the language, such as English; empty: the robot's own"),
-    Field("volume", ROBOTS_OWN, "volume of the speech in percent; -1: the robot's own", ROBOTS_OWN, FULL_VOLUME),
-    Field("vocabulary", "", "words and phrases to listen for, separated by /"),
-    Field("audio_expression", True, "whether the robot beeps when it begins to listen"),
-    Field("visual_expression", True, "whether its eyes show that it listens"),
-    Field("word_spotting", False, "whether words are found within longer sentences"),
+    ReconfigureField("voice", "", "name of the voice; empty: the robot's own"),
+    ReconfigureField("language", "", "name of the language, such as English; empty: the robot's own"),
+    ReconfigureField(
+        "volume", ROBOTS_OWN, "volume of the speech in percent; -1: the robot's own", ROBOTS_OWN, FULL_VOLUME
+    ),
+    ReconfigureField("vocabulary", "", "words and phrases to listen for, separated by /"),
+    ReconfigureField("audio_expression", True, "whether the robot beeps when it begins to listen"),
+    ReconfigureField("visual_expression", True, "whether its eyes show that it listens"),
+    ReconfigureField("word_spotting", False, "whether words are found within longer sentences"),
 )
 KNOWN = {"voice": "getAvailableVoices", "language": "getAvailableLanguages"}
 
@@ -91,9 +93,11 @@ class NaoSpeech:
             )  # in today's form, as the server of the parameters wants it
         self._settings = SpeechSettings()
         self._words = self._node.publisher("word_recognized", WordRecognized, queue_size=10)
-        self._speech = Speech(robot, RosClock(), lambda: self._settings)
+        self._speech = RobotSpeech(robot, RosClock(), lambda: self._settings)
         node.if_it_fails(self._speech.close)
-        self._recognition = Recognition(robot, name_for_robot(self._node.name), lambda: self._settings, self._publish)
+        self._recognition = WordRecognition(
+            robot, name_for_robot(self._node.name), lambda: self._settings, self._publish
+        )
         node.if_it_fails(self._recognition.close)
         self._server = serve(node, PARAMETERS, self._changed)
         self._goals = {
@@ -134,7 +138,7 @@ class NaoSpeech:
 
     def _say(
         self, goal: SpeechWithFeedbackGoal, interrupt: CancellationToken, feedback: Callable[[Any], None]
-    ) -> Outcome:
+    ) -> GoalOutcome:
         if not goal.say.strip():
             raise BadGoal("say", goal.say, "a text", "it is empty")
         utterance = self._speech.say(goal.say, on_start=lambda: feedback(SpeechWithFeedbackFeedback()))
@@ -142,15 +146,15 @@ class NaoSpeech:
             utterance.ended.wait()
         if utterance.error is not None:
             raise utterance.error
-        return Outcome(SpeechWithFeedbackResult())
+        return GoalOutcome(SpeechWithFeedbackResult())
 
     # --- recognition ----------------------------------------------------------------------------------------------
 
-    def _set_vocabulary(self, goal: SetSpeechVocabularyGoal, _interrupt: CancellationToken) -> Outcome:
+    def _set_vocabulary(self, goal: SetSpeechVocabularyGoal, _interrupt: CancellationToken) -> GoalOutcome:
         if not goal.words:
             raise BadGoal("words", goal.words, "at least one word", "it is empty")
         update(self._server, {"vocabulary": join_vocabulary(goal.words)})
-        return Outcome(SetSpeechVocabularyResult(success=True))
+        return GoalOutcome(SetSpeechVocabularyResult(success=True))
 
     def _publish(self, heard: RecognizedWords) -> None:
         publish(self._words, WordRecognized(list(heard.words), list(heard.confidences)))

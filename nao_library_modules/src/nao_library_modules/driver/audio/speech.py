@@ -72,7 +72,7 @@ class Utterance:
         self.ended.set()
 
 
-class Speech:
+class RobotSpeech:
     """The robot's voice: a queue of texts, and a thread that has them said.
 
     Any thread may call. The lock guards queue and counters; it is not held during calls to the robot.

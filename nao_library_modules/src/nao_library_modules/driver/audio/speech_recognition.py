@@ -40,7 +40,7 @@ class RecognitionInUse(NaoError):  # noqa: N818  named like the errors of the pr
         self.owners = list(owners)
 
 
-class Recognition:
+class WordRecognition:
     """Has the robot listen for words on behalf of one subscriber. Any thread may call."""
 
     def __init__(

@@ -24,7 +24,7 @@ HIGHEST: dict[type, Value] = {bool: True, int: 2**31 - 1, float: float("inf"), s
 
 
 @dataclass(frozen=True)
-class Field:
+class ReconfigureField:
     """One parameter; its default has its type."""
 
     name: str
@@ -35,7 +35,7 @@ class Field:
     choices: Mapping[Value, str] | None = None  # value -> its meaning, when there are only some
 
 
-def description_of(fields: Sequence[Field]) -> Any:
+def description_of(fields: Sequence[ReconfigureField]) -> Any:
     """The description of parameters for `dynamic_reconfigure`, as it would be generated from a .cfg file."""
     parameters = [
         {
@@ -59,7 +59,7 @@ def description_of(fields: Sequence[Field]) -> Any:
 
 def serve(
     node: NodeInterface,
-    fields: Sequence[Field],
+    fields: Sequence[ReconfigureField],
     changed: Callable[[Mapping[str, Any], Mapping[str, Any]], Mapping[str, Any]],
     part: str = "",
 ) -> Server:
@@ -129,7 +129,7 @@ def _own_errors() -> Iterator[None]:
         raise NaoError(str(error)) from error
 
 
-def _check(name: str, field: Field, value: Any) -> None:
+def _check(name: str, field: ReconfigureField, value: Any) -> None:
     kind = type(field.default)
     right = isinstance(value, (int, float) if kind is float else kind) and isinstance(value, bool) == (kind is bool)
     low = right and field.lowest is not None and value < field.lowest
@@ -138,7 +138,7 @@ def _check(name: str, field: Field, value: Any) -> None:
         raise NaoError(f"{name} is {value!r}: {_allowed(field)}")
 
 
-def _allowed(field: Field) -> str:
+def _allowed(field: ReconfigureField) -> str:
     if field.choices:
         return " or ".join(f"{value} ({meaning})" for value, meaning in field.choices.items())
     ends = [f"from {field.lowest}"] if field.lowest is not None else []
@@ -146,7 +146,7 @@ def _allowed(field: Field) -> str:
     return " ".join([KINDS[type(field.default)], *ends])
 
 
-def _choices(field: Field) -> str:
+def _choices(field: ReconfigureField) -> str:
     if not field.choices:
         return ""
     kind = TYPES[type(field.default)]

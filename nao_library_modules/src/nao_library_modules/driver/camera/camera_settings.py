@@ -10,7 +10,7 @@ import vision_definitions as vision
 from naoqi.errors import NaoError
 
 from ...nao.camera_facts import BOTTOM, CAMERAS, TOP
-from ..base.reconfigure import Field
+from ..base.reconfigure import ReconfigureField
 from .camera_formats import COLOR_SPACES, RESOLUTIONS
 from .camera_subscriber import StreamSettings
 
@@ -27,7 +27,7 @@ class Tuning:
     """
 
     id: int  # NAOqi's number
-    field: Field
+    field: ReconfigureField
     automatic: str = ""  # parameter that must be 0 for this one to take effect
 
 
@@ -37,32 +37,36 @@ TUNINGS = {
         # The automatic ones come first: the camera takes a fixed value only while it does not choose itself.
         Tuning(
             vision.kCameraAutoExpositionID,
-            Field("auto_exposition", 1, "whether the camera chooses exposure and gain", 0, 1, OFF_OR_AUTO),
+            ReconfigureField("auto_exposition", 1, "whether the camera chooses exposure and gain", 0, 1, OFF_OR_AUTO),
         ),
         Tuning(
             vision.kCameraAutoWhiteBalanceID,
-            Field("auto_white_balance", 1, "whether the camera chooses the white balance", 0, 1, OFF_OR_AUTO),
+            ReconfigureField(
+                "auto_white_balance", 1, "whether the camera chooses the white balance", 0, 1, OFF_OR_AUTO
+            ),
         ),
         Tuning(
             vision.kCameraExposureAlgorithmID,
-            Field("auto_exposure_algo", 1, "how the camera chooses the exposure (V4, V5)", 0, 3, ALGORITHMS),
+            ReconfigureField("auto_exposure_algo", 1, "how the camera chooses the exposure (V4, V5)", 0, 3, ALGORITHMS),
         ),
         Tuning(
             vision.kCameraExposureID,
-            Field("exposure", 32, "time of exposure in steps of the camera; ends auto_exposition", 0, 65535),
+            ReconfigureField("exposure", 32, "time of exposure in steps of the camera; ends auto_exposition", 0, 65535),
             "auto_exposition",
         ),
         Tuning(
-            vision.kCameraGainID, Field("gain", 16, "amplification; ends auto_exposition", 0, 1023), "auto_exposition"
+            vision.kCameraGainID,
+            ReconfigureField("gain", 16, "amplification; ends auto_exposition", 0, 1023),
+            "auto_exposition",
         ),
-        Tuning(vision.kCameraBrightnessID, Field("brightness", 0, "brightness", -255, 255)),
-        Tuning(vision.kCameraContrastID, Field("contrast", 32, "contrast", 0, 255)),
-        Tuning(vision.kCameraSaturationID, Field("saturation", 64, "how strong colours are", 0, 255)),
-        Tuning(vision.kCameraHueID, Field("hue", 0, "turn of the colours, degrees", -180, 180)),
-        Tuning(vision.kCameraSharpnessID, Field("sharpness", 4, "sharpness of edges", -7, 9)),
+        Tuning(vision.kCameraBrightnessID, ReconfigureField("brightness", 0, "brightness", -255, 255)),
+        Tuning(vision.kCameraContrastID, ReconfigureField("contrast", 32, "contrast", 0, 255)),
+        Tuning(vision.kCameraSaturationID, ReconfigureField("saturation", 64, "how strong colours are", 0, 255)),
+        Tuning(vision.kCameraHueID, ReconfigureField("hue", 0, "turn of the colours, degrees", -180, 180)),
+        Tuning(vision.kCameraSharpnessID, ReconfigureField("sharpness", 4, "sharpness of edges", -7, 9)),
         Tuning(
             vision.kCameraWhiteBalanceID,
-            Field("white_balance", -50, "white balance (V4, V5); ends auto_white_balance", -120, 6500),
+            ReconfigureField("white_balance", -50, "white balance (V4, V5); ends auto_white_balance", -120, 6500),
             "auto_white_balance",
         ),
     )
@@ -70,17 +74,21 @@ TUNINGS = {
 """Name of a parameter, as naoqi_camera has it -> what it is at the robot."""
 
 
-def fields_of(resolution: int, frame_rate: float, use_ros_time: bool, camera: int, alone: bool) -> tuple[Field, ...]:
+def fields_of(
+    resolution: int, frame_rate: float, use_ros_time: bool, camera: int, alone: bool
+) -> tuple[ReconfigureField, ...]:
     """The parameters of one camera, under the names of naoqi_camera.
 
     `alone`: the node serves this camera only, and can change over to the other.
     """
-    source = (Field("source", camera, "camera", TOP, BOTTOM, CAMERAS),) if alone else ()
+    source = (ReconfigureField("source", camera, "camera", TOP, BOTTOM, CAMERAS),) if alone else ()
     return (
         *source,
-        Field("resolution", resolution, "size of the pictures", min(RESOLUTIONS), max(RESOLUTIONS), RESOLUTIONS),
-        Field("frame_rate", frame_rate, "pictures a second", LEAST_RATE, MOST_RATE),
-        Field(
+        ReconfigureField(
+            "resolution", resolution, "size of the pictures", min(RESOLUTIONS), max(RESOLUTIONS), RESOLUTIONS
+        ),
+        ReconfigureField("frame_rate", frame_rate, "pictures a second", LEAST_RATE, MOST_RATE),
+        ReconfigureField(
             "color_space",
             vision.kBGRColorSpace,
             "colour space, which gives the encoding",
@@ -88,8 +96,10 @@ def fields_of(resolution: int, frame_rate: float, use_ros_time: bool, camera: in
             max(COLOR_SPACES),
             COLOR_SPACES,
         ),
-        Field("camera_info_url", "", "calibration: file:// or package://; empty: the one that was set, or computed"),
-        Field("use_ros_time", use_ros_time, "whether stamps are in ROS time, instead of the robot's own"),
+        ReconfigureField(
+            "camera_info_url", "", "calibration: file:// or package://; empty: the one that was set, or computed"
+        ),
+        ReconfigureField("use_ros_time", use_ros_time, "whether stamps are in ROS time, instead of the robot's own"),
         *(tuning.field for tuning in TUNINGS.values()),
     )
 

@@ -36,7 +36,7 @@ SLOW = 0.8
 
 
 @dataclass(frozen=True, eq=False)
-class Subscription:
+class CameraSubscription:
     """A subscription at the robot; its interrupt ends all waits for its pictures."""
 
     handle: str
@@ -80,7 +80,7 @@ class CameraStream:
         self._wall_time = wall_time
         self._changing = threading.Lock()
         self._news = threading.Condition()
-        self._subscription: Subscription | None = None
+        self._subscription: CameraSubscription | None = None
         self._closed = False
         self._times = ImageClock()
         self._rate = PictureRate()
@@ -171,7 +171,7 @@ class CameraStream:
             self._note_life()
             self._shows = False
             with self._news:
-                self._subscription = Subscription(handle)
+                self._subscription = CameraSubscription(handle)
                 self._news.notify_all()
 
     def _end(self) -> None:
@@ -179,7 +179,7 @@ class CameraStream:
         if subscription is not None:
             self._subscriber.unsubscribe(subscription.handle)
 
-    def _forget(self) -> Subscription | None:
+    def _forget(self) -> CameraSubscription | None:
         with self._news:
             subscription, self._subscription = self._subscription, None
         if subscription is not None:
@@ -199,7 +199,7 @@ class CameraStream:
     # --- in the thread of the pictures ----------------------------------------------------------------------------
 
     def _run(self) -> None:
-        subscription: Subscription | None = None
+        subscription: CameraSubscription | None = None
         while True:
             with self._news:
                 former = subscription
@@ -222,7 +222,7 @@ class CameraStream:
             if not subscription.interrupt.wait(FAILURE_PAUSE):
                 self._lazy.restart()
 
-    def _look(self, subscription: Subscription) -> None:
+    def _look(self, subscription: CameraSubscription) -> None:
         """Pass on pictures until something goes wrong.
 
         Raises:

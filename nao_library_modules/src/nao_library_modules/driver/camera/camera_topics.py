@@ -23,7 +23,7 @@ from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
 from ..base.node import frame_parameter, name_for_robot, publish
-from ..base.reconfigure import Field, serve, update
+from ..base.reconfigure import ReconfigureField, serve, update
 from .camera_formats import Picture
 from .camera_info_files import camera_name
 from .camera_infos import CameraInfos
@@ -39,9 +39,9 @@ QUEUE = 2
 QVGA = 1
 RATE = 15.0
 COMPRESSION = (
-    Field("format", JPEG, "format of the files", choices=FORMATS),
-    Field("jpeg_quality", 80, "quality of JPEG in percent", 1, 100),
-    Field("png_level", 3, "effort to make PNG small", 1, 9),
+    ReconfigureField("format", JPEG, "format of the files", choices=FORMATS),
+    ReconfigureField("jpeg_quality", 80, "quality of JPEG in percent", 1, 100),
+    ReconfigureField("png_level", 3, "effort to make PNG small", 1, 9),
 )
 WARN_PERIOD = 10.0
 

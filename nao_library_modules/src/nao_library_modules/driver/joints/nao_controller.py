@@ -21,7 +21,7 @@ from nao_library_msgs.msg import JointAnglesWithSpeed
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
-from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ..base.node import interrupt_when_lost
@@ -91,7 +91,7 @@ class NaoController:
         name: str,
         action: type,
         claims: Callable[[Any], frozenset[str]],
-        execute: Callable[..., Outcome],
+        execute: Callable[..., GoalOutcome],
         with_feedback: bool = False,
     ) -> None:
         self._servers[name] = ConcurrentActionServer(claims, execute, with_feedback, self._robot)
@@ -103,7 +103,7 @@ class NaoController:
     def _angles_joints(self, goal: Any) -> frozenset[str]:
         return frozenset(self._joints.joints_of(goal.joint_angles.joint_names))
 
-    def _trajectory(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> Outcome:
+    def _trajectory(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> GoalOutcome:
         began = rospy.Time.now()
 
         def report(joints: Sequence[str], desired: Sequence[float], actual: Sequence[float]) -> None:
@@ -118,12 +118,12 @@ class NaoController:
         reached = self._joints.follow(frames, interrupt, report)
         return _outcome(JointTrajectoryResult(), goal.trajectory.joint_names, reached)
 
-    def _stiffness(self, goal: Any, interrupt: CancellationToken) -> Outcome:
+    def _stiffness(self, goal: Any, interrupt: CancellationToken) -> GoalOutcome:
         frames = self._joints.stiffness_trajectory(goal.trajectory)
         reached = self._joints.stiffen(frames, interrupt)
         return _outcome(JointTrajectoryResult(), goal.trajectory.joint_names, reached)
 
-    def _angles(self, goal: Any, interrupt: CancellationToken) -> Outcome:
+    def _angles(self, goal: Any, interrupt: CancellationToken) -> GoalOutcome:
         asked = goal.joint_angles
         names, angles = asked.joint_names, asked.joint_angles
         reached = self._joints.move(names, angles, asked.speed, asked.relative != 0, interrupt)
@@ -163,8 +163,8 @@ class NaoController:
             self._init_stiffness.apply()
 
 
-def _outcome(result: Any, names: Sequence[str], reached: Reached) -> Outcome:
+def _outcome(result: Any, names: Sequence[str], reached: Reached) -> GoalOutcome:
     result.goal_position.header.stamp = rospy.Time.now()
     result.goal_position.name = list(names)
     result.goal_position.position = reached.values
-    return Outcome(result, reached.preempted)
+    return GoalOutcome(result, reached.preempted)

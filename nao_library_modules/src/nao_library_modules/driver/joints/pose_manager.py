@@ -28,7 +28,7 @@ from ...base.field_checks import require_within
 from ...nao.joint_names import MOTION
 from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
 from ...robot.robot_task import run_task
-from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.goal_tracker import GoalTracker
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
@@ -85,11 +85,11 @@ class PoseManager:
 
     # --- poses of the tables --------------------------------------------------------------------------------------
 
-    def _take_pose(self, goal: BodyPoseGoal, interrupt: CancellationToken) -> Outcome:
+    def _take_pose(self, goal: BodyPoseGoal, interrupt: CancellationToken) -> GoalOutcome:
         pose = self._pose(goal.pose_name)
         self._end_walk()
         self._trajectory.take(pose, interrupt)
-        return Outcome(BodyPoseResult())
+        return GoalOutcome(BodyPoseResult())
 
     def _pose(self, name: str) -> Pose:
         if name not in self._poses:
@@ -116,7 +116,7 @@ class PoseManager:
 
     # --- postures of the robot ------------------------------------------------------------------------------------
 
-    def _take_posture(self, goal: BodyPoseWithSpeedGoal, interrupt: CancellationToken) -> Outcome:
+    def _take_posture(self, goal: BodyPoseWithSpeedGoal, interrupt: CancellationToken) -> GoalOutcome:
         require_within("speed", goal.speed, FRACTION)
         posture = self._robot.proxy(POSTURE)
         known = posture.call_async("getPostureList").result(timeout=QUICK_LIMIT)
@@ -130,7 +130,7 @@ class PoseManager:
 
         if not run_task(posture.call_async("goToPosture", goal.posture_name, goal.speed), interrupt, stop):
             raise NaoError(f"the robot did not reach the posture {goal.posture_name}")
-        return Outcome(BodyPoseWithSpeedResult())
+        return GoalOutcome(BodyPoseWithSpeedResult())
 
 
 def _add(poses: dict[str, Pose], read: Callable[[], dict[str, Pose]]) -> None:

@@ -9,7 +9,7 @@ from nao_library_actions.msg import RunBehaviorAction, RunBehaviorResult
 from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsResponse
 
 from ...base.cancellation import CancellationToken
-from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ..base.node import interrupt_when_lost
@@ -47,6 +47,6 @@ class NaoBehaviors:
     def _installed(self, _request: Any) -> GetInstalledBehaviorsResponse:
         return GetInstalledBehaviorsResponse(self._behaviors.installed())
 
-    def _run(self, goal: Any, interrupt: CancellationToken) -> Outcome:
+    def _run(self, goal: Any, interrupt: CancellationToken) -> GoalOutcome:
         self._behaviors.run(goal.behavior, interrupt)
-        return Outcome(RunBehaviorResult())
+        return GoalOutcome(RunBehaviorResult())

@@ -16,7 +16,7 @@ from naoqi.errors import NaoError
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.field_checks import require_zero_or
-from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
@@ -67,7 +67,7 @@ class NaoLeds:
         except NaoError as error:
             rospy.logerr_throttle(COMPLAINT_PERIOD, f"fade_rgb: {error}")
 
-    def _blink(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> Outcome:
+    def _blink(self, goal: Any, interrupt: CancellationToken, publish: Callable[[Any], None]) -> GoalOutcome:
         blinks = Blinks(
             [_rgb(color) for color in goal.colors],
             _rgb(goal.bg_color),
@@ -81,7 +81,7 @@ class NaoLeds:
             publish(BlinkFeedback(last_color=ColorRGBA(*colour, 1.0)))
 
         replaced = blink(self._robot, blinks, self._clock, interrupt, tell, self._chance)
-        return Outcome(BlinkResult(still_blinking=replaced), preempted=True)
+        return GoalOutcome(BlinkResult(still_blinking=replaced), preempted=True)
 
 
 def _rgb(color: ColorRGBA) -> tuple[float, float, float]:

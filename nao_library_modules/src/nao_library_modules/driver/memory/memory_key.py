@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from .memory_rules import Rule
+from .memory_rules import MemoryRule
 from .memory_values import TEXT, converted, kind_of
 
 log = logging.getLogger(__name__)
@@ -32,7 +32,7 @@ class WatchedKey:
         kind: Kind of message; empty as long as the type is unknown.
     """
 
-    def __init__(self, name: str, topic_name: str, rule: Rule, make_topic: Callable[..., Any]) -> None:
+    def __init__(self, name: str, topic_name: str, rule: MemoryRule, make_topic: Callable[..., Any]) -> None:
         """Watch a key; there is no topic yet.
 
         `make_topic` opens a topic: it gets its name, the kind of message and a function to call with whether there are

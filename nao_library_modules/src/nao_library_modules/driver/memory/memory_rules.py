@@ -20,7 +20,7 @@ RATE = limit("sampling rate")
 
 
 @dataclass(frozen=True)
-class Rule:
+class MemoryRule:
     """How keys are watched."""
 
     pattern: str  # a key, or several with * and ?
@@ -36,13 +36,13 @@ class Rule:
             raise BadGoal("type", self.kind, f"one of {', '.join(KINDS)}, or nothing")
 
 
-class Rules:
+class MemoryRules:
     """Rules in the order in which they were made: the last one that matches a key counts. For one lock."""
 
     def __init__(self) -> None:
-        self._rules: list[Rule] = []
+        self._rules: list[MemoryRule] = []
 
-    def add(self, rule: Rule) -> None:
+    def add(self, rule: MemoryRule) -> None:
         """Add a rule; it replaces older ones for the same pattern, or for keys that it covers."""
         self._rules = [r for r in self._rules if r.pattern != rule.pattern and not self._covers(rule, r)]
         if rule.on or any(r.on for r in self._rules):
@@ -50,21 +50,21 @@ class Rules:
         else:
             self._rules.clear()
 
-    def copy(self) -> Rules:
-        other = Rules()
+    def copy(self) -> MemoryRules:
+        other = MemoryRules()
         other._rules = list(self._rules)
         return other
 
-    def all(self) -> list[Rule]:
+    def all(self) -> list[MemoryRule]:
         """The rules, the oldest first."""
         return list(self._rules)
 
-    def rule_for(self, key: str) -> Rule | None:
+    def rule_for(self, key: str) -> MemoryRule | None:
         """The rule by which a key is watched; None if it is not."""
         found = next((rule for rule in reversed(self._rules) if matches(key, rule.pattern)), None)
         return found if found is not None and found.on else None
 
-    def wanted_of(self, known: Iterable[str]) -> dict[str, Rule]:
+    def wanted_of(self, known: Iterable[str]) -> dict[str, MemoryRule]:
         """Key -> its rule, of all keys to watch: of those `known` at the robot, and all that a rule names."""
         named = [rule.pattern for rule in self._rules if rule.on and not is_pattern(rule.pattern)]
         found = {key: self.rule_for(key) for key in dict.fromkeys([*named, *known])}
@@ -79,12 +79,12 @@ class Rules:
         return bool(self._rules)
 
     @staticmethod
-    def _covers(new: Rule, old: Rule) -> bool:
+    def _covers(new: MemoryRule, old: MemoryRule) -> bool:
         by_name = not is_pattern(old.pattern) and matches(old.pattern, new.pattern)
         return not new.on and (by_name or new.pattern == "*")
 
 
-def read_rules(entries: Any, parameter: str) -> list[Rule]:
+def read_rules(entries: Any, parameter: str) -> list[MemoryRule]:
     """Rules from a parameter.
 
     Args:
@@ -113,7 +113,7 @@ def read_rules(entries: Any, parameter: str) -> list[Rule]:
         rate = fields.get("rate", 0.0)
         if isinstance(rate, bool) or not isinstance(rate, (int, float)):
             raise NaoError(f"{where} has rate {rate!r}: Hz")
-        rule = Rule(fields["key"], float(rate), str(fields.get("type", "")))
+        rule = MemoryRule(fields["key"], float(rate), str(fields.get("type", "")))
         try:
             rule.check()
         except BadGoal as error:

@@ -18,7 +18,7 @@ from ..base.polling import FASTEST, RETRY
 from .memory_access import MEMORY, MemoryAccess
 from .memory_key import WatchedKey
 from .memory_names import matching, topics_of
-from .memory_rules import Rule, Rules
+from .memory_rules import MemoryRule, MemoryRules
 
 log = logging.getLogger(__name__)
 
@@ -50,7 +50,7 @@ class MemoryWatch:
         self._make_topic = make_topic
         self._largest = largest
         self._work = threading.Lock()
-        self._rules = Rules()
+        self._rules = MemoryRules()
         self._keys: dict[str, WatchedKey] = {}
         self._homeless: deque[tuple[WatchedKey, Any]] = deque()  # events that need another topic first
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
@@ -66,7 +66,7 @@ class MemoryWatch:
 
     # --- for the node ---------------------------------------------------------------------------------------------
 
-    def watch(self, rules: Iterable[Rule]) -> None:
+    def watch(self, rules: Iterable[MemoryRule]) -> None:
         """Apply rules, when the robot is connected.
 
         Raises:
@@ -89,7 +89,7 @@ class MemoryWatch:
 
     def unwatch(self, pattern: str) -> list[str]:
         """Watch keys no longer, and return those that were watched; raises NaoError if the pattern is empty."""
-        rule = Rule(pattern, on=False)
+        rule = MemoryRule(pattern, on=False)
         rule.check()
         with self._work:
             self._rules.add(rule)
@@ -100,7 +100,7 @@ class MemoryWatch:
         return ended
 
     @property
-    def rules(self) -> list[Rule]:
+    def rules(self) -> list[MemoryRule]:
         """The rules, the oldest first."""
         with self._work:
             return self._rules.all()

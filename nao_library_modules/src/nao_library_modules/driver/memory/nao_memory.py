@@ -44,7 +44,7 @@ from ..base.lazy_topic import LazyTopic
 from ..base.node import publish
 from .memory_access import MemoryAccess, check_pattern
 from .memory_names import is_pattern, matching
-from .memory_rules import Rule, read_rules
+from .memory_rules import MemoryRule, read_rules
 from .memory_values import BOOL, FLOAT, FLOATS, INT, INTS, TEXT, TEXTS, parse_value, type_of
 from .memory_watch import MemoryWatch
 
@@ -86,7 +86,7 @@ class NaoMemory:
         node.if_it_fails(self._watch.close)
         self._kept = node_file(self._node.name)
         kept = self._kept.load()
-        self._watch.watch(rules if kept is None else [Rule(**told) for told in kept])
+        self._watch.watch(rules if kept is None else [MemoryRule(**told) for told in kept])
         self._serve("~watch", WatchMemory, WatchMemoryResponse, self._on_watch)
         self._serve("~unwatch", UnwatchMemory, UnwatchMemoryResponse, self._on_unwatch)
         self._serve("~get", GetMemory, GetMemoryResponse, self._on_get)
@@ -103,7 +103,7 @@ class NaoMemory:
     # --- services -------------------------------------------------------------------------------------------------
 
     def _on_watch(self, request: Any) -> WatchMemoryResponse:
-        self._watch.watch([Rule(request.pattern, request.rate, request.type)])
+        self._watch.watch([MemoryRule(request.pattern, request.rate, request.type)])
         self._keep()
         found = self._watch.watched(request.pattern)
         topics = [self._resolved(topic) for topic in found.values()]

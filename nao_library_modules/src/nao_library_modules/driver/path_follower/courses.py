@@ -9,7 +9,7 @@ from ...base.errors import BadGoal
 from ...base.places import Place, wrapped
 from ..walk.walk_commands import require_way
 from .path import WalkPath
-from .settings import Settings
+from .settings import FollowerSettings
 
 WINDOW = 0.5
 """m of a path beyond the robot's last place in which it is looked for: it does not jump where a path crosses itself."""
@@ -45,7 +45,7 @@ class TargetCourse:
 class PathCourse:
     """Along a path, aiming at a place of it that moves ahead of the robot."""
 
-    def __init__(self, path: WalkPath, settings: Settings) -> None:
+    def __init__(self, path: WalkPath, settings: FollowerSettings) -> None:
         self._path = path
         self._settings = settings
         self._along: float | None = None
@@ -93,5 +93,5 @@ class PathCourse:
         return settings.path_next_target_distance
 
 
-def reached(way: Place, settings: Settings) -> bool:
+def reached(way: Place, settings: FollowerSettings) -> bool:
     return way.distance <= settings.target_distance_threshold and abs(way.yaw) <= settings.target_angle_threshold

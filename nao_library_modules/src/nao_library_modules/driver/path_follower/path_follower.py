@@ -23,7 +23,7 @@ from naoqi.errors import NaoError
 from ...base.cancellation import CancellationToken
 from ...base.errors import RobotLost
 from ...base.places import Place
-from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome, Replaced
+from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome, Replaced
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
@@ -32,7 +32,7 @@ from ..joints.planar_frames import PlanarFrames, pose_stamped, read_path, read_p
 from .courses import Aim, PathCourse, TargetCourse
 from .legs import WalkTopics
 from .path import WalkPath
-from .settings import Settings
+from .settings import FollowerSettings
 from .walk import lead
 
 SHUTDOWN_LIMIT = 4.0
@@ -60,13 +60,13 @@ class NaoPathFollower:
         it follows.
         Calls `stop_walk_srv`, `inhibit_walk`, `uninhibit_walk` (std_srvs/Empty), where they are offered.
         Parameters `~base_frame_id` (base_footprint), `~odom_frame_id` (odom), `tf_prefix` (searched upwards), and
-        those of `Settings`.
+        those of `FollowerSettings`.
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._node = node
-        self._settings = Settings.read(node.param)
+        self._settings = FollowerSettings.read(node.param)
         self._base = frame_parameter(node, "~base_frame_id", "base_footprint")
         self._odom = frame_parameter(node, "~odom_frame_id", "odom")
         self._frames = PlanarFrames()
@@ -106,7 +106,7 @@ class NaoPathFollower:
 
     def _execute(
         self, goal: MoveBaseGoal | FollowPathGoal, interrupt: CancellationToken, publish: Callable[[Any], None]
-    ) -> Outcome:
+    ) -> GoalOutcome:
         self._legs.reserve()
         try:
             return self._walk(goal, interrupt, publish)
@@ -120,7 +120,7 @@ class NaoPathFollower:
 
     def _walk(
         self, goal: MoveBaseGoal | FollowPathGoal, interrupt: CancellationToken, publish: Callable[[Any], None]
-    ) -> Outcome:
+    ) -> GoalOutcome:
         if self._settings.use_foot_contact_protection and not self._touching:
             raise NaoError(f"{FOOT_CONTACT}: put the robot on its feet")
         follows_path = isinstance(goal, FollowPathGoal)
@@ -140,7 +140,7 @@ class NaoPathFollower:
             return self._frames.locate(self._base, frame)
 
         lead(course, self._legs, locate, self._clock, self._settings, interrupt, report)
-        return Outcome(FollowPathResult() if follows_path else MoveBaseResult())
+        return GoalOutcome(FollowPathResult() if follows_path else MoveBaseResult())
 
     def _target_course(self, target: PoseStamped) -> tuple[str, TargetCourse]:
         place, frame = read_place("target_pose", target)

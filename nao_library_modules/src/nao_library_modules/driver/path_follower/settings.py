@@ -14,7 +14,7 @@ from ...base.limits import limit
 
 
 @dataclass(frozen=True)
-class Settings:
+class FollowerSettings:
     """How a robot follows targets and paths; the names are those of the parameters.
 
     Raises:
@@ -51,7 +51,7 @@ class Settings:
             _check(name, getattr(self, name))
 
     @classmethod
-    def read(cls, get_param: Callable[[str, Any], Any]) -> Settings:
+    def read(cls, get_param: Callable[[str, Any], Any]) -> FollowerSettings:
         """Settings from private parameters; `get_param` takes name and default."""
         return cls(**{field.name: get_param(f"~{field.name}", field.default) for field in fields(cls)})
 

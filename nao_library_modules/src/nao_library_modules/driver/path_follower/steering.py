@@ -8,7 +8,7 @@ from naoqi.errors import NaoError
 
 from ...base.places import Place, wrapped
 from ...nao.walk_speed import top_speeds
-from .settings import Settings
+from .settings import FollowerSettings
 
 FACE_DISTANCE = 0.4
 """m: to what is further away the robot turns its face; it walks ahead faster than sideways."""
@@ -16,7 +16,7 @@ PROGRESS = 0.02
 """m that count as progress."""
 
 
-def velocity(way: Place, settings: Settings) -> tuple[float, float, float]:
+def velocity(way: Place, settings: FollowerSettings) -> tuple[float, float, float]:
     """Shares -1..1 of the top speeds ahead, to the left and turning left, for a way in the robot's frame.
 
     None is so large that the robot would be past its target in the next round, at the step frequency of the settings.

@@ -13,7 +13,7 @@ from ...base.clock import WallClock
 from ...base.places import ORIGIN, Place
 from ..base.rate import Rate
 from .courses import Aim, reached
-from .settings import Settings
+from .settings import FollowerSettings
 from .steering import StuckWatch, velocity
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ class _Mode:
     """A way to lead; `round` does what is to be done now, and returns whether the robot has arrived and stands."""
 
     def __init__(
-        self, legs: WalkTopics, settings: Settings, now: Callable[[], float], interrupt: CancellationToken
+        self, legs: WalkTopics, settings: FollowerSettings, now: Callable[[], float], interrupt: CancellationToken
     ) -> None:
         self._legs = legs
         self._interrupt = interrupt
@@ -125,7 +125,7 @@ def lead(
     legs: WalkTopics,
     locate: Callable[[], Place],
     clock: Any,
-    settings: Settings,
+    settings: FollowerSettings,
     interrupt: CancellationToken,
     report: Callable[[Place, Aim], None] = lambda robot, aim: None,
 ) -> None:

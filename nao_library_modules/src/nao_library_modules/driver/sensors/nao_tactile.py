@@ -19,13 +19,13 @@ from ..base.lazy_topic import LazyTopic
 from ..base.node import publish, rate_parameter
 from ..base.polling import Polling
 from .foot_pressure import SIDES, FootPressure, read_feet
-from .touch_sensors import BUMPER, CHEST, FEET, HAND, HEAD, Sensor, TouchSensors
+from .touch_sensors import BUMPER, CHEST, FEET, HAND, HEAD, TouchSensor, TouchSensors
 
 QUEUE = 10
 DEFAULT_RATE = 20.0
 
 
-class NaoTactile:
+class NaoTactileNode:
     """What the touch sensors, bumpers, buttons and soles of one robot feel.
 
     Touches come from the robot's events; nothing is asked for again and again but the forces under the feet, while
@@ -70,7 +70,7 @@ class NaoTactile:
 
     # --- touches; in threads of libqi -----------------------------------------------------------------------------
 
-    def _on_touch(self, sensor: Sensor, touched: bool) -> None:
+    def _on_touch(self, sensor: TouchSensor, touched: bool) -> None:
         which, state = sensor.number, int(touched)  # 0 released and 1 pressed in all these messages
         if sensor.place == HEAD:
             publish(self._head, TactileTouch(button=which, state=state))

@@ -25,7 +25,7 @@ HEAD, HAND, BUMPER, CHEST, FEET = "head", "hand", "bumper", "chest button", "fee
 
 
 @dataclass(frozen=True)
-class Sensor:
+class TouchSensor:
     """A sensor that is touched while one of its keys in the robot's memory is not 0."""
 
     event: str  # raised at each change
@@ -34,8 +34,8 @@ class Sensor:
     keys: tuple[str, ...]
 
 
-def _sensor(event: str, place: str, number: int) -> Sensor:
-    return Sensor(event, place, number, BY_EVENT[event].keys)
+def _sensor(event: str, place: str, number: int) -> TouchSensor:
+    return TouchSensor(event, place, number, BY_EVENT[event].keys)
 
 
 SENSORS = (
@@ -51,7 +51,7 @@ SENSORS = (
     _sensor("RightBumperPressed", BUMPER, 0),
     _sensor("LeftBumperPressed", BUMPER, 1),
     _sensor("ChestButtonPressed", CHEST, 0),
-    Sensor("footContactChanged", FEET, 0, (FOOT_CONTACT,)),
+    TouchSensor("footContactChanged", FEET, 0, (FOOT_CONTACT,)),
 )
 CLICKS = {
     "ALChestButton/SimpleClickOccurred": 1,
@@ -70,9 +70,9 @@ class TouchSensors:
     def __init__(
         self,
         robot: Any,
-        tell: Callable[[Sensor, bool], None],
+        tell: Callable[[TouchSensor, bool], None],
         tell_clicks: Callable[[int], None],
-        sensors: Sequence[Sensor] = SENSORS,
+        sensors: Sequence[TouchSensor] = SENSORS,
     ) -> None:
         """Begin to listen; the robot need not be connected yet.
 
@@ -129,7 +129,7 @@ class TouchSensors:
                 self._heard.update(sensor.event for sensor in heard)
         return True
 
-    def _read(self, keys_of: Mapping[Sensor, Sequence[str]]) -> None:
+    def _read(self, keys_of: Mapping[TouchSensor, Sequence[str]]) -> None:
         keys = [key for keys in keys_of.values() for key in keys]
         answer = self._robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
         values = dict(zip(keys, answer))
@@ -146,7 +146,7 @@ class TouchSensors:
         elif isinstance(value, (bool, int, float)):
             self._take(self._sensors[name], value > 0.5, is_event=True)
 
-    def _take(self, sensor: Sensor, touched: bool, is_event: bool) -> None:
+    def _take(self, sensor: TouchSensor, touched: bool, is_event: bool) -> None:
         with self._lock:
             if is_event:
                 self._heard.add(sensor.event)

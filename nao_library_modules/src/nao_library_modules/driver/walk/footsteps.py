@@ -15,14 +15,14 @@ from naoqi.errors import NaoError
 from ...base.cancellation import CancellationToken
 from ...base.field_checks import require_length, require_within
 from ...base.limits import limit
-from ...ros.concurrent_action_server import ConcurrentActionServer, Outcome
+from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ..base.node import interrupt_when_lost
 from ..joints.joint_controller import InitialStiffness, JointController
 from .footsteps_walk import FootstepWalk
-from .walk_commands import LEGS, Step, read_step
+from .walk_commands import LEGS, FootStep, read_step
 
 FEEDBACK, FOOTSTEPS = limit("feedback rate"), limit("footsteps")
 COMPLAINT_PERIOD = 5.0
@@ -77,14 +77,14 @@ class NaoFootsteps:
 
     def _execute(
         self, goal: ExecFootstepsGoal, interrupt: CancellationToken, publish: Callable[[Any], None]
-    ) -> Outcome:
+    ) -> GoalOutcome:
         steps = self._walk.prepared(read_steps(goal.footsteps))
 
-        def report(made: tuple[Step, ...]) -> None:
+        def report(made: tuple[FootStep, ...]) -> None:
             publish(ExecFootstepsFeedback([step_target(step) for step in made]))
 
         walked = self._walk.walk(steps, 1.0 / goal.feedback_frequency, interrupt, report)
-        return Outcome(ExecFootstepsResult([step_target(step) for step in walked.steps]), walked.preempted)
+        return GoalOutcome(ExecFootstepsResult([step_target(step) for step in walked.steps]), walked.preempted)
 
     # --- topic and services ---------------------------------------------------------------------------------------
 
@@ -106,13 +106,13 @@ class NaoFootsteps:
             self._init_stiffness.apply()
 
 
-def read_steps(targets: list[StepTarget]) -> list[Step]:
+def read_steps(targets: list[StepTarget]) -> list[FootStep]:
     """Steps from their messages. Raises BadGoal if one will not do, or they are too many."""
     require_length("footsteps", len(targets), FOOTSTEPS)
     return [read_step(target, f"footsteps[{index}].") for index, target in enumerate(targets)]
 
 
-def step_target(step: Step) -> StepTarget:
+def step_target(step: FootStep) -> StepTarget:
     target = StepTarget(leg=CODES[step.leg])
     target.pose.x, target.pose.y, target.pose.theta = step.place
     return target

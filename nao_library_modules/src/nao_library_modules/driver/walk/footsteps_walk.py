@@ -20,7 +20,7 @@ from ...base.errors import BadGoal, Preempted
 from ...base.places import Place
 from ...nao.joint_names import MOTION
 from ..joints.joint_controller import QUICK_LIMIT
-from .walk_commands import LEFT, RIGHT, Step
+from .walk_commands import LEFT, RIGHT, FootStep
 
 STEP_TIME = 0.5
 """s from step to step."""
@@ -70,7 +70,7 @@ def check_legs(legs: Sequence[str]) -> None:
 class Walked:
     """The steps that were made, in order, as the robot can make them."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[FootStep, ...]
     preempted: bool = False  # ended before time
 
 
@@ -82,10 +82,10 @@ class FootstepWalk:
         self._clock = clock
 
     @staticmethod
-    def clipped(step: Step) -> Step:
-        return Step(step.leg, *clip(step.place, step.leg))
+    def clipped(step: FootStep) -> FootStep:
+        return FootStep(step.leg, *clip(step.place, step.leg))
 
-    def prepared(self, steps: Sequence[Step]) -> tuple[Step, ...]:
+    def prepared(self, steps: Sequence[FootStep]) -> tuple[FootStep, ...]:
         """Steps as the robot can make them, one after the other.
 
         Raises NaoError if there are none, or they are not made by one leg after the other.
@@ -95,14 +95,14 @@ class FootstepWalk:
         check_legs([step.leg for step in steps])
         return tuple(self.clipped(step) for step in steps)
 
-    def add(self, step: Step) -> None:
+    def add(self, step: FootStep) -> None:
         """Have a step made after those that were added before; returns at once.
 
         Raises NaoError if it is no step, or the robot refuses it.
         """
         self._send((self.clipped(step),), clear=False)
 
-    def make(self, step: Step) -> None:
+    def make(self, step: FootStep) -> None:
         """Make a step, and return when the robot stands.
 
         Raises NaoError if it is no step, or the robot does not make it.
@@ -112,10 +112,10 @@ class FootstepWalk:
 
     def walk(
         self,
-        steps: Sequence[Step],
+        steps: Sequence[FootStep],
         period: float,
         interrupt: CancellationToken,
-        report: Callable[[tuple[Step, ...]], None],
+        report: Callable[[tuple[FootStep, ...]], None],
     ) -> Walked:
         """Make steps that `prepared` gave, to the end or to the interrupt; the robot stands then.
 
@@ -145,7 +145,7 @@ class FootstepWalk:
         report(steps)
         return Walked(steps)
 
-    def _stopped(self, steps: tuple[Step, ...], made: int | None, interrupt: CancellationToken) -> Walked:
+    def _stopped(self, steps: tuple[FootStep, ...], made: int | None, interrupt: CancellationToken) -> Walked:
         """Stop the robot; steps that can no longer be taken back are made."""
         try:
             made = self._made(len(steps), made, taken_back=True)
@@ -157,7 +157,7 @@ class FootstepWalk:
             interrupt.check()
         return Walked(steps[: made or 0], preempted=True)
 
-    def _send(self, steps: tuple[Step, ...], clear: bool) -> None:
+    def _send(self, steps: tuple[FootStep, ...], clear: bool) -> None:
         legs = [step.leg for step in steps]
         places = [list(step.place) for step in steps]
         times = [STEP_TIME * (index + 1) for index in range(len(steps))]

@@ -57,7 +57,7 @@ class Target:
 
 
 @dataclass(frozen=True)
-class Step:
+class FootStep:
     """The leg that moves, and where its foot goes in the frame of the other foot: x and y in m, theta in rad."""
 
     leg: str
@@ -94,14 +94,14 @@ def read_target(pose: Any) -> Target:
     return Target(*_pose(pose))
 
 
-def read_step(step: Any, field: str = "") -> Step:
+def read_step(step: Any, field: str = "") -> FootStep:
     """The step of a nao_library_msgs/StepTarget; `field` is where it stands in a goal, for texts.
 
     Raises BadGoal if it names no leg, or a part is out of its bounds.
     """
     if step.leg not in LEGS:
         raise BadGoal(f"{field}leg", step.leg, "0 (right) or 1 (left)")
-    return Step(LEGS[step.leg], *_pose(step.pose, field))
+    return FootStep(LEGS[step.leg], *_pose(step.pose, field))
 
 
 def require_way(field: str, way: Place) -> Place:

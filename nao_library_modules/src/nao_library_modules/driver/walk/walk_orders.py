@@ -11,7 +11,7 @@ from typing import Union
 from naoqi.errors import NaoError
 
 from ...base.limits import limit
-from .walk_commands import Step, Target, Velocity
+from .walk_commands import FootStep, Target, Velocity
 
 MOST = int(limit("footsteps").highest)
 
@@ -23,7 +23,7 @@ class Stop:
         return "stopping"
 
 
-Command = Union[Velocity, Target, Step, Stop]
+Command = Union[Velocity, Target, FootStep, Stop]
 
 
 class WalkEnded(NaoError):
@@ -86,11 +86,11 @@ class Mailbox:
         replaced: list[Order] = []
         with self._lock:
             if len(self._orders) >= MOST:
-                if isinstance(order.command, Step):
+                if isinstance(order.command, FootStep):
                     order.fail(WalkEnded(order.command, f"{len(self._orders)} orders wait already, {MOST} at most"))
                     return
                 replaced.append(self._orders.pop(0))
-            if not isinstance(order.command, Step):
+            if not isinstance(order.command, FootStep):
                 replaced += [waiting for waiting in self._orders if not isinstance(waiting.command, Stop)]
                 self._orders = [waiting for waiting in self._orders if isinstance(waiting.command, Stop)]
             self._orders.append(order)

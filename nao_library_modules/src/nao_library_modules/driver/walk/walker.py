@@ -17,7 +17,7 @@ from ...base.errors import Preempted
 from ...nao.joint_names import MOTION
 from ...robot.robot_task import run_task
 from ..joints.joint_controller import QUICK_LIMIT
-from .walk_commands import GaitConfig, Step, Target, Velocity
+from .walk_commands import FootStep, GaitConfig, Target, Velocity
 from .walk_orders import Command, Mailbox, Order, Stop, Superseded, WalkEnded
 from .walk_timing import WalkPace, WalkWatchdog
 
@@ -132,7 +132,7 @@ class Walker:
         """Carry out the order whose turn it is, or wait for news."""
         order = self._box.first
         if order is not None:
-            hasty = order.halts or isinstance(order.command, Step)
+            hasty = order.halts or isinstance(order.command, FootStep)
             pause = 0.0 if hasty else self._pace.pause(self._wall.now())
             if pause > 0.0:
                 self._news.wait(pause)
@@ -157,7 +157,7 @@ class Walker:
         start: dict[type, Callable[[Order, Any], None]] = {
             Velocity: self._steer,
             Target: self._go_to,
-            Step: self._step,
+            FootStep: self._step,
             Stop: self._stop,
         }
         try:
@@ -200,7 +200,7 @@ class Walker:
         call = self._start("moveTo", target.x, target.y, target.theta, *config)
         call.add_done_callback(partial(self._walked, order))
 
-    def _step(self, order: Order, step: Step) -> None:
+    def _step(self, order: Order, step: FootStep) -> None:
         self._begin(order)
         self._take_walk_pose()
         self._quick("setFootSteps", [step.leg], [[step.x, step.y, step.theta]], [STEP_TIME], False)
@@ -231,7 +231,7 @@ class Walker:
         self._pace.sent(velocity, self._wall.now())
         with self._lock:
             before = [old for old in self._running if not old.answer.done()]
-            steps = [old for old in before if isinstance(order.command, Step) and isinstance(old.command, Step)]
+            steps = [old for old in before if isinstance(order.command, FootStep) and isinstance(old.command, FootStep)]
             self._running = [*steps, order]
             order.replaces = self._doing != STANDS
             self._doing = STANDS if order.halts else str(order.command)

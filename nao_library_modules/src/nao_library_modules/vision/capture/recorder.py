@@ -30,7 +30,7 @@ class VideoSpec:
     overwrite: bool = False
 
 
-class Recording(CaptureJob):
+class VideoRecording(CaptureJob):
     """Writes frames into a file; each start makes a new one."""
 
     kind = "recording"

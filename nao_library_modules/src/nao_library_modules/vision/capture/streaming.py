@@ -35,7 +35,7 @@ from .fields import (
 from .files import VisionFiles
 from .job import CaptureJob, taken
 from .jobs import MOST_JOBS, CaptureJobs, too_many, unknown
-from .recorder import Recording, VideoSpec
+from .recorder import VideoRecording, VideoSpec
 from .stream import Stream
 from .video import CODECS, VIDEO_TYPES, codec_name, known_codecs
 
@@ -216,7 +216,9 @@ class StreamingFunctions(Part):
         path = self.files.path(str_param, kind) if str_param.strip() else None
         spec = VideoSpec(path, kind, codec_name(codec, kind), width, height, overwrite)
         source = self._cameras.source(camera, topic)
-        self.jobs.add(Recording(id.strip(), source, rate, self._cameras.topics, self._module.clock, self.files, spec))
+        self.jobs.add(
+            VideoRecording(id.strip(), source, rate, self._cameras.topics, self._module.clock, self.files, spec)
+        )
         self._keep()
 
     @checked_by(_check_stop_recording)
@@ -261,7 +263,7 @@ class StreamingFunctions(Part):
     def _stop(self, job: CaptureJob) -> None:
         job.stop()
         self._keep()
-        if isinstance(job, Recording):
+        if isinstance(job, VideoRecording):
             self._results.recordings.append(job.video)
 
     # After the death of the node
@@ -283,7 +285,7 @@ class StreamingFunctions(Part):
         if spec is None:
             return Stream(**settings)
         path = spec["path"] and Path(spec["path"])
-        return Recording(files=self.files, spec=VideoSpec(**{**spec, "path": path}), again=True, **settings)
+        return VideoRecording(files=self.files, spec=VideoSpec(**{**spec, "path": path}), again=True, **settings)
 
     def _keep(self) -> None:
         self._module.kept.save([{"settings": each.settings, "runs": each.runs} for each in self.jobs.known.values()])

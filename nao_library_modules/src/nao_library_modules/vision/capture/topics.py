@@ -45,7 +45,7 @@ class Publisher:
         self._publisher.unregister()
 
 
-class Subscription:
+class TopicSubscription:
     """Takes messages from a topic until it is closed; may be closed twice."""
 
     def __init__(self, topic: str, kind: type, take: Callable[[Any], None]) -> None:
@@ -64,17 +64,17 @@ class Subscription:
 class VisionTopics:
     """Topics and settings of cameras. Needs `rospy.init_node` before; any thread may use it."""
 
-    def subscribe(self, topic: str, take: Callable[[Any], None]) -> Subscription:
+    def subscribe(self, topic: str, take: Callable[[Any], None]) -> TopicSubscription:
         """Take pictures from a topic, which need not be there yet.
 
         Raises:
             BadGoal: If what it holds are no pictures.
         """
-        return Subscription(topic, self._kind(topic), take)
+        return TopicSubscription(topic, self._kind(topic), take)
 
-    def subscribe_info(self, topic: str, take: Callable[[Any], None]) -> Subscription:
+    def subscribe_info(self, topic: str, take: Callable[[Any], None]) -> TopicSubscription:
         """Take sensor_msgs/CameraInfo from a topic, which need not be there."""
-        return Subscription(topic, CameraInfo, take)
+        return TopicSubscription(topic, CameraInfo, take)
 
     def publisher(self, topic: str, kind: type) -> Publisher:
         return Publisher(rospy.Publisher(topic, kind, queue_size=QUEUE))

@@ -73,7 +73,7 @@ DETECTORS = {
 
 
 @dataclass(frozen=True)
-class Wanted:
+class WantedDetection:
     """What a function looks for.
 
     Attributes:
@@ -116,7 +116,7 @@ class InUse(NaoError):
 class Watch:
     """An extractor that works for a function, as long as that needs it."""
 
-    def __init__(self, detectors: Detectors, wanted: Wanted, events: Events, camera: int) -> None:
+    def __init__(self, detectors: Detectors, wanted: WantedDetection, events: Events, camera: int) -> None:
         self._detectors = detectors
         self._wanted = wanted
         self._events = events
@@ -161,7 +161,7 @@ class Detectors(ExtractorUse):
         self._lenses: dict[tuple[int, int], Lens] = {}
 
     @contextmanager
-    def watching(self, wanted: Wanted) -> Iterator[Watch]:
+    def watching(self, wanted: WantedDetection) -> Iterator[Watch]:
         """Have an extractor work during a block."""
         detector = DETECTORS[wanted.kind]
         with self.looking_through(detector.module, wanted.camera) as camera, self.events_of(detector.event) as events:
@@ -178,7 +178,7 @@ class Detectors(ExtractorUse):
         stamp = detections[0].time if detections else None
         self.module.publish_feedback(stamp=stamp, status=status, objects=seen_messages(detections, self._prefix))
 
-    def placed(self, wanted: Wanted, camera: int, event: Event) -> list[LocalizedDetection]:
+    def placed(self, wanted: WantedDetection, camera: int, event: Event) -> list[LocalizedDetection]:
         """The detections of an event that count, and where they are.
 
         Args:

@@ -10,7 +10,7 @@ from naoqi.errors import NaoError
 from ...base.suggestion import did_you_mean
 from ...functions.parts import Part
 from ..capture.fields import Camera
-from .detectors import DETECTORS, Detectors, Wanted
+from .detectors import DETECTORS, Detectors, WantedDetection
 from .events import FACE
 from .fields import (
     AnyPerson,
@@ -45,7 +45,7 @@ class FaceFunctions(Part):
         size: HeadSize,
     ) -> list[str]:
         """See faces; answers whose they are, "face" for each that nobody knows."""
-        wanted = Wanted(FACE, str_param.strip(), confidence, size, camera_index(camera))
+        wanted = WantedDetection(FACE, str_param.strip(), confidence, size, camera_index(camera))
         return self._detections.detect(wanted, timeout, count)
 
     def learn_face(self, str_param: Person, camera: Camera, timeout: Timeout) -> list[bool]:
@@ -89,7 +89,7 @@ class FaceFunctions(Part):
     def _learn(self, method: str, name: str, camera: str, timeout: float) -> list[bool]:
         detectors = self._detectors
         detectors.publish_seen("looking")
-        with detectors.watching(Wanted(FACE, camera=camera_index(camera))) as watch:
+        with detectors.watching(WantedDetection(FACE, camera=camera_index(camera))) as watch:
             for detections in watch.until(detectors.clock.now() + timeout_of(timeout)):
                 detectors.publish_seen("looking", detections)
                 # The robot does not say which of several faces it would learn.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...functions.parts import Part
 from ..capture.fields import Camera
-from .detectors import DETECTORS, Detectors, InUse, Wanted
+from .detectors import DETECTORS, Detectors, InUse, WantedDetection
 from .events import BALL, CODE, LANDMARK, MOVEMENT
 from .fields import (
     AnyCode,
@@ -33,26 +33,26 @@ class DetectionFunctions(Part):
         self, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: BallSize
     ) -> list[str]:
         """See a red ball."""
-        return self.detect(Wanted(BALL, "", confidence, size, camera_index(camera)), timeout, count)
+        return self.detect(WantedDetection(BALL, "", confidence, size, camera_index(camera)), timeout, count)
 
     def detect_landmarks(
         self, str_param: AnyMark, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: MarkSize
     ) -> list[str]:
         """See landmarks; answers their numbers."""
-        wanted = Wanted(LANDMARK, require_mark(str_param), confidence, size, camera_index(camera))
+        wanted = WantedDetection(LANDMARK, require_mark(str_param), confidence, size, camera_index(camera))
         return self.detect(wanted, timeout, count)
 
     def read_barcodes(
         self, str_param: AnyCode, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: CodeSize
     ) -> list[str]:
         """Read barcodes and QR codes; answers what they say."""
-        return self.detect(Wanted(CODE, str_param, confidence, size, camera_index(camera)), timeout, count)
+        return self.detect(WantedDetection(CODE, str_param, confidence, size, camera_index(camera)), timeout, count)
 
     def detect_movement(
         self, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, sensitivity: Sensitivity
     ) -> list[str]:
         """See what moves."""
-        wanted = Wanted(MOVEMENT, "", confidence, 0.0, camera_index(camera))
+        wanted = WantedDetection(MOVEMENT, "", confidence, 0.0, camera_index(camera))
         if sensitivity <= 0.0:
             return self.detect(wanted, timeout, count)
         detectors, module = self._detectors, DETECTORS[MOVEMENT].module
@@ -67,7 +67,7 @@ class DetectionFunctions(Part):
         ):
             return self.detect(wanted, timeout, count)
 
-    def detect(self, wanted: Wanted, timeout: float, count: int) -> list[str]:
+    def detect(self, wanted: WantedDetection, timeout: float, count: int) -> list[str]:
         """Look until something was seen in so many pictures (0: one) or the timeout (s) is over; answers labels."""
         detectors, pictures = self._detectors, []
         detectors.publish_seen("looking")

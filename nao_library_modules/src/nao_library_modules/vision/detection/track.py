@@ -14,7 +14,7 @@ from ...functions.parts import Part
 from ...motion.facts import MOTION, JointLimits
 from ...motion.look_at import HEAD
 from ..capture.fields import Camera
-from .detectors import Detectors, Wanted, Watch
+from .detectors import Detectors, WantedDetection, Watch
 from .events import BALL, FACE
 from .fields import (
     SEARCH_TIMEOUT,
@@ -124,7 +124,7 @@ class TrackingFunctions(Part):
         revert: Revert,
     ) -> list[float]:
         """Follow a red ball with the head; answers for how long it was in view, s."""
-        wanted = Wanted(BALL, "", confidence, size, camera_index(camera))
+        wanted = WantedDetection(BALL, "", confidence, size, camera_index(camera))
         return self._track(wanted, timeout, duration, search, speed, revert)
 
     def track_face(
@@ -140,7 +140,7 @@ class TrackingFunctions(Part):
         revert: Revert,
     ) -> list[float]:
         """Follow a face with the head, or only that of one person; answers for how long it was in view, s."""
-        wanted = Wanted(FACE, str_param.strip(), confidence, size, camera_index(camera))
+        wanted = WantedDetection(FACE, str_param.strip(), confidence, size, camera_index(camera))
         return self._track(wanted, timeout, duration, search, speed, revert)
 
     def look_for(
@@ -156,7 +156,7 @@ class TrackingFunctions(Part):
     ) -> list[str]:
         """Turn the head until something is in view, look at it, and tell where it is; nothing if it is not found."""
         kind, name = wanted_thing(str_param)
-        wanted = Wanted(kind, name, confidence, size, camera_index(camera))
+        wanted = WantedDetection(kind, name, confidence, size, camera_index(camera))
         limit = timeout or SEARCH_TIMEOUT
         pictures: list[list[LocalizedDetection]] = []
         found: float | None = None
@@ -172,7 +172,7 @@ class TrackingFunctions(Part):
         return self._detectors.note(merged(pictures))
 
     def _track(
-        self, wanted: Wanted, timeout: float, duration: float, search: bool, speed: float, revert: bool
+        self, wanted: WantedDetection, timeout: float, duration: float, search: bool, speed: float, revert: bool
     ) -> list[float]:
         last: LocalizedDetection | None = None
         in_view = 0.0
