@@ -168,15 +168,12 @@ class _World:
         self._pose = rospy.ServiceProxy("get_truepose", GetTruepose)
 
     def start_film(self) -> None:
-        """Film from now on."""
         _require(self._start(FILM, VIEW, SIZE, SIZE, RATE))
 
     def caption_film(self, text: str) -> None:
-        """Write a text into the film from now on."""
         _require(self._caption(text))
 
     def stop_film(self) -> Any:
-        """Complete the film."""
         return _require(self._stop())
 
     def height(self) -> float:

@@ -67,7 +67,6 @@ class Notes:
     """
 
     def __init__(self, clock: Callable[[], float]) -> None:
-        """Begin."""
         self.turns: list[Turn] = []
         self._clock = clock
         self._began = clock()
@@ -91,7 +90,6 @@ class Notes:
 
 
 def save(turns: Sequence[Turn], path: Path) -> None:
-    """Write a record as JSON."""
     content = {"format": FORMAT, "units": "s", "turns": [asdict(turn) for turn in turns]}
     write_whole(path, json.dumps(content, indent=1) + "\n")
 

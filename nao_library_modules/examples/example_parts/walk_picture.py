@@ -35,8 +35,6 @@ Color = Tuple[int, int, int]
 
 
 class _Map:
-    """From the ground to the fine picture."""
-
     def __init__(self, points: Sequence[Point]) -> None:
         xs, ys = zip(*points)
         self.low = (min(xs) - MARGIN, min(ys) - MARGIN)

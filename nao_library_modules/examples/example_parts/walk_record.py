@@ -108,7 +108,6 @@ def footprints(samples: Sequence[Sample]) -> List[Footprint]:
 
 
 def save(samples: Sequence[Sample], path: Path) -> None:
-    """Write a record as JSON."""
     content = {"format": FORMAT, "units": "m, rad, kg", "samples": [asdict(sample) for sample in samples]}
     write_whole(path, json.dumps(content))
 

@@ -251,12 +251,6 @@ class FunctionChain:
     """
 
     def __init__(self, function_table: Mapping[str, Callable[..., Any]], server: str = "") -> None:
-        """Keep the table.
-
-        Args:
-            function_table: NAOqi function name -> callable.
-            server: Name of the action that serves it, for texts; it may be set later.
-        """
         self.server = server
         self.table = function_table
         self._bindings: dict[tuple[str, type], BoundFunction] = {}

@@ -31,17 +31,10 @@ class CheckService:
     """
 
     def __init__(self, module: Any, action: type) -> None:
-        """Keep what is asked.
-
-        Args:
-            module: The module.
-            action: Type of its action.
-        """
         self._module = module
         self._goal = type(action().action_goal.goal)
 
     def answer(self, request: Any) -> Any:
-        """Response to a request."""
         kind = self._goal
         if (request.type, request.md5sum) != (kind._type, kind._md5sum):
             asked = f"{request.type} ({request.md5sum})"

@@ -133,7 +133,6 @@ class Description:
 
 
 def message_class(goal: Any) -> type:
-    """Type of the function messages in a goal."""
     import roslib.message  # not needed by who only looks at texts
 
     return roslib.message.get_message_class(goal._slot_types[0].partition("[")[0])

@@ -36,7 +36,6 @@ class DescribeService:
         self._description: Description | None = None
 
     def answer(self, request: Any) -> Any:
-        """Response to a request."""
         running, index = self._running()
         robot = self._robot
         with self._lock:
@@ -65,7 +64,6 @@ class DescribeService:
 
 
 def function_message(described: Described) -> FunctionDescription:
-    """A description as a message."""
     return FunctionDescription(
         name=described.name,
         help=described.help,
@@ -76,7 +74,6 @@ def function_message(described: Described) -> FunctionDescription:
 
 
 def argument_message(argument: Argument) -> ArgumentDescription:
-    """A description of an argument as a message."""
     return ArgumentDescription(
         name=argument.name,
         type=argument.type,

@@ -18,7 +18,6 @@ FACTS = "robot_facts.json"
 
 @lru_cache(maxsize=None)
 def robot_facts() -> dict[str, dict[str, list[Any]]]:
-    """The table."""
     return json.loads(config_file(FACTS).read_text(encoding="utf-8"))
 
 
@@ -40,7 +39,6 @@ class KnownRobot:
         )
 
     def proxy(self, name: str) -> _KnownModule:
-        """A module of the robot."""
         return _KnownModule(name)
 
 
@@ -67,22 +65,18 @@ class _Answered:
         self._error = error
 
     def wait(self, _timeout: float) -> bool:
-        """It is over."""
         return True
 
     def done(self) -> bool:
-        """It is over."""
         return True
 
     def add_done_callback(self, callback: Any) -> None:
-        """It is over."""
         callback(self)
 
     def cancel(self) -> None:
         """It is over."""
 
     def result(self, timeout: float | None = None) -> Any:
-        """The answer."""
         if self._error is not None:
             raise self._error
         return self._answer

@@ -27,7 +27,6 @@ class MessageField:
 
     @property
     def is_time(self) -> bool:
-        """Whether it holds times."""
         return self.type.partition("[")[0] in _TIMES
 
     @property

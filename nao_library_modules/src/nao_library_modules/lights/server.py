@@ -69,15 +69,6 @@ class NaoLights(NaoBasic):
     def __init__(
         self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
     ) -> None:
-        """Start the server.
-
-        Args:
-            ip: Address of the robot.
-            port: Port of its NAOqi.
-            autostart: As NaoBasic takes it.
-            launchpath: As NaoBasic takes it.
-            options: As NaoBasic takes them.
-        """
         super().__init__(ip, port, autostart, launchpath, **options)
         self.leds = LedAccess(self.robot, self.call, self.call_all, self.call_now)
         self._touched: dict[str, None] = {}  # an ordered set of lights and groups

@@ -100,7 +100,6 @@ class MotionPlan:
         self.durations[self._position] = self.durations.get(self._position, 0.0) + duration
 
     def touch(self, joints: Iterable[str]) -> None:
-        """Note joints for the result."""
         self.touched.update(dict.fromkeys(joints))
 
     def aim(self, joints: Iterable[str]) -> None:
@@ -160,7 +159,6 @@ class MotionPlan:
         self.health.require_fit(self.legs())
 
     def legs(self) -> list[str]:
-        """Joints of the legs."""
         chains = self.facts.chains
         return [joint for leg in LEGS for joint in chains.get(leg, ())]
 

@@ -43,7 +43,6 @@ class NamedPoses:
         return {joint: angle for joint, angle in poses[pose].items() if joint in joints}
 
     def names(self) -> list[str]:
-        """Names of all poses."""
         return list(self._all())
 
     def _files(self) -> dict[str, Path]:

@@ -55,7 +55,6 @@ class MotionRecording(BodyPart):
         self.begin_chain()
 
     def begin_chain(self) -> None:
-        """Forget what the last chain did."""
         self._new_names: set[str] = set()  # of motions that the chain records or renames
         self.cut_short: list[FunctionResult] = []
 

@@ -136,7 +136,6 @@ class NaoMotion(NaoBasic):
     # The life of a goal
 
     def begin_chain(self) -> None:
-        """Forget what the last chain did."""
         self.body.begin_chain()
         self.recordings.begin_chain()
         for event in (FALLING, MOVE_FAILED, DISABLED):

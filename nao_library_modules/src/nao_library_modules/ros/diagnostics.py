@@ -24,7 +24,6 @@ class _PartsUpdater(Updater):
     """diagnostic_updater's, for names that say which part of the node they are of: it puts nothing before them."""
 
     def publish(self, msg: DiagnosticStatusWrapper | list[DiagnosticStatusWrapper]) -> None:
-        """Publish reports."""
         array = DiagnosticArray(status=msg if isinstance(msg, list) else [msg])
         array.header.stamp = rospy.Time.now()
         self.publisher.publish(array)
@@ -57,7 +56,6 @@ class DiagnosticsPublisher:
         self._thread.start()
 
     def close(self) -> None:
-        """Publish no more."""
         self._ended.set()
 
     def _update(self) -> None:

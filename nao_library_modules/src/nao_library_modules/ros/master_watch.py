@@ -178,7 +178,6 @@ class MasterWatch:
         threading.Thread(target=self._run, name="watch of the master", daemon=True).start()
 
     def close(self) -> None:
-        """Look no more."""
         self._ended.set()
 
     def _run(self) -> None:

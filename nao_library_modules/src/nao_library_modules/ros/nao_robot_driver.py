@@ -86,7 +86,6 @@ class NaoRobotDriver:
             return found
 
     def follow(self, frames: KeyFrames) -> DriverCall:
-        """Move joints along key frames."""
         return self._send("joint_trajectory", _trajectory(frames))
 
     def go(self, joints: Sequence[str], angles: Sequence[float], speed: float) -> DriverCall:
@@ -94,7 +93,6 @@ class NaoRobotDriver:
         return self._send("joint_angles_action", _angles(joints, angles, speed))
 
     def stiffen(self, frames: KeyFrames) -> DriverCall:
-        """Bring stiffnesses along key frames."""
         return self._send("joint_stiffness_trajectory", _trajectory(frames))
 
     def walk_by(self, place: Place) -> DriverCall | None:

@@ -21,7 +21,6 @@ class RobotFrames:
     """Looks frames up. Used from the thread that executes goals only."""
 
     def __init__(self) -> None:
-        """Begin to listen to /tf."""
         self._buffer = tf2_ros.Buffer()
         self._listener = tf2_ros.TransformListener(self._buffer)
 

@@ -56,7 +56,6 @@ class Events:
         self._events: deque[Event] = deque()
 
     def tell(self, name: str, value: Any) -> None:
-        """Take an event."""
         self._events.append(Event(name, value, self._clock.now()))
         self._news.trigger()
 

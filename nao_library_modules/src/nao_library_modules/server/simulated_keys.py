@@ -16,12 +16,6 @@ class SimulatedKey:
     """A key that the robot may have or not; that is asked once a connection."""
 
     def __init__(self, robot: Any, name: str) -> None:
-        """Ask nothing yet.
-
-        Args:
-            robot: Robot.
-            name: Of the key.
-        """
         self._robot = robot
         self._name = name
         self._known = False

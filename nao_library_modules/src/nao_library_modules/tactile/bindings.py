@@ -162,7 +162,6 @@ class TouchBindings:
         self._relay.renew()
 
     def close(self) -> None:
-        """End everything."""
         with self._lock:
             self._closed = True
             self._entries.clear()

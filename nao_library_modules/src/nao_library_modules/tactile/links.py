@@ -113,7 +113,6 @@ class LinkFunctions(Part):
     functions = {"onTouch": on_touch, "listOnTouch": list_on_touch, "removeOnTouch": remove_on_touch}
 
     def _keep(self) -> None:
-        """Keep the links as they are now."""
         self._kept.save([_told(binding) for binding, _ in self.bindings.states()])
 
     def restore(self) -> None:

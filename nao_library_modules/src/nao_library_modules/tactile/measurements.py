@@ -17,7 +17,6 @@ class Measurements:
     """What the functions of one chain felt."""
 
     def __init__(self) -> None:
-        """Nothing yet."""
         self.touched: list[Contact] = []
         self.sonars: list[tuple[str, float]] = []
         self.weights: list[tuple[str, float]] = []
@@ -32,7 +31,6 @@ class Measurements:
         return [contact.name for contact in contacts]
 
     def fill(self, result: Any) -> None:
-        """Put everything into a result message."""
         result.touched = [contact.name for contact in self.touched]
         result.touch_times = [Time.from_sec(contact.begin) for contact in self.touched]
         result.sonar_names, result.sonar = _columns(self.sonars, 2)

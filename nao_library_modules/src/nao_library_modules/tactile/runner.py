@@ -78,7 +78,6 @@ class BehaviorClient:
             return self._client
 
     def close(self) -> None:
-        """End what runs."""
         with self._lock:
             handles, self._handles = list(self._handles.values()), {}
         for handle in handles:
