@@ -1,4 +1,4 @@
-"""Whether a server could carry out goals: it is asked, and told what it answers."""
+"""Ask a server whether it could carry out goals, and print its answer."""
 
 from __future__ import annotations
 
@@ -17,13 +17,10 @@ from .stack import Stack
 
 
 def ask(stack: Stack, server: str, goals: Sequence[Any]) -> GoalCheck:
-    """Have a server check goals.
-
-    Args:
-        goals: In the order in which they would be sent.
+    """Have a server check goals, in the order in which they would be sent.
 
     Raises:
-        NotValidated: It is not there, or cannot tell.
+        NotValidated: The server is missing, or cannot check.
     """
     from nao_library_msgs.srv import CheckGoals
 

@@ -1,4 +1,4 @@
-"""What a goal does while it runs: one line that changes on a terminal, plain lines elsewhere. On standard error."""
+"""Progress of a running goal on standard error: one changing line on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -25,11 +25,10 @@ TOLD_ELSEWHERE = frozenset({"index", "function", "count"})
 class Progress:
     """Shown from the beginning of a `with` block to its end.
 
-    Feedback comes from a thread of ROS, the wheel turns in one of its own; the lock guards what they print.
+    A ROS thread delivers feedback and another thread turns the wheel; the lock guards what they print.
 
     Args:
-        shown: False: nothing is printed.
-        called: Function -> what it is called here, where its name says nothing to people.
+        called: Function -> the name to show for it, where its own name says nothing to users.
     """
 
     def __init__(self, shown: bool, called: Mapping[str, str] = NO_NAMES) -> None:
@@ -43,7 +42,6 @@ class Progress:
         self._thread: threading.Thread | None = None
 
     def feedback(self, message: Any) -> None:
-        """Show a feedback message."""
         fields = plain(message)
         function = fields.get("function", "")
         text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {self._called.get(function, function)}"
@@ -64,7 +62,7 @@ class Progress:
                 click.echo(text, err=True)
 
     def note(self, text: str) -> None:
-        """Show a line that stays."""
+        """Print a line that stays."""
         if self._shown:
             with self._lock:
                 self._wipe()

@@ -1,4 +1,4 @@
-"""Options that every command has, and what they are for this run of the program."""
+"""Options that every command has, and their values in this run."""
 
 from __future__ import annotations
 
@@ -19,14 +19,13 @@ QUICK = 1.0
 
 @dataclass
 class CliSettings:
-    """Of one run.
+    """Options of one run.
 
     Attributes:
-        json: Whether answers are JSON.
         namespace: Of the robot; None: none was chosen.
         timeout: s of this computer that a goal may take; None for ever.
-        completing: Whether the shell asks how a word can go on.
-        described_offline: Whether it was told that the answers come from the code.
+        completing: The shell asks for completions.
+        described_offline: The user has been told that the answers come from the code.
     """
 
     json: bool = False
@@ -38,19 +37,18 @@ class CliSettings:
 
     @property
     def stack(self) -> Stack:
-        """The servers of the robot."""
         if self._stack is None:
             self._stack = Stack(self.namespace, QUICK) if self.completing else Stack(self.namespace)
         return self._stack
 
 
 def settings_of(context: click.Context) -> CliSettings:
-    """The settings of a run, made when they are asked for first."""
+    """The settings of a run, created on first use."""
     return context.ensure_object(CliSettings)
 
 
 def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
-    """An offer of words that fails in silence and is narrowed to what was begun."""
+    """Decorate a completion: it fails silently and keeps only words that start with what was typed."""
 
     @functools.wraps(offer)
     def run(context: click.Context, start: str, *more: Any) -> list[str]:
@@ -58,7 +56,7 @@ def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
         settings.completing = True
         try:
             words = list(offer(settings, start, *more))
-        except Exception:  # an error text would end up in the line that is being typed
+        except Exception:  # an error text would appear in the line that is being typed
             return []
         return [word for word in words if word.startswith(start)]
 
@@ -67,12 +65,11 @@ def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
 
 @quietly
 def robots(settings: CliSettings, start: str) -> list[str]:
-    """Namespaces of robots."""
     return [name.strip("/") or "/" for name in settings.stack.robots()]
 
 
 def _keep(context: click.Context, parameter: click.Parameter, value: Any) -> None:
-    # Standing behind the command as well as before it; what is not given here must not hide what was given there.
+    # Accepted before and after the command; an option that is not given here must not hide one that was given there.
     if value is not None and value is not False:
         setattr(settings_of(context), parameter.human_readable_name, value)
 
@@ -82,7 +79,7 @@ def _complete_robot(context: click.Context, _parameter: click.Parameter, start: 
 
 
 def common_options() -> list[click.Option]:
-    """The options, made anew for each command."""
+    """New option objects, for one command."""
     return [
         click.Option(
             ["--robot", "-n", "namespace"],
@@ -105,10 +102,9 @@ def common_options() -> list[click.Option]:
 
 
 class OneOf(click.Choice):
-    """One of several words; another one is told with those that look like it."""
+    """One of several words; the error for another word suggests similar ones."""
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
-        """As click does."""
         from ..base.suggestion import of_those
 
         if value not in self.choices:
@@ -122,7 +118,7 @@ ELSEWHERE = {**dict.fromkeys(LENGTHS, "--for"), "--fps": "--rate", "--frequency"
 
 
 class NaoCommand(click.Command):
-    """A command with the options that every command has."""
+    """A command with the common options."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -130,7 +126,7 @@ class NaoCommand(click.Command):
         self.context_settings.setdefault("help_option_names", ["-h", "--help"])
 
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
-        """As click does; an option that there is not is told with what it may be called here."""
+        """Parse as click does; the error for an unknown option suggests known ones."""
         try:
             return super().parse_args(context, args)
         except click.NoSuchOption as error:
@@ -139,13 +135,13 @@ class NaoCommand(click.Command):
             raise
 
     def instead_of(self, option: str, known: Sequence[str]) -> list[str]:
-        """What an option that there is not may be called here."""
+        """Known options that an unknown one may mean."""
         here = ELSEWHERE.get(option)
         return [here] if here in known else difflib.get_close_matches(option, known, cutoff=0.7)
 
 
 class SignedCommand(NaoCommand):
-    """A command whose arguments may begin with a minus sign, as numbers do; with two it is an option all the same."""
+    """A command whose arguments may start with one minus sign, as negative numbers do."""
 
     words: tuple[str, ...] = ()
     """Arguments that look like options."""
@@ -155,7 +151,7 @@ class SignedCommand(NaoCommand):
         self.context_settings["ignore_unknown_options"] = True
 
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
-        """As click does, but for options that there are not."""
+        """Parse as click does, but pass unknown options on as arguments."""
         known = {name for parameter in self.get_params(context) for name in parameter.opts}
         options = args[: args.index("--")] if "--" in args else args
         for word in options:
@@ -166,20 +162,20 @@ class SignedCommand(NaoCommand):
 
 
 class NaoGroup(click.Group):
-    """Commands that are told apart from options by their first letter alone."""
+    """A command group that recognises options by their first letter alone."""
 
     command_class = NaoCommand
 
     def instead_of(self, word: str) -> str:
-        """Text to append to "there is no command ...": what does what the word says; empty if nothing is known."""
+        """Text after "there is no command ...": the command that does what the word says; empty if none is known."""
         return ""
 
     def resolve_command(self, context: click.Context, arguments: list[str]) -> Any:
-        """As click does; a word that is no command is told with those that look like it."""
+        """Resolve as click does; the error for an unknown command suggests similar ones."""
         from ..base.suggestion import did_you_mean
 
         word, known = arguments[0], self.list_commands(context)
-        # Click takes "*" for an option, too, and shows the help as if it had been asked for.
+        # Click also takes "*" for an option, and shows the help.
         if word not in known and (word == "-" or not word.startswith("-")):
             context.fail(f"there is no command {word!r}{self.instead_of(word) or did_you_mean(word, known)}")
         return super().resolve_command(context, arguments)

@@ -1,4 +1,4 @@
-"""Whether a behaviour can be run, told before anything moves; and what there is to know about it."""
+"""Whether a behaviour can run, checked before anything moves; and the facts about a stored behaviour."""
 
 from __future__ import annotations
 
@@ -24,19 +24,16 @@ def check(
     values: Mapping[str, Any] | None = None,
     tables: FunctionTables | None = None,
 ) -> SequenceNode:
-    """Check a behaviour as a whole, without servers: functions, fields, boxes, times, and names that all robots have.
+    """Check a whole behaviour and return its program: functions, fields, boxes, times, and names that all robots have.
 
     Args:
         library: Gives the behaviours of its boxes by name.
-        values: Of its parameters; the defaults for those that are not named.
+        values: Of its parameters; others have their defaults.
         tables: Functions of the servers, if they are known already.
 
-    Returns:
-        What would run.
-
     Raises:
-        BehaviorError: With everything that is wrong.
-        BadGoal: A value for a parameter will not do.
+        BehaviorError: Holds every problem found.
+        BadGoal: A parameter cannot have its value.
     """
     tables = tables or FunctionTables()
     program, problems = bind_what_can_be(behavior, values or {}, library, tables)
@@ -52,16 +49,14 @@ def check_given(
     ask: Ask | None = None,
     read_wrong: Sequence[Problem] = (),
 ) -> tuple[SequenceNode, Validation]:
-    """What would run with values as "name=value", if nothing is wrong.
+    """Program and validation for parameter values as "name=value".
 
     Args:
-        behavior: The behaviour.
         library: Gives the behaviours of its boxes by name.
-        given: Values of its parameters.
-        ask: Has the servers check their goals; None: only what is true of any robot is looked at.
+        ask: Has the servers check their goals; None: check only what holds for any robot.
 
     Raises:
-        BehaviorError: With everything that is wrong.
+        BehaviorError: Holds every problem found.
     """
     problems = [*read_wrong]
     values = given_as_text(behavior.parameters, given, problems, behavior.file)
@@ -73,7 +68,7 @@ def check_given(
 
 def _require_none(behavior: Behavior, problems: Sequence[Problem]) -> None:
     if problems:
-        once = dict.fromkeys(problems)  # what is true of any robot the servers tell, too
+        once = dict.fromkeys(problems)  # the servers also report what holds for any robot
         own = sorted(once, key=lambda problem: (problem.file != behavior.file, problem.file, problem.line))
         raise BehaviorError(behavior.name, own)
 
@@ -85,12 +80,11 @@ def problems_of(
     given: Sequence[str] = (),
     ask: Ask = ask_nobody,
 ) -> list[str]:
-    """What is wrong with a behaviour; nothing if it can be run.
+    """All problems of a behaviour; empty if it can run.
 
     Args:
-        library: For its boxes.
         tables: Functions of the servers, if they are known already.
-        given: Values of its parameters as "name=value".
+        given: Parameter values as "name=value".
         ask: Has the servers check their goals, where there are any.
     """
     try:
@@ -102,7 +96,7 @@ def problems_of(
 
 
 def _as_far_as_read(load: Callable[[], Behavior]) -> tuple[Behavior, Sequence[Problem]]:
-    """A behaviour, and what was wrong with its file."""
+    """A behaviour as far as it can be read, and the problems of its file."""
     try:
         return load(), ()
     except BehaviorError as error:
@@ -117,13 +111,12 @@ def _problems(error: NaoError) -> tuple[Problem, ...]:
 
 @dataclass(frozen=True)
 class Facts:
-    """What there is to know about a stored behaviour.
+    """Facts about a stored behaviour.
 
     Attributes:
-        behavior: It; None if its file cannot be read.
-        problem: What is wrong with it, in one text that may be cut; empty if it can be run.
-        problems: All that is wrong with it, one by one; none if it can be run.
-        preview: What it would do; empty where nobody asked for that.
+        behavior: None if the file cannot be read.
+        problem: All problems as one text that may be cut; empty if it can run.
+        preview: What it would do; empty unless requested.
         unvalidated: Servers that did not check their goals, and why.
     """
 
@@ -137,7 +130,6 @@ class Facts:
 
 
 def facts_of(name: str, library: Library, tables: FunctionTables) -> Facts:
-    """Look at a stored behaviour."""
     behavior = None
     try:
         behavior = library(name)
@@ -154,11 +146,7 @@ def preview_facts(
     given: Sequence[str] = (),
     ask: Ask | None = None,
 ) -> Facts:
-    """As `facts_of`, with what it would do.
-
-    Args:
-        ask: Has the servers check their goals, as `check_given` takes it.
-    """
+    """As `facts_of`, with a preview; `ask` as for `check_given`."""
     behavior = None
     try:
         readable, wrong = _as_far_as_read(load)

@@ -1,4 +1,4 @@
-"""The servers that steps may use: their actions, their functions, and what can be checked of a goal without a robot."""
+"""The servers that steps may use: their actions, functions, and checks that need no robot."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NotDescribed if no server of that name runs."""
 
 
 class NotDescribed(NaoError):  # noqa: N818  it says what became of the question
-    """A server did not tell what its functions are."""
+    """A server did not describe its functions."""
 
 
 Running = Callable[[], Iterable[str]]
@@ -37,19 +37,18 @@ Running = Callable[[], Iterable[str]]
 
 
 def nobody_describes(_server: str, _functions: Sequence[str] | None) -> DescribeFunctionsResponse:
-    """A `Describe` for where no servers are."""
+    """A `Describe` for use without servers."""
     raise NotDescribed("no server was asked")
 
 
 class FunctionTables:
-    """What the servers can do: functions, and checks that need no robot.
+    """Functions of the servers, and checks that need no robot.
 
-    Functions of the servers of this package are read from their classes, each when it is asked for the first time. A
-    server of another name, and a function that one of these does not have, is asked of the server that runs. Any thread
-    may ask; two that come at the same time do the same work.
+    Functions of this package's servers are read from their classes on first use; for other servers and unknown
+    functions the running server is asked. Safe from any thread; two concurrent calls do the same work twice.
 
     Args:
-        describe: Has a server that runs describe its functions.
+        describe: Has a running server describe its functions.
     """
 
     def __init__(self, describe: Describe = nobody_describes, running: Running = tuple) -> None:
@@ -60,14 +59,14 @@ class FunctionTables:
         self._others: dict[str, ServerType] = {}
 
     def server(self, name: str, field: str = "step") -> ServerType:
-        """The types of a server that steps may use.
+        """Types of a server that steps may use.
 
         Args:
             name: Its relative name.
-            field: What names it, for the error.
+            field: Source of the name, for the error.
 
         Raises:
-            BadGoal: If there is none of that name.
+            BadGoal: There is none of that name.
         """
         if name in NAMES:
             return server_type(name)
@@ -84,7 +83,7 @@ class FunctionTables:
         return self._others[name]
 
     def fields(self, server: ServerType, function: str) -> list[str]:
-        """Fields that a function of a server takes, with those that all functions have; empty: there is none such."""
+        """Fields that a function takes, including those that all functions have; empty: there is no such function."""
         known = self._functions(server)
         if function in known:
             taken = fields_taken(known[function], server.function.__slots__)
@@ -96,16 +95,15 @@ class FunctionTables:
         return [*taken, *(name for name in COMMON if name in server.function.__slots__)]
 
     def check(self, server: ServerType, messages: Sequence[Any]) -> tuple[list[FunctionFailed], list[int]]:
-        """Check a goal as far as that is possible without any robot and without what goals before it have done.
+        """Check a goal without a robot, and regardless of the effect of earlier goals.
 
         Returns:
-            What is wrong with it, whichever robot it is for; and the places, counted from 1, of the functions whose
-            checks only the server can finish.
+            Failures that hold for any robot; and positions, from 1, of functions that only the server can fully check.
         """
         if server.ours:
             failures = self._chain(server).failures(messages)
         else:
-            # Nothing of it is known here: all its functions are asked of the server that runs.
+            # Unknown here: all its functions are asked of the running server.
             names = [message.function for message in messages]
             failures = [FunctionFailed(i, name, UnknownFunction(name, [])) for i, name in enumerate(names, start=1)]
         failures = [self._checked_there(server, failed) for failed in failures]
@@ -113,11 +111,7 @@ class FunctionTables:
         return [failed for failed in failures if failed.position not in unfinished], unfinished
 
     def check_goals(self, name: str, goals: Sequence[Any]) -> GoalCheck:
-        """Check goals as their server would for a robot that is as all of its family are.
-
-        Args:
-            goals: In the order in which they would be sent.
-        """
+        """Check goals, in sending order, as their server would for a robot with the defaults of its family."""
         server = self.server(name)
         if not server.ours:
             unchecked = [
@@ -135,7 +129,7 @@ class FunctionTables:
         )
 
     def _checked_there(self, server: ServerType, failed: FunctionFailed) -> FunctionFailed:
-        """A failure as it is; one of a function that only the server that runs has, as its to check."""
+        """Return the failure; if only the running server has the function, mark it as one for that server to check."""
         if not isinstance(failed.cause, UnknownFunction):
             return failed
         if self._described(server, [failed.function]):
@@ -151,7 +145,7 @@ class FunctionTables:
         return FunctionFailed(failed.position, failed.function, cause)
 
     def _described(self, server: ServerType, functions: Sequence[str]) -> Mapping[str, Any]:
-        """Functions of a server that runs by name, as FunctionDescription; none if it does not."""
+        """Functions of a running server by name, as FunctionDescription; empty if it does not run."""
         try:
             return {each.name: each for each in self._describe(server.name, functions).functions}
         except NotDescribed:
@@ -174,11 +168,11 @@ class FunctionTables:
 
 
 class _AtTheServer(Exception):  # noqa: N818  a signal: the rest of a check can only be done by the server
-    """A check asks for something that is only known where the server runs."""
+    """A check needs a value that only the running server has."""
 
 
 class _Elsewhere:
-    """Stands for the server in its checks: it knows nothing."""
+    """Stands for the server in its checks: every question raises."""
 
     def __getattr__(self, name: str) -> Any:
         raise _AtTheServer(name)

@@ -23,11 +23,10 @@ class VisionFiles:
     """Files of one server. Any thread."""
 
     def __init__(self, folder: str) -> None:
-        """Remove what killed servers have left; nothing is made yet.
+        """Remove temporary files of killed servers; the folder is not created yet.
 
         Args:
-            folder: "~" stands for the home of the user; relative to the working directory, which is ROS_HOME for a
-                node that a launch file started.
+            folder: "~" is the user's home; relative to the working directory, which is ROS_HOME for a launched node.
         """
         self.folder = Path(folder).expanduser().absolute()
         self._lock = threading.Lock()
@@ -35,10 +34,10 @@ class VisionFiles:
         tidy(self.folder)
 
     def file_type(self, name: str, file_type: str, known: Sequence[str]) -> str:
-        """Type of a file: that of the field, of the end of the name, or the first known one.
+        """File type from the field, the suffix of the name, or the first known one.
 
         Raises:
-            BadGoal: It is not known, or name and field differ.
+            BadGoal: It is unknown, or name and field differ.
         """
         field = known_type("file_type", file_type, known)
         end = known_type("str_param", Path(name.strip()).suffix, known)
@@ -48,14 +47,14 @@ class VisionFiles:
         return field or end or known[0]
 
     def path(self, name: str, file_type: str) -> Path:
-        """Path of a file that a goal names; its folder may have to be made.
+        """Path of a file that a goal names; its folder may not exist yet.
 
         Args:
             name: Relative to the folder, or absolute and inside it, with or without a suffix.
             file_type: Suffix where the name has none.
 
         Raises:
-            BadGoal: It leads out of the folder or cannot be a name.
+            BadGoal: It leads out of the folder or is no valid name.
         """
         allowed = f"a name of a file in {self.folder}"
         bare = name.strip()
@@ -86,10 +85,10 @@ class VisionFiles:
             raise BadGoal("str_param", path.name, "another name, or overwrite", problem=f"{path} is there already")
 
     def plan(self, path: Path, overwrite: bool, planned: set[Path]) -> None:
-        """Check that a file may be written after the planned ones, and add it to these.
+        """Check that a file may be written after the planned ones, and add it to them.
 
         Raises:
-            BadGoal: As `require_free`, or if an earlier function of the chain writes it.
+            BadGoal: As `require_free`, or an earlier function of the chain writes it.
         """
         self.require_free(path, overwrite)
         if path in planned and not overwrite:
@@ -98,7 +97,7 @@ class VisionFiles:
         planned.add(path)
 
     def named_by_time(self, prefix: str, file_type: str) -> Path:
-        """Path of a file that a goal does not name: a prefix and the local time."""
+        """Path for a file without a name: the prefix and the local time."""
         now = time.time()
         stamp = time.strftime("%Y-%m-%d_%H-%M-%S", time.localtime(now))
         return self.folder.resolve() / f"{prefix}_{stamp}.{int(now * 1000) % 1000:03d}.{file_type}"
@@ -107,12 +106,11 @@ class VisionFiles:
         """Open a file for writing; call `done` at its end.
 
         Args:
-            path: See `path`.
-            overwrite: Whether an existing file is replaced.
-            numbered: Whether this file becomes name-2, name-3, ... beside an existing one.
+            overwrite: Replace an existing file.
+            numbered: Beside an existing file, use name-2, name-3, ...
 
         Raises:
-            BadGoal: It exists and is neither to be replaced nor to be numbered.
+            BadGoal: It exists, and neither flag is set.
             FileTrouble: It cannot be written.
         """
         with self._lock:
@@ -128,12 +126,12 @@ class VisionFiles:
         return file
 
     def done(self, path: Path) -> None:
-        """Take note that a file is complete: it may be replaced from now on."""
+        """Mark a file as complete: it may be replaced from now on."""
         with self._lock:
             self._open.discard(path)
 
     def write(self, path: Path, data: bytes, overwrite: bool = False, numbered: bool = False) -> Path:
-        """Write a whole file, as `create` takes it; answers its path."""
+        """Write a whole file and return its path; flags as for `create`."""
         file = self.create(path, overwrite, numbered)
         wanted = file.path
         try:
@@ -145,10 +143,10 @@ class VisionFiles:
 
 
 def known_type(field: str, text: str, known: Sequence[str]) -> str:
-    """Usual name of a type of file; empty for none.
+    """Canonical name of a file type; empty for none.
 
     Raises:
-        BadGoal: It is not known.
+        BadGoal: It is unknown.
     """
     bare = text.strip().lower().lstrip(".")
     kind = SYNONYMS.get(bare, bare)
@@ -159,6 +157,6 @@ def known_type(field: str, text: str, known: Sequence[str]) -> str:
 
 
 def require_short(field: str, name: str) -> None:
-    """Check that file systems take each part of a path, also with a number and a suffix behind it."""
+    """Check that each part of a path is short enough for file systems, with room for a number and a suffix."""
     if any(len(os.fsencode(part)) > LONGEST_NAME - len("-000.webp") for part in Path(name.strip()).parts):
         raise BadGoal(field, name, SHORT, problem="the name is too long")

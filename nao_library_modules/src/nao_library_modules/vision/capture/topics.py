@@ -1,4 +1,4 @@
-"""Pictures on ROS topics, and the settings of the nodes that publish them: the module's side to ROS."""
+"""ROS topics of pictures, and the settings of the nodes that publish them."""
 
 from __future__ import annotations
 
@@ -25,12 +25,10 @@ QUEUE = 2
 
 
 class SettingsTrouble(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A camera's node cannot be set."""
+    """A camera's node rejects settings or is missing."""
 
 
 class Publisher:
-    """A publisher of pictures or camera_info."""
-
     def __init__(self, publisher: rospy.Publisher) -> None:
         self._publisher = publisher
 
@@ -46,12 +44,12 @@ class Publisher:
 
 
 class TopicSubscription:
-    """Takes messages from a topic until it is closed; may be closed twice."""
+    """Receives messages of a topic until it is closed; closing twice is harmless."""
 
     def __init__(self, topic: str, kind: type, take: Callable[[Any], None]) -> None:
-        """Subscribe; `take` is called from the thread that receives: it must not take long."""
+        """Subscribe; `take` runs in the receiving thread and must be quick."""
         self._lock = threading.Lock()
-        # rospy makes one connection for all subscriptions to a topic.
+        # rospy shares one connection among all subscriptions to a topic.
         self._subscriber: rospy.Subscriber | None = rospy.Subscriber(topic, kind, take, buff_size=BUFFER)
 
     def close(self) -> None:
@@ -62,25 +60,25 @@ class TopicSubscription:
 
 
 class VisionTopics:
-    """Topics and settings of cameras. Needs `rospy.init_node` before; any thread may use it."""
+    """Topics and settings of cameras. Needs `rospy.init_node` before. Thread-safe."""
 
     def subscribe(self, topic: str, take: Callable[[Any], None]) -> TopicSubscription:
-        """Take pictures from a topic, which need not be there yet.
+        """Receive pictures from a topic, which may not exist yet.
 
         Raises:
-            BadGoal: If what it holds are no pictures.
+            BadGoal: It is no topic of pictures.
         """
         return TopicSubscription(topic, self._kind(topic), take)
 
     def subscribe_info(self, topic: str, take: Callable[[Any], None]) -> TopicSubscription:
-        """Take sensor_msgs/CameraInfo from a topic, which need not be there."""
+        """Receive sensor_msgs/CameraInfo from a topic, which may not exist."""
         return TopicSubscription(topic, CameraInfo, take)
 
     def publisher(self, topic: str, kind: type) -> Publisher:
         return Publisher(rospy.Publisher(topic, kind, queue_size=QUEUE))
 
     def images_of(self, nodes: frozenset[str]) -> list[str]:
-        """Topics of images that some nodes publish now, those named image_raw first."""
+        """Image topics that the nodes publish now, those named image_raw first."""
         master = rosgraph.Master(rospy.get_name())
         types = dict(master.getTopicTypes())
         published = [name for name, publishers in master.getSystemState()[0] if not nodes.isdisjoint(publishers)]
@@ -91,7 +89,7 @@ class VisionTopics:
         return rospy.resolve_name(topic)
 
     def settings(self, server: str) -> dict[str, Any]:
-        """The settings of a node that takes dynamic_reconfigure: name -> value.
+        """dynamic_reconfigure settings of a node: name -> value.
 
         Raises:
             SettingsTrouble: There is no such node.
@@ -99,7 +97,7 @@ class VisionTopics:
         return self._configured(server, {})
 
     def set(self, server: str, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Change some settings; answers all afterwards.
+        """Change some settings; return all of them.
 
         Raises:
             SettingsTrouble: There is no such node, or it refuses.
@@ -108,7 +106,7 @@ class VisionTopics:
 
     @staticmethod
     def _configured(server: str, values: Mapping[str, Any]) -> dict[str, Any]:
-        # The service alone, for dynamic_reconfigure's client subscribes to two topics, and waits for them.
+        # Only the service: dynamic_reconfigure's client also subscribes to two topics, and waits for them.
         from dynamic_reconfigure.encoding import decode_config, encode_config
         from dynamic_reconfigure.srv import Reconfigure
 
@@ -125,12 +123,12 @@ class VisionTopics:
         return {key: value for key, value in decoded.items() if key != "groups"}
 
     def _kind(self, topic: str) -> type:
-        """Message type of a topic of pictures; by its name where nobody publishes yet."""
+        """Message type of a picture topic; guessed from its name before anyone publishes."""
         full = rospy.resolve_name(topic)
         try:
             types = dict(rosgraph.Master(rospy.get_name()).getTopicTypes())
         except (OSError, rosgraph.MasterException):
-            types = {}  # the subscription waits for the master as well
+            types = {}  # the subscription also waits for the master
         there = types.get(full, "*")
         if there in PICTURE_TYPES:
             return PICTURE_TYPES[there]

@@ -1,4 +1,4 @@
-"""The robot's extractors that detect something: having them work through a camera, and placing what they detect."""
+"""The robot's vision extractors: run them on a camera, and locate what they detect."""
 
 from __future__ import annotations
 
@@ -55,8 +55,6 @@ BASE = "base_footprint"
 
 @dataclass(frozen=True)
 class Detector:
-    """One of the robot's extractors."""
-
     module: str
     event: str
     read: Callable[[Any], DetectionArray] | None = None
@@ -79,7 +77,7 @@ class WantedDetection:
     Attributes:
         kind: ball, face, landmark, code or movement.
         name: Only the thing of this name; empty for all.
-        confidence: Least confidence, 0..1; a face with less is unknown, anything else does not count.
+        confidence: Threshold, 0..1; a face below it is unknown, anything else below it is ignored.
         size: Real size, m; 0 for the usual one.
         camera: Index of the camera; None for the active one.
     """
@@ -91,7 +89,7 @@ class WantedDetection:
     camera: int | None = None
 
     def picks(self, detection: Detection) -> Detection | None:
-        """A detection as it counts; None if it does not."""
+        """The detection, a face perhaps without its name; None if it does not match."""
         if detection.kind == FACE and detection.confidence < self.confidence:
             detection = replace(detection, name="")
         elif detection.confidence < self.confidence:
@@ -100,21 +98,20 @@ class WantedDetection:
 
 
 class InUse(NaoError):
-    """An extractor works for others, and what a function needs would disturb them."""
+    """An extractor has other subscribers that the function would disturb."""
 
     def __init__(self, module: str, others: Sequence[str], how: str) -> None:
         """Compose the text.
 
         Args:
-            module: NAOqi module.
-            others: Its other subscribers.
-            how: What it does for them that would have to change.
+            others: The extractor's other subscribers.
+            how: The setting of theirs that would have to change.
         """
         super().__init__(f"{module} {how} for {', '.join(others)}: it cannot be changed while they need it")
 
 
 class Watch:
-    """An extractor that works for a function, as long as that needs it."""
+    """A running extractor, for as long as a function needs it."""
 
     def __init__(self, detectors: Detectors, wanted: WantedDetection, events: Events, camera: int) -> None:
         self._detectors = detectors
@@ -123,11 +120,11 @@ class Watch:
         self._camera = camera  # index
 
     def until(self, end: float) -> Iterator[list[LocalizedDetection]]:
-        """The detections that count, as they come: a list for each picture that has one, until a ROS time (s).
+        """Matching detections until ROS time `end` (s): a list for each picture that has one.
 
         Raises:
-            Preempted: Or whatever reason the interrupt has.
-            NaoError: If the robot cannot be asked.
+            Preempted: Or another reason of the interrupt.
+            NaoError: The robot cannot be asked.
         """
         module = self._detectors.module
         for event in self._events.until(end):
@@ -139,7 +136,7 @@ class Watch:
 
 
 class Detectors(ExtractorUse):
-    """The robot's extractors for the functions of NaoVision, and the robot's cameras that they look through."""
+    """The robot's extractors for the functions of NaoVision, and the robot's cameras that they use."""
 
     def __init__(
         self, module: NaoBasic, cameras: Cameras, results: ChainResults, subscriber: str, frame_prefix: str
@@ -147,10 +144,8 @@ class Detectors(ExtractorUse):
         """Take what a module offers.
 
         Args:
-            module: Calls the robot.
-            cameras: Has the active camera.
-            results: Gets what is seen.
-            subscriber: Begin of the names of subscriptions: of each robot's clients no two have the same.
+            results: Collects the detections.
+            subscriber: Prefix of subscription names, unique among the robot's clients.
             frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
         """
         super().__init__(module, subscriber)
@@ -162,29 +157,27 @@ class Detectors(ExtractorUse):
 
     @contextmanager
     def watching(self, wanted: WantedDetection) -> Iterator[Watch]:
-        """Have an extractor work during a block."""
+        """Run an extractor during a block."""
         detector = DETECTORS[wanted.kind]
         with self.looking_through(detector.module, wanted.camera) as camera, self.events_of(detector.event) as events:
             with self.subscribed(detector.module, wanted.kind):
                 yield Watch(self, wanted, events, camera)
 
     def note(self, detections: Sequence[LocalizedDetection]) -> list[str]:
-        """Put detections into the result; answers their labels."""
+        """Add detections to the result; return their labels."""
         self._results.objects += seen_messages(detections, self._prefix)
         return [detection.label for detection in detections]
 
     def publish_seen(self, status: str, detections: Sequence[LocalizedDetection] = ()) -> None:
-        """Publish as feedback what is seen now, or was in the picture of these detections."""
+        """Publish feedback with the status and the detections of the current picture."""
         stamp = detections[0].time if detections else None
         self.module.publish_feedback(stamp=stamp, status=status, objects=seen_messages(detections, self._prefix))
 
     def placed(self, wanted: WantedDetection, camera: int, event: Event) -> list[LocalizedDetection]:
-        """The detections of an event that count, and where they are.
+        """The matching detections of an event, with positions.
 
         Args:
-            wanted: What counts.
-            camera: Index of the camera that the extractor looks through; detections of others do not count.
-            event: Of the extractor.
+            camera: Index of the camera that the extractor uses; detections of others are ignored.
         """
         try:
             array = self._read(wanted.kind, camera, event.value)
@@ -194,7 +187,7 @@ class Detectors(ExtractorUse):
         if array.camera != camera or array.in_robot is None or array.in_torso is None:
             return []
         lens = self._lens(camera)
-        # An event without the time of its picture counts from when it was raised.
+        # An event without a picture time has the time at which it was raised.
         time = self.event_time(event) if array.time is None else self.robot_clock.ros_time(self.call, array.time)
         size = wanted.size or DEFAULT_SIZES.get(wanted.kind, 0.0)
         found = []
@@ -204,7 +197,7 @@ class Detectors(ExtractorUse):
         return found
 
     def end_leftovers(self) -> bool:
-        """End subscriptions that a killed server of this name has left; whether the robot was asked."""
+        """End subscriptions that a killed server of this name has left; False if the robot was not asked."""
         for detector in DETECTORS.values():
             try:
                 proxy = self.robot.proxy(detector.module)
@@ -231,15 +224,15 @@ class Detectors(ExtractorUse):
 
     @contextmanager
     def looking_through(self, module: str, wanted: int | None) -> Iterator[int]:
-        """Have an extractor look through a camera during a block; its former camera comes back afterwards.
+        """Let an extractor use a camera during a block; restore its former camera afterwards.
 
         Raises:
-            InUse: It looks through another camera for other subscribers.
+            InUse: It uses another camera for other subscribers.
         """
         owner = module
         try:
             now = int(self.call(self.robot.proxy(module), "getActiveCamera"))
-        except UnknownMethod:  # it looks through the robot's active camera
+        except UnknownMethod:  # it uses the robot's active camera
             owner = VIDEO
             now = int(self.call(self.robot.proxy(VIDEO), "getActiveCamera"))
         camera = CAMERAS[self._cameras.active] if wanted is None else wanted
@@ -269,7 +262,7 @@ class Detectors(ExtractorUse):
         return x, y, z, wx, wy, wz
 
     def _lens(self, camera: int) -> Lens:
-        key = (self.robot.connection.generation, camera)  # behind a new connection is another robot perhaps
+        key = (self.robot.connection.generation, camera)  # a new connection may lead to another robot
         if key not in self._lenses:
             proxy = self.robot.proxy(VIDEO)
             methods = ("getHorizontalFOV", "getVerticalFOV")
@@ -277,7 +270,7 @@ class Detectors(ExtractorUse):
         return self._lenses[key]
 
     def _region(self, camera: int, detection: Detection) -> Region:
-        """Where a detection is in the picture, from the robot: angles of some detections are not all geometry's."""
+        """Picture region of a detection, from the robot: some detections have angles that are not purely geometric."""
         angles = [detection.alpha, detection.beta, detection.size_x, detection.size_y]
         numbers = self.call(self.robot.proxy(VIDEO), "getImageInfoFromAngularInfo", camera, angles)
         return Region(*map(float, numbers))
@@ -291,7 +284,7 @@ def _size(resolution: int) -> tuple[int, int]:
 
 
 def seen_messages(detections: Sequence[LocalizedDetection], prefix: str) -> list[SeenObject]:
-    """Detections as messages; the prefix is that of the robot's frames, with its slash, or empty."""
+    """Detections as messages; `prefix` of the robot's frames with its slash, or empty."""
     return [_seen_message(detection, prefix) for detection in detections]
 
 
