@@ -1,12 +1,12 @@
-"""NAOqi for Python 3: the face of the robot maker's SDK over libqi, for a robot or the simulator alike.
+"""NAOqi for Python 3: the interface of the robot maker's SDK over libqi, for a robot or the simulator.
 
     from naoqi import ALProxy
 
     speech = ALProxy("ALTextToSpeech", "nao.local", 9559)
     speech.say("Hello")
 
-Beyond the SDK: calls without waiting (`proxy.call_async`), time limits, connections that come back by
-themselves (`naoqi.connection`), and errors that say what to do about them (`naoqi.errors`).
+Beyond the SDK: asynchronous calls (`proxy.call_async`), time limits, automatic reconnection (`naoqi.connection`),
+and typed errors that name the remedy (`naoqi.errors`).
 """
 
 from __future__ import annotations

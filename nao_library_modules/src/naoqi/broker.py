@@ -21,9 +21,9 @@ _open_brokers_lock = threading.Lock()
 class ALBroker:
     """Listens for the robot, so that it can call the modules (`ALModule`) of this process.
 
-    The newest broker that is not shut down is the one that `ALProxy(name)` and `ALModule(name)` use. It has a
-    session of its own, so that shutting it down frees its port and the names of its modules. After a loss of
-    the connection, or of that session, it registers its modules again.
+    The newest broker that is not shut down is the one that `ALProxy(name)` and `ALModule(name)` use. Its session
+    is its own: `shutdown` frees its port and the names of its modules. After that session or the connection is lost,
+    it registers its modules again.
     """
 
     def __init__(
@@ -39,12 +39,9 @@ class ALBroker:
         """Connect to the robot and listen.
 
         Args:
-            name: Name of the broker.
             listen_ip: Own address on which the robot can call back; `""` is the one towards the robot, `0.0.0.0`
                 means all. A robot that runs on this computer is served on the loopback address only.
             listen_port: Own TCP port; 0 takes a free one.
-            robot_ip: Name or address of the robot.
-            robot_port: TCP port of NAOqi.
             connect_timeout: Limit of the wait for the robot, in s.
 
         Raises:
@@ -53,7 +50,7 @@ class ALBroker:
         """
         self._name = name
         self._listen_port = listen_port
-        self._lock = threading.RLock()  # guards session and modules, and keeps two restorations apart
+        self._lock = threading.RLock()  # guards session and modules, and serialises restorations
         self._modules: Dict[str, Any] = {}
         self._workers: Dict[str, Worker] = {}
         self._down = threading.Event()
@@ -68,19 +65,16 @@ class ALBroker:
             _open_brokers.append(self)
 
     def __repr__(self) -> str:
-        """Name and robot."""
         return f"<ALBroker {self._name} of {self.connection.address}>"
 
     def getName(self) -> str:
-        """Name of the broker."""
         return self._name
 
     def getIP(self) -> str:
-        """Address on which it listens."""
         return self._session.host
 
     def getPort(self) -> int:
-        """TCP port on which it listens; 0 while it does not."""
+        """0 while it does not listen."""
         with self._lock:
             return self._session.port
 
@@ -89,8 +83,8 @@ class ALBroker:
         return name in self._modules or name in self.connection.module_names()
 
     def shutdown(self) -> None:
-        """Serve nothing more; a second time does nothing."""
-        self._down.set()  # first, because a restoration under way holds the lock
+        """Close the session and withdraw all modules; a second call has no effect."""
+        self._down.set()  # first, because a running restoration holds the lock
         with _open_brokers_lock:
             if self in _open_brokers:
                 _open_brokers.remove(self)
@@ -109,9 +103,8 @@ class ALBroker:
         """Register a module with the robot.
 
         Args:
-            name: Name of the module.
             served: The object whose methods libqi serves.
-            worker: Does what is asked of it; closed when the broker is shut down.
+            worker: Runs the calls; closed when the broker is shut down.
 
         Raises:
             BrokerError: If the name is taken, or the broker is shut down.
@@ -135,10 +128,10 @@ class ALBroker:
             self.connection.subscriptions.own(name)
 
     def exchange(self, name: str, served: Any) -> None:
-        """Serve another object under the name of a module that is served; its events stay subscribed.
+        """Replace the object behind a served module; event subscriptions of the module stay.
 
         Raises:
-            NaoError: As `serve` does; then the module is served no more.
+            NaoError: As `serve` does; the module is then no longer served.
         """
         with self._lock:
             worker = self._remove(name)
@@ -148,7 +141,7 @@ class ALBroker:
         self.connection.subscriptions.renew([name])
 
     def withdraw(self, name: str) -> None:
-        """Take a module back; one that is not served is no error."""
+        """Unregister a module; one that is not served is no error."""
         with self._lock:
             worker = self._remove(name)
         if worker is not None:
@@ -169,7 +162,7 @@ class ALBroker:
             self._worker.submit(self._follow)
 
     def _follow(self) -> None:
-        """Bring the own session to where the connection stands now."""
+        """Bring the own session in line with the state of the connection."""
         if self.connection.state is not State.CONNECTED:
             with self._lock:
                 self._session.close()
@@ -177,7 +170,7 @@ class ALBroker:
             self._register_again()
 
     def _restored(self) -> bool:
-        """Open the session again if it is gone, however often it takes; whether that was so and has worked."""
+        """Reopen a lost session, with retries; True only if it was lost and is open again."""
         delay = 0.2
         while not self._down.is_set() and self.connection.state is State.CONNECTED:
             with self._lock:
@@ -188,7 +181,7 @@ class ALBroker:
                     self._reopen()
                     return True
                 except NaoError as error:
-                    # The first time, the connection is probably breaking too, and will say so itself.
+                    # At the first failure the connection is probably breaking too, which logs its own warning.
                     level = logging.INFO if delay < 0.3 else logging.ERROR
                     logger.log(level, "broker %s cannot serve again yet: %s", self._name, error)
             self._down.wait(delay)
@@ -199,7 +192,7 @@ class ALBroker:
         try:
             self._session.open(self._listen_port)
         except BrokerError as error:
-            # Our own former connections may keep a fixed port busy for a minute; the robot is told.
+            # Former connections may keep a fixed port busy for a minute; registration tells the robot the new one.
             logger.warning("%s; taking another port", error)
             self._session.open(0)
 

@@ -1,4 +1,4 @@
-"""A remote call under way."""
+"""A remote call in progress."""
 
 from __future__ import annotations
 
@@ -23,27 +23,20 @@ RUNNING = qi.FutureState.Running
 NOT_YET = "Future timeout."
 FIRST_SLICE_MS = 100
 INTERRUPTIBLE_MS = 200
-"""A wait inside libqi hides Ctrl-C from Python, so the main thread comes up for air this often, in ms."""
+"""A wait inside libqi blocks Ctrl-C, so the main thread waits in slices of this length, in ms."""
 LONGEST_WAIT_MS = 2**31 - 2  # libqi takes a 32-bit integer, and its largest value as "for ever"
 
 
 class Call:
     """One call of a remote method. All methods may be used from any thread.
 
-    Nothing polls: libqi wakes whoever waits when the answer comes, when the call is cancelled, and when the
+    Nothing polls: libqi wakes the waiting thread when the answer arrives, when the call is cancelled, and when the
     connection breaks.
     """
 
     __slots__ = ("_future", "arguments", "method")
 
     def __init__(self, future: Any, method: RemoteMethod, arguments: Tuple[Any, ...]) -> None:
-        """Wrap libqi's future.
-
-        Args:
-            future: The `qi.Future` of the call.
-            method: What was called; it knows how to name what goes wrong.
-            arguments: As they were sent.
-        """
         self._future = future
         self.method = method
         self.arguments = arguments
@@ -55,13 +48,13 @@ class Call:
             timeout: Limit of the wait in s; None waits as long as the connection lives.
 
         Returns:
-            What the method returned; raw data as `bytes`.
+            What the method returned; raw data is `bytes`.
 
         Raises:
-            CallTimeout: If the call still runs when the limit is over. It goes on; `cancel` ends it.
-            NaoError: Whatever else went wrong, see `naoqi.errors`.
+            CallTimeout: If the call still runs after the limit. It goes on; `cancel` ends it.
+            NaoError: Any other failure, see `naoqi.errors`.
         """
-        # Most answers come within the first slice, and then this is all that is done.
+        # Most answers arrive within the first slice, so this is the fast path.
         first_ms = FIRST_SLICE_MS if timeout is None else max(0, min(FIRST_SLICE_MS, int(1000.0 * timeout)))
         presence, thread = self.method.module.connection.presence, get_ident()
         presence.enter(thread)
@@ -74,14 +67,7 @@ class Call:
         return wire.from_wire(value)
 
     def wait(self, timeout: Optional[float] = None) -> bool:
-        """Wait for the end of the call, whatever it is.
-
-        Args:
-            timeout: Limit of the wait in s, or None.
-
-        Returns:
-            Whether the call is finished.
-        """
+        """Wait up to `timeout` s for the end of the call, whatever its outcome; whether it is finished."""
         presence, thread = self.method.module.connection.presence, get_ident()
         presence.enter(thread)
         try:
@@ -94,24 +80,20 @@ class Call:
         return self._future.isFinished()
 
     def cancelled(self) -> bool:
-        """Whether the call ended by being cancelled."""
         return self._future.isFinished() and self._future.isCanceled()
 
     def cancel(self) -> None:
-        """Ask the robot to give the call up.
-
-        The request travels to the robot; a method that cannot be interrupted runs on to its end.
-        """
+        """Ask the robot to cancel the call; a method that cannot be interrupted runs to its end."""
         self._future.cancel()
 
     def add_done_callback(self, callback: Callable[[Call], None]) -> None:
-        """Have a function called with this call when it is finished, at once if it already is.
+        """Call a function with this call when it is finished; at once if it already is.
 
         Args:
-            callback: Runs in a thread of libqi and must not wait for anything: set an event there, no more.
-                What it raises is logged.
+            callback: Runs in a thread of libqi and must not wait: it may set an event, no more.
+                Its exceptions are logged.
         """
-        # No closure, because the frames of an error that somebody keeps would keep it too.
+        # No closure: the traceback frames of a stored error would keep it alive.
         held = functools.partial(self._run, callback)
         self.method.module.connection.presence.lend(held)
         self._future.addCallback(held)
@@ -139,13 +121,13 @@ class Call:
                 return False
 
     def _late_value(self, error: RuntimeError, timeout: Optional[float], waited_ms: int) -> Any:
-        """The value, after the first look at the future has raised: the call failed, or only takes longer."""
+        """The value after the first wait raised: either the call failed, or it takes longer."""
         if str(error) == NOT_YET:
             if not self._wait(None if timeout is None else max(0.0, timeout - 0.001 * waited_ms)):
                 raise CallTimeout(self.method.module.name, self.method.name, timeout or 0.0) from None
             try:
                 return self._future.value()
             except RuntimeError as late_error:
-                # From here: a frame that keeps an error which has passed through it is kept by that error.
+                # Raised here: a frame that holds an error raised through it makes a reference cycle.
                 raise self.method.translate(late_error, self) from late_error
         raise self.method.translate(error, self) from error

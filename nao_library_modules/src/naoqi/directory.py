@@ -1,4 +1,4 @@
-"""Questions to the directory of the robot's modules."""
+"""Queries to the service directory of the robot."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from .robot_connection import Connection
 
 READY_LIMIT = 1.0
-"""So long a module that is known may take until it can be called, in s."""
+"""Time in s that a registered module may take until it can be called."""
 START_LIMIT = 0.5
-"""So long after the connection a module may appear, in s: a robot that starts registers one after the other."""
+"""Time in s after the connection within which a module may appear: a starting robot registers them in turn."""
 
 
 def module_names(connection: Connection, live: Live) -> List[str]:
-    """Names of all modules the robot has.
+    """Names of all modules of the robot.
 
     Raises:
-        RobotUnreachable: If it does not say.
+        RobotUnreachable: If it does not answer.
     """
     future = live.session.services(_async=True)
     if not answered(future, connection.timing.connect_limit) or future.hasError():
@@ -34,9 +34,9 @@ def find_module(connection: Connection, live: Live, name: str) -> Any:
     """The remote object of a module.
 
     Raises:
-        RobotUnreachable: If the connection does not let us ask.
+        RobotUnreachable: If the connection does not answer.
         UnknownModule: If the robot has no module of that name.
-        NaoError: If it has one that cannot be called.
+        NaoError: If the module exists but cannot be called.
     """
     end, delay = time.monotonic() + READY_LIMIT, 0.005
     while True:
@@ -53,7 +53,7 @@ def find_module(connection: Connection, live: Live, name: str) -> Any:
             raise unknown_module(name, connection.host, connection.port, module_names(connection, live))
         if live is not connection.live or not live.session.isConnected():
             raise connection.unreachable()
-        # A module that has only just arrived, or that leaves right now.
+        # The module has just been registered, or is being unregistered.
         if time.monotonic() >= end or live.broken.wait(delay):
             raise NaoError(f"NAOqi at {connection.address} gave no access to module {name}: {text}")
         delay *= 2.0

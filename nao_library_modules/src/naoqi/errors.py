@@ -6,16 +6,16 @@
           ConnectionLost       the call had been sent when the connection broke: it may have been carried out
         UnknownModule          the robot has no module (service) of that name
         UnknownMethod          the module has no method of that name (also an AttributeError)
-        BadArguments           the arguments fit none of the method's signatures, or cannot travel at all
+        BadArguments           the arguments fit none of the method's signatures, or cannot be sent at all
         CallTimeout            no answer within the time limit of the call
         CallCanceled           the call was cancelled before it was finished
         RobotError             the method itself failed; the text is the robot's
         BrokerError            an ALBroker is missing, shut down, or cannot serve what it was given
 
-The typed children keep the facts of their text as attributes.
+Each subclass keeps the facts of its text as attributes.
 """
 
-# ruff: noqa: N818  the names say what happened; the family is said by the base class
+# ruff: noqa: N818  the names say what happened; the base class names the family
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ import re
 from typing import Any, Sequence
 
 LISTED_NAMES = 40
-"""So many known names are written into a text; the attribute of the error always has all of them."""
+"""Most known names listed in a text; the attribute of the error always has all of them."""
 
 
 class NaoError(RuntimeError):
@@ -34,14 +34,10 @@ class RobotUnreachable(NaoError):
     """There is no connection to NAOqi at this address, and the call was not sent.
 
     Attributes:
-        host: Name or address of the robot.
-        port: TCP port of NAOqi.
-        reason: What went wrong.
         check: What to look at; may be empty.
     """
 
     def __init__(self, host: str, port: int, reason: str, check: str = "") -> None:
-        """Compose the text from its facts."""
         super().__init__(f"NAOqi at {host}:{port}: {reason}" + (f". Check {check}." if check else "."))
         self.host = host
         self.port = port
@@ -50,14 +46,13 @@ class RobotUnreachable(NaoError):
 
 
 class ConnectionLost(RobotUnreachable):
-    """The connection broke while the call was under way; the robot may have carried it out or not.
+    """The connection broke during the call; whether the robot carried it out is unknown.
 
     Attributes:
-        call: The call that was lost, as `Module.method`.
+        call: `Module.method`.
     """
 
     def __init__(self, host: str, port: int, reason: str, call: str) -> None:
-        """Compose the text from its facts."""
         super().__init__(host, port, f"{call} was under way when the connection broke ({reason})")
         self.call = call
 
@@ -66,13 +61,11 @@ class UnknownModule(NaoError):
     """The robot has no module of that name.
 
     Attributes:
-        module: The name that was asked for.
         closest: Known names that look like it, best first.
         modules: All names the robot knows.
     """
 
     def __init__(self, module: str, address: str, closest: Sequence[str], modules: Sequence[str]) -> None:
-        """Compose the text from its facts."""
         suggestion = _suggestion(closest, modules, "modules")
         super().__init__(f"NAOqi at {address} has no module {module!r}{suggestion}")
         self.module = module
@@ -84,14 +77,11 @@ class UnknownMethod(NaoError, AttributeError):
     """The module has no method of that name; `hasattr(proxy, name)` is False for it.
 
     Attributes:
-        module: Name of the module.
-        method: The name that was asked for.
         closest: Known names that look like it, best first.
         methods: All methods of the module.
     """
 
     def __init__(self, module: str, method: str, closest: Sequence[str], methods: Sequence[str]) -> None:
-        """Compose the text from its facts."""
         super().__init__(f"{module} has no method {method!r}{_suggestion(closest, methods, 'methods')}")
         self.module = module
         self.method = method
@@ -103,9 +93,6 @@ class BadArguments(NaoError):
     """The arguments of a call do not fit.
 
     Attributes:
-        module: Name of the module.
-        method: Name of the method.
-        given: The arguments as they were given.
         signatures: What the method accepts, in readable types, one text for each overload.
         reason: What does not fit; may be empty.
     """
@@ -113,7 +100,6 @@ class BadArguments(NaoError):
     def __init__(
         self, module: str, method: str, given: Sequence[Any], signatures: Sequence[str] = (), reason: str = ""
     ) -> None:
-        """Compose the text from its facts."""
         text = f"{module}.{method} cannot be called with ({', '.join(map(_shortened, given))})"
         if reason:
             text += f": {reason}"
@@ -128,16 +114,9 @@ class BadArguments(NaoError):
 
 
 class CallTimeout(NaoError):
-    """A call got no answer within its time limit; the connection itself is alive.
-
-    Attributes:
-        module: Name of the module.
-        method: Name of the method.
-        limit: The time limit, in s.
-    """
+    """A call got no answer within its time limit (s); the connection itself is alive."""
 
     def __init__(self, module: str, method: str, limit: float) -> None:
-        """Compose the text from its facts."""
         super().__init__(f"{module}.{method} gave no answer within {limit:g} s")
         self.module = module
         self.method = method
@@ -145,15 +124,9 @@ class CallTimeout(NaoError):
 
 
 class CallCanceled(NaoError):
-    """A call was cancelled, by this program or by the robot, before it was finished.
-
-    Attributes:
-        module: Name of the module.
-        method: Name of the method.
-    """
+    """A call was cancelled, by this program or by the robot, before it was finished."""
 
     def __init__(self, module: str, method: str) -> None:
-        """Compose the text from its facts."""
         super().__init__(f"{module}.{method} was cancelled")
         self.module = module
         self.method = method
@@ -163,15 +136,13 @@ class RobotError(NaoError):
     """The method failed on the robot.
 
     Attributes:
-        module: Name of the module.
-        method: Name of the method.
-        text: What the robot said.
+        text: The robot's message.
         kind: Name of the exception class if a service written in Python raised it, else empty.
         trace: Where that service raised it, else empty.
     """
 
     def __init__(self, module: str, method: str, text: str, kind: str = "", trace: str = "") -> None:
-        """Compose the text from its facts; the name of the method, which the robot's own begins with, is there once."""
+        """The message often begins with the method; the composed text names the method once."""
         reason = re.sub(rf"\A\s*{re.escape(module)}(::|\.){re.escape(method)}\b[\s:]*", "", text)
         super().__init__(f"{module}.{method} failed: {reason or kind or 'the robot gave no reason'}")
         self.module = module
@@ -185,12 +156,10 @@ class BrokerError(NaoError):
     """An ALBroker is missing, has been shut down, or cannot serve what it was given.
 
     Attributes:
-        broker: Name of the broker, empty if there is none.
-        reason: What went wrong.
+        broker: Its name; empty if there is none.
     """
 
     def __init__(self, broker: str, reason: str) -> None:
-        """Compose the text from its facts."""
         super().__init__(f"broker {broker!r}: {reason}" if broker else reason)
         self.broker = broker
         self.reason = reason

@@ -1,6 +1,6 @@
-"""Answers to NAOqi's questions about a module, from what libqi knows of it.
+"""Help on a module, composed from libqi's description of it.
 
-A service written against libqi alone lacks the methods that every NAOqi module has; these fill in.
+Every NAOqi module has help methods; a service written against libqi alone lacks them, and these functions stand in.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from .signatures import readable_call, readable_parameters, readable_type
 
 
 def method_help(module: RemoteModule, method: str) -> List[Any]:
-    """What is known of a method: `[name, [[parameter, description], ...], return type, return description]`.
+    """Help on a method: `[name, [[parameter, description], ...], return type, return description]`.
 
-    Of several overloads, the one with the most parameters. Parameters without a name are named by their type.
+    The overload with the most parameters counts. A parameter without a name is named after its type.
 
     Raises:
         UnknownMethod: If the module has no such method.
@@ -28,12 +28,12 @@ def method_help(module: RemoteModule, method: str) -> List[Any]:
 
 
 def module_help(module: RemoteModule) -> List[Any]:
-    """What is known of a module: `[description, [[language, example], ...]]`."""
+    """Help on a module: `[description, [[language, example], ...]]`."""
     return [module.service().metaObject()["description"], []]
 
 
 def usage(module: RemoteModule, method: str) -> str:
-    """How to call a method: one line for each overload, and what the module says of it.
+    """Signature and description of a method, one line for each overload.
 
     Raises:
         UnknownMethod: If the module has no such method.
@@ -50,12 +50,12 @@ def usage(module: RemoteModule, method: str) -> str:
 def _overloads(module: RemoteModule, method: str) -> List[Dict[str, Any]]:
     found = module.overloads(method)
     if not found:
-        module.find(method)  # names what comes closest
+        module.find(method)  # raises UnknownMethod with the closest names
     return found
 
 
 def _pair(parameter: Any) -> List[str]:
-    """Name and description; libqi gives them as a structure or a dictionary, depending on its version."""
+    """Name and description; the version of libqi decides whether they come as a structure or a dictionary."""
     if isinstance(parameter, dict):
         return [parameter["name"], parameter["description"]]
     return [parameter[0], parameter[1]]

@@ -22,17 +22,14 @@ class ALModule:
         buttons = Buttons("Buttons")
         ALProxy("ALMemory").subscribeToEvent("FrontTactilTouched", "Buttons", "on_touch")
 
-    All calls of one module run one after the other, in a thread of the module: events keep their order, and a
-    callback may take its time and call the robot. A callback of an event may take fewer than the three
-    arguments. What a callback raises is logged with its trace and returned to the caller as an error. A module
-    must not wait for a call of itself through a proxy: that call would wait for the one under way.
+    All calls of one module run one after the other in a thread of the module: events keep their order, and a
+    callback may block and call the robot. An event callback may take fewer than the three arguments. An exception
+    in a callback is logged with its trace and returned to the caller as an error. A module must not wait for a
+    call of itself through a proxy: that call would wait for the running one.
     """
 
     def __init__(self, name: str) -> None:
         """Register the module with the newest broker.
-
-        Args:
-            name: Name under which the robot finds it.
 
         Raises:
             BrokerError: If there is no broker, or if the name is taken.
@@ -57,15 +54,11 @@ class ALModule:
         return True
 
     def exit(self) -> None:
-        """Take the module back from the robot; it is not called any more."""
+        """Unregister the module from the robot; it is not called any more."""
         self.__broker.withdraw(self.__name)
 
     def BIND_PYTHON(self, module_name: str, method: str, _parameters: int = -1) -> None:
-        """Serve a method that is not served by itself: one with a leading underscore, or one added later.
-
-        Args:
-            module_name: Name of this module.
-            method: Name of the method.
+        """Serve a method that is not served by default: one with a leading underscore, or one added later.
 
         Raises:
             UnknownMethod: If the module has no such method.

@@ -1,7 +1,7 @@
-"""Threads of this process that Python does not know, as those of libqi: a program must not end under them.
+"""Native threads of this process, such as libqi's: the interpreter must not shut down while they work.
 
-One that wants to take Python's lock while the interpreter is being taken down ends the process by `std::terminate`.
-After an answer, and when a session has been closed, libqi still puts objects away; nothing tells when it has.
+A native thread that takes the GIL while the interpreter is finalised ends the process by `std::terminate`. libqi
+deletes objects after an answer and after a session is closed, and gives no signal when it has finished.
 """
 
 from __future__ import annotations
@@ -13,20 +13,13 @@ import time
 
 TASKS = "/proc/self/task"
 LOOK_PERIOD = 0.002
-"""s between two looks, in which others can have Python's lock."""
+"""s between two checks, in which other threads can take the GIL."""
 LOOKS = 2
-"""So many in a row must find nobody at work: at the first one a thread may wait for the lock that the look holds."""
+"""Consecutive checks that must find no thread at work: at the first, a thread may wait for the GIL held by it."""
 
 
 def wait_until_idle(limit: float) -> bool:
-    """Wait until no thread that is not Python's does anything.
-
-    Args:
-        limit: Longest wait, in s.
-
-    Returns:
-        Whether that has come true.
-    """
+    """Wait up to `limit` s until no native thread is running; whether that was reached."""
     end = time.monotonic() + limit
     looks = 0
     while looks < LOOKS:
@@ -38,7 +31,7 @@ def wait_until_idle(limit: float) -> bool:
 
 
 def _any_works() -> bool:
-    # One of libqi's that has called Python is in Python's list as well, as a dummy.
+    # A thread of libqi that has called Python is listed there too, as a dummy.
     own = {each.native_id for each in threading.enumerate() if not isinstance(each, threading._DummyThread)}
     return any(_works(task) for task in os.listdir(TASKS) if int(task) not in own)
 

@@ -1,7 +1,7 @@
-"""Who is inside libqi, so that a program can end without pulling the floor from under them.
+"""Tracks what is inside libqi, so that a program can end safely.
 
-A thread that comes out of libqi's C++ code while the interpreter is being taken down kills the whole process.
-Closing a session makes everybody come out; this is how its owner waits for that.
+A thread that returns from libqi's C++ code while the interpreter is being finalised kills the whole process.
+Closing a session makes all threads return; its owner waits for that here.
 """
 
 from __future__ import annotations
@@ -13,54 +13,53 @@ import weakref
 from typing import Any, Dict, Hashable, List
 
 STRAND = "__qi_strand__"
-"""Where libqi keeps the queue that makes it call an object from one thread at a time."""
+"""Attribute in which libqi keeps the queue that serialises the calls of an object."""
 POLL_PERIOD = 0.002
-"""Nobody announces that a reference has gone, so `wait_until_empty` looks this often, in s."""
+"""Period in s of `wait_until_empty`: the loss of a reference raises no event."""
 
 
 class Presence:
-    """Threads that wait in libqi, callbacks it still has to call, and objects of ours that it serves."""
+    """Threads that wait in libqi, callbacks that libqi still has to call, and objects of ours that it serves."""
 
     def __init__(self) -> None:
-        """Nobody is inside."""
-        self._inside: Dict[Hashable, None] = {}  # a dictionary, because its single steps need no lock
+        self._inside: Dict[Hashable, None] = {}  # a dictionary: its single operations need no lock
         self._served: List[List[Any]] = []
-        self._left = threading.Condition()  # guards the list above, and wakes who waits
+        self._left = threading.Condition()  # guards the list above, and wakes waiting threads
         self._awaited = False
 
     def enter(self, who: Hashable) -> None:
-        """Somebody goes in; done at each call, hence this cheap."""
+        """Note an entry; runs at each call, so it must stay cheap."""
         self._inside[who] = None
 
     def leave(self, who: Hashable) -> None:
-        """Somebody has come out; who was never in is no error."""
+        """Note a return; one without an entry is no error."""
         self._inside.pop(who, None)
         if self._awaited:
             with self._left:
                 self._left.notify_all()
 
     def lend(self, callback: Any) -> None:
-        """Libqi holds this callback from now on; it has left when nobody holds it any more."""
+        """Track a callback that libqi holds, until its last reference is gone."""
         self.enter(weakref.ref(callback, self.leave))
 
     def serve(self, served: Any) -> None:
-        """Libqi serves this object from now on; it is kept until libqi does so no more.
+        """Track an object that libqi serves, and keep a reference to it until libqi drops its own.
 
-        Its queue is waited for when it is deleted. In a thread of libqi, at the end of the program, that would
-        be fatal; so the last reference stays here, and goes in a thread of ours.
+        Deleting the object waits for its queue. In a thread of libqi, at the end of the program, that would be fatal;
+        so the last reference stays here, and is dropped in a thread of ours.
         """
         with self._left:
             self._served = [each for each in self._served if not _is_ours_alone(each)]
             self._served.append([served])
 
     def wait_until_empty(self, limit: float) -> bool:
-        """Wait for everybody but the calling thread to come out, and for libqi to drop what it serves.
+        """Wait until all threads but the calling one have returned and libqi serves no objects any more.
 
         Args:
             limit: Longest wait, in s.
 
         Returns:
-            Whether that has come true.
+            Whether that was reached.
         """
         self._awaited = True
         end = time.monotonic() + limit
@@ -77,7 +76,7 @@ class Presence:
 
 
 def _is_ours_alone(holder: List[Any]) -> bool:
-    """Whether a list is the only one that holds its one object, and the object the only one that holds its queue."""
+    """Whether the list holds the only reference to its one object, and the object the only one to its queue."""
     if sys.getrefcount(holder[0]) > _FROM_A_LIST:
         return False
     strand = vars(holder[0]).get(STRAND)
@@ -93,6 +92,6 @@ def _count_from_a_variable_and_a_dict(values: Dict[str, Any]) -> int:
     return sys.getrefcount(value)
 
 
-# Measured, because Python versions differ in what they count.
+# Measured, because reference counts differ between Python versions.
 _FROM_A_LIST = _count_from_a_list([object()])
 _FROM_A_VARIABLE_AND_A_DICT = _count_from_a_variable_and_a_dict({STRAND: object()})

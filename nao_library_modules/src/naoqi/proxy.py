@@ -1,4 +1,4 @@
-"""ALProxy: the face of a remote module, as the maker's SDK has it."""
+"""ALProxy: a remote module with the interface of the maker's SDK."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class ALProxy:
         task = motion.post.angleInterpolation("HeadYaw", 0.5, 1.0, True)
         motion.wait(task, 0)
 
-    A proxy outlives the loss of its connection: once the robot is back, it works again. It may be used from
-    any thread. What can go wrong is listed in `naoqi.errors`.
+    A proxy survives the loss of its connection: once the robot is back, it works again. It may be used from
+    any thread. Its errors are listed in `naoqi.errors`.
     """
 
     def __init__(
@@ -38,13 +38,11 @@ class ALProxy:
         """Find the module.
 
         Args:
-            name: Name of the module, such as `ALMotion`.
-            ip: Name or address of the robot; without, the one of the newest ALBroker.
-            port: TCP port of NAOqi.
+            name: NAOqi's name of the module, such as `ALMotion`.
+            ip: Without it, the robot of the newest ALBroker.
             timeout: Limit of each waiting call, in s. None waits as long as the connection lives.
             connect_timeout: Limit of the wait for the robot, in s.
-            lazy: Do not wait for the robot: it is looked for in the background, and calls fail at once
-                until it is there.
+            lazy: Connect in the background; until that succeeds, calls fail at once.
 
         Raises:
             RobotUnreachable: If the robot is not there (unless lazy).
@@ -66,35 +64,32 @@ class ALProxy:
             self._remote.service()
 
     def __getattr__(self, name: str) -> Any:
-        """Find a remote method, signal or property; methods are found only once.
+        """Find a remote method, signal or property; methods are cached.
 
         Raises:
             UnknownMethod: If the module has nothing of that name.
         """
         if name.startswith("__") or name == "_remote":
-            raise AttributeError(name)  # Python asking for its own protocols, or an object half made
+            raise AttributeError(name)  # a lookup of Python's own protocols, or before __init__ is done
         found = self._remote.attribute(name)
         if isinstance(found, RemoteMethod) and self._remote.connection.live is not None:
             self.__dict__[name] = found
         return found
 
     def __dir__(self) -> List[str]:
-        """Own and remote names."""
         remote = self._remote.method_names() if self._remote.connection.live is not None else []
         return sorted({*super().__dir__(), *remote})
 
     def __repr__(self) -> str:
-        """Module, address and state."""
         robot = self._remote.connection
         return f"<ALProxy {self._remote.name} at {robot.address} ({robot.state})>"
 
     @property
     def connection(self) -> Connection:
-        """The connection to the robot: its state, latency and last error."""
         return self._remote.connection
 
     def call(self, method: str, *arguments: Any) -> Any:
-        """Call a method by its name, and wait for what it returns."""
+        """Call a method by its name, and wait for its result."""
         return getattr(self, method)(*arguments)
 
     def call_async(self, method: str, *arguments: Any) -> Call:
@@ -103,7 +98,7 @@ class ALProxy:
         Raises:
             RobotUnreachable: If there is no connection now.
             UnknownMethod: If the module does not have it.
-            BadArguments: If an argument cannot travel.
+            BadArguments: If an argument cannot be sent.
         """
         return self._method(method).start(*arguments)
 
@@ -117,11 +112,11 @@ class ALProxy:
         """Wait for the end of a posted call.
 
         Args:
-            task: What `post.method()` returned.
+            task: The number that `post.method()` returned.
             timeout_ms: Limit in ms; 0 waits for ever.
 
         Returns:
-            True if the limit was over first.
+            True if the limit was reached first.
 
         Raises:
             NaoError: The error of the call, if it failed.
@@ -132,9 +127,9 @@ class ALProxy:
         return tasks.wait(task, timeout_ms / 1000.0 if timeout_ms > 0 else None)
 
     def stop(self, *arguments: Any) -> Any:
-        """Cancel a posted call, given its number; one that is finished already is no error.
+        """Cancel a posted call by its number; a finished one is no error.
 
-        A module may have a `stop` of its own: it gets the call if the arguments are no number of ours.
+        A module may have a `stop` of its own, which gets the call unless the argument is a number given out here.
         """
         task = arguments[0] if len(arguments) == 1 else None
         if self._is_the_robots(task, "stop"):
@@ -142,7 +137,7 @@ class ALProxy:
         return self._remote.connection.tasks.stop(task)
 
     def isRunning(self, task: int) -> bool:
-        """Whether a posted call is still under way."""
+        """Whether a posted call is still in progress."""
         if self._is_the_robots(task, "isRunning"):
             return self._remote.method("isRunning")(task)
         return self._remote.connection.tasks.is_running(task)
@@ -159,7 +154,6 @@ class ALProxy:
         return True
 
     def getMethodList(self) -> List[str]:
-        """Names of the methods of the module."""
         if self._remote.offers("getMethodList"):
             return self._remote.method("getMethodList")()
         return self._remote.method_names()
@@ -177,13 +171,12 @@ class ALProxy:
         return introspection.module_help(self._remote)
 
     def getUsage(self, method: str) -> str:
-        """How to call a method."""
         if self._remote.offers("getUsage"):
             return self._remote.method("getUsage")(method)
         return introspection.usage(self._remote, method)
 
     def _method(self, name: str) -> RemoteMethod:
-        """A remote method, also where this class has one of the same name."""
+        """A remote method, even where this class has one of the same name."""
         found = self.__dict__.get(name)
         if not isinstance(found, RemoteMethod):
             found = self._remote.attribute(name) if hasattr(type(self), name) else getattr(self, name)
@@ -192,10 +185,10 @@ class ALProxy:
         return found
 
     def _is_the_robots(self, task: Any, method: str) -> bool:
-        """Whether a number is none of ours, so that the module of the robot has to know it.
+        """Whether a number was not given out here, so that the robot's module must know it.
 
         Raises:
-            BadArguments: If nobody can know it.
+            BadArguments: If the module has no such method either.
         """
         if self._remote.connection.tasks.knows(task):
             return False
@@ -209,15 +202,10 @@ class Post:
     """`proxy.post.method(...)` calls a method without waiting and returns the number of the call."""
 
     def __init__(self, remote: RemoteModule) -> None:
-        """Post to this module."""
         self._remote = remote
 
     def __getattr__(self, name: str) -> Any:
-        """Find a remote method.
-
-        Raises:
-            UnknownMethod: If the module does not have it.
-        """
+        """Raises UnknownMethod if the module does not have it."""
         if name.startswith("__") or name == "_remote":
             raise AttributeError(name)
         remote = self._remote
