@@ -64,7 +64,7 @@ class BindingState:
 
 
 class BehaviorRunner(Protocol):
-    """Runs behaviours; see `tactile_runner.py`."""
+    """Runs behaviours; see `runner.py`."""
 
     def run(self, behavior: str, parameters: Sequence[str], done: Callable[[str, str], None]) -> None:
         """Start a behaviour and go on; `done` gets how it ended and a text, in any thread, exactly once."""
