@@ -1,6 +1,6 @@
 """Asks a server whether it could carry out goals, before they are sent: for scripts and servers that are nodes.
 
-from nao_library_modules.ros.check_client import check_goals
+from nao_library_modules.check_client import check_goals
 
 goal = NaoLedGoal([LedFunction(function="on", lights=["FaceLed"])])
 for problem in check_goals("NaoLights", goal).problems:
