@@ -1,5 +1,5 @@
 """The command `nao`: everything that the servers do, from a shell.
 
-`app` lists the commands; beside it each subject has a file. Slow imports wait until a command needs them, so that
-`nao --help` and completion answer at once.
+What it can be asked stands in `app`, one file a subject of commands beside it. Nothing that takes time to load is
+imported before a command needs it: `nao --help` and completion answer at once.
 """

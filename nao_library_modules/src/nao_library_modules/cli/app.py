@@ -1,4 +1,4 @@
-"""The command `nao` and the table of its commands; a command is loaded when it is used."""
+"""The command `nao` and the list of what it can be asked; a command is loaded when it is used."""
 
 from __future__ import annotations
 
@@ -46,11 +46,14 @@ COMPLETE = "_NAO_COMPLETE"
 
 
 class Commands(NaoGroup):
-    """Finds commands in modules, and loads only those that are used."""
+    """Finds commands in modules, and loads those that are used."""
 
     def invoke(self, context: click.Context) -> Any:
-        """Run a command. With --json, a failure before any output is printed as JSON; a usage error only on stderr."""
-        settings = settings_of(context)  # made here, so that the subcommands share it
+        """Run a command; where JSON is wanted and it fails before it has said anything, the error is said in JSON.
+
+        A mistake in the command is told on standard error only.
+        """
+        settings = settings_of(context)  # made here, so that the commands beneath share it
         try:
             return super().invoke(context)
         except click.UsageError:
@@ -60,12 +63,12 @@ class Commands(NaoGroup):
                 say_json({"error": error.message, "status": error.exit_code}, compact=True)
             raise
         except (click.Abort, KeyboardInterrupt):
-            if settings.json and not said_anything(context):  # after Ctrl-C the output of `nao watch` simply ends
+            if settings.json and not said_anything(context):  # with Ctrl-C the lines of `nao watch` just end
                 say_json({"error": "interrupted", "status": INTERRUPTED}, compact=True)
             raise
 
     def instead_of(self, word: str) -> str:
-        """Stored behaviours and motions are no commands: name the command that runs them."""
+        """Behaviours and motions that come along are run by commands."""
         from ..base.paths import config_file
         from ..behaviors.server import SHIPPED as BEHAVIORS
         from ..motion.server import SHIPPED as MOTIONS
@@ -76,20 +79,23 @@ class Commands(NaoGroup):
         return ""
 
     def list_commands(self, context: click.Context) -> list[str]:
+        """Names, in the order of the table."""
         return list(COMMANDS)
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        """A command by its name; None if there is none."""
         if name not in COMMANDS:
             return None
         module = import_module(f"{__package__}.commands.{COMMANDS[name][0]}_commands")
         return getattr(module, f"{name}_command")
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        """The list of commands."""
         with formatter.section("Commands"):
             formatter.write_dl([(name, text) for name, (_, text) in COMMANDS.items()])
 
     def shell_complete(self, context: click.Context, incomplete: str) -> list[Any]:
-        """Complete command names without loading the commands."""
+        """Names of commands, without loading them, and options."""
         from click.shell_completion import CompletionItem
 
         commands = [CompletionItem(n, help=text) for n, (_, text) in COMMANDS.items() if n.startswith(incomplete)]
@@ -111,7 +117,14 @@ def nao() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the program and return its exit status; `arguments` default to those of the process."""
+    """Run the program.
+
+    Args:
+        arguments: Those of the process by default.
+
+    Returns:
+        Exit status.
+    """
     # A shell that starts it in the background may have it ignore Ctrl-C; a goal must be stoppable all the same.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if COMPLETE in os.environ:

@@ -24,7 +24,7 @@ complete -o nosort -F %(complete_func)s %(prog_name)s
 
 
 class LineComplete(BashComplete):
-    """Splits the whole line itself, and prints only what follows the last colon or equals sign."""
+    """Takes the whole line apart itself, and answers what bash has to put behind the last colon or equals sign."""
 
     name = "bash"
     source_template = SOURCE
@@ -36,11 +36,12 @@ class LineComplete(BashComplete):
         return words[1:], last
 
     def format_completion(self, item: CompletionItem) -> str:
+        """One word as bash wants it."""
         return item.value[self._hidden :]
 
 
 def split_line(line: str) -> tuple[list[str], str]:
-    """Split a line as a shell does; the last word is incomplete and may be empty."""
+    """Words of a line as a shell splits them, and the last one, which is not complete; it may be empty."""
     lexer = shlex.shlex(line, posix=True, punctuation_chars=False)
     lexer.whitespace_split = True
     lexer.commenters = ""
@@ -56,4 +57,5 @@ def split_line(line: str) -> tuple[list[str], str]:
 
 
 def register() -> None:
+    """Use it for bash."""
     add_completion_class(LineComplete)

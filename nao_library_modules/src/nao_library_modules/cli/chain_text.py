@@ -1,4 +1,4 @@
-"""Chains of functions as typed: `setColor lights:=FaceLeds str_param:=red time:=2 , off lights:=FaceLeds`."""
+"""Chains of functions as they are typed: `setColor lights:=FaceLeds str_param:=red time:=2 , off lights:=FaceLeds`."""
 
 from __future__ import annotations
 
@@ -23,15 +23,17 @@ _TRUE = {"true": True, "yes": True, "on": True, "1": True, "false": False, "no":
 
 @dataclass(frozen=True)
 class TypedFunction:
+    """A function and its fields as they were typed."""
+
     name: str
     fields: Mapping[str, str]
 
 
 def read_chain(words: Iterable[str]) -> list[TypedFunction]:
-    """Split a chain into functions.
+    """Functions in what was typed.
 
     Raises:
-        click.UsageError: The words form no chain.
+        click.UsageError: It is no chain.
     """
     pieces: list[list[str]] = [[]]
     for word in words:
@@ -63,18 +65,18 @@ def read_chain(words: Iterable[str]) -> list[TypedFunction]:
 
 
 def _after_comma(piece: Sequence[str], word: str) -> bool:
-    """Whether a value that ends in a comma precedes a word: the comma was meant to end the function."""
+    """Whether a comma at the end of a value comes before a word: it was meant to end the function."""
     return piece[piece.index(word) - 1].endswith(NEXT[0])
 
 
 def build_message(function: TypedFunction, kind: Any, taken: Sequence[str] = ()) -> Any:
-    """Convert a typed function into its message.
+    """The function message of a typed function.
 
     Args:
-        taken: Fields that the function reads, if known; error texts name them.
+        taken: Fields that the function reads, where that is known: errors name these.
 
     Raises:
-        click.UsageError: A field is unknown, or its value has the wrong type.
+        click.UsageError: A field is not there, or its value is none of its type.
     """
     types = dict(zip(kind.__slots__, kind._slot_types))
     message = kind(function=function.name)
@@ -93,12 +95,12 @@ def build_message(function: TypedFunction, kind: Any, taken: Sequence[str] = ())
 
 
 def read_value(kind: str, text: str) -> Any:
-    """Parse a value of a message type.
+    """A value of a type as messages write it.
 
     Lists are values with commas between them, or YAML in brackets; messages are YAML in braces.
 
     Raises:
-        ValueError: The text is no such value.
+        ValueError: The text is none.
     """
     base, bracket, _ = kind.partition("[")
     if bracket:
@@ -128,11 +130,12 @@ def _single(kind: str, value: Any) -> Any:
 
 
 class Angle(click.ParamType):
-    """An angle in rad, or in degrees with the suffix `deg`; converts to rad."""
+    """An angle in rad, or in degrees with `deg` behind the number; rad."""
 
     name = "angle"
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
+        """As click does."""
         try:
             return in_rad(value)
         except ValueError as error:
@@ -143,9 +146,11 @@ class Number(click.types.FloatParamType):
     """A number within the declared bounds of its kind, see `limits`."""
 
     def __init__(self, kind: str) -> None:
+        """Keep the kind."""
         self._limit = limit(kind)
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
+        """As click does."""
         number = super().convert(value, parameter, context)
         lowest, highest, unit = self._limit
         if not lowest <= number <= highest:

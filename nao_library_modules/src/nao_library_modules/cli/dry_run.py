@@ -1,4 +1,4 @@
-"""Ask a server whether it could carry out goals, and print its answer."""
+"""Whether a server could carry out goals: it is asked, and told what it answers."""
 
 from __future__ import annotations
 
@@ -17,10 +17,13 @@ from .stack import Stack
 
 
 def ask(stack: Stack, server: str, goals: Sequence[Any]) -> GoalCheck:
-    """Have a server check goals, in the order in which they would be sent.
+    """Have a server check goals.
+
+    Args:
+        goals: In the order in which they would be sent.
 
     Raises:
-        NotValidated: The server is missing, or cannot check.
+        NotValidated: It is not there, or cannot tell.
     """
     from nao_library_msgs.srv import CheckGoals
 

@@ -1,4 +1,4 @@
-"""Files that commands write for the user; none replaces another without --overwrite."""
+"""Files that commands leave where the user is: never over another one, unless that is asked for."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ overwrite_option = click.option("--overwrite", is_flag=True, help="Replace a fil
 
 
 def wanted_file(file: str, overwrite: bool, kinds: Sequence[str] = ()) -> Path | None:
-    """Absolute path of the target file or folder; None if the server decides.
+    """Where a file is to go, absolute, or the folder for it; None if that was left to the server.
 
-    Checked before anything runs: a recording without a place would be lost.
+    Asked for before anything is done: a recording that finds no place is lost.
 
     Args:
-        overwrite: The file may exist.
-        kinds: Allowed endings, without the dot; empty where the server decides.
+        overwrite: Whether it may be there already.
+        kinds: What its name may end in, without the dot; empty where the server decides.
 
     Raises:
-        click.UsageError: The name has another ending.
-        CommandFailed: The file exists, or its folder does not.
+        click.UsageError: It ends in something else.
+        CommandFailed: There is one already, or no folder for it.
     """
     if not file:
         return None
@@ -43,24 +43,24 @@ def wanted_file(file: str, overwrite: bool, kinds: Sequence[str] = ()) -> Path |
 
 
 def names_file(target: Path | None) -> bool:
-    """Whether the answer of `wanted_file` is a file, not a folder in which the server chooses the name."""
+    """Whether what `wanted_file` answers is a file, not a folder in which it has the name that the server gives it."""
     return target is not None and not target.is_dir()
 
 
 def passing_name() -> str:
-    """A unique file name, without its ending, for a file at a server until it is moved."""
+    """Name, without its end, that a file has at a server until it is brought: no other one has it, nor had it."""
     return f"nao-{os.getpid()}-{time.time_ns() // 1000}"
 
 
 def bring(path: str, target: Path | None, overwrite: bool = False) -> str:
-    """Move a file that a server has written to its target; return the path as text.
+    """Move a file that a server has written to where it is wanted; where that is, as a text.
 
     Args:
         target: As `wanted_file` answers it.
-        overwrite: Replace a file that exists by now; else the new one gets a number.
+        overwrite: Whether it replaces a file that is there by now; else it gets a number.
 
     Raises:
-        CommandFailed: The file is on another computer, or cannot be moved.
+        CommandFailed: It is on another computer, or cannot be moved.
     """
     if target is None:
         return path

@@ -1,4 +1,4 @@
-"""Queries of the ROS master and service calls without a node: a node takes half a second to start."""
+"""What runs, as the ROS master tells it, and calls of services: without being a node, for that takes half a second."""
 
 from __future__ import annotations
 
@@ -23,20 +23,21 @@ CALLER = "/nao_command"
 
 
 class _Transport(xmlrpc.client.Transport):
-    """XML-RPC over HTTP with a time limit."""
+    """XML-RPC over HTTP that does not wait for ever."""
 
     def __init__(self, limit: float) -> None:
         super().__init__()
         self._limit = limit
 
     def make_connection(self, host: Any) -> http.client.HTTPConnection:
+        """As the base class does, with a limit."""
         connection = super().make_connection(host)
         connection.timeout = self._limit
         return connection
 
 
 class Graph:
-    """The ROS master of this shell, contacted on the first query.
+    """The master of this shell, asked when something is wanted of it.
 
     Args:
         limit: s that an answer may take.
@@ -49,6 +50,7 @@ class Graph:
         self._state: tuple[list[str], dict[str, list[str]]] | None = None
 
     def services(self) -> list[str]:
+        """Full names of all services."""
         return self._system()[0]
 
     def topic_types(self) -> dict[str, str]:
@@ -60,6 +62,7 @@ class Graph:
         return self._system()[1]
 
     def parameter(self, name: str, default: Any = None) -> Any:
+        """Value of a parameter by its full name."""
         code, _, value = self._ask("getParam", name)
         return value if code == 1 else default
 
@@ -79,7 +82,7 @@ class Graph:
 
         Args:
             service: Its full name.
-            patient: Wait without a limit as long as the connection stands, for a slow service.
+            patient: Wait for the answer as long as the connection stands, for a service that takes its time.
 
         Raises:
             StackMissing: It is not there.

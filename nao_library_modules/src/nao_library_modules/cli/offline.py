@@ -17,10 +17,10 @@ def described_by_code(
     """Servers with their descriptions, as their service would give them.
 
     Args:
-        server: Only this one; empty: all.
-        brief: Leave out functions.
-        names: Only names and help of the functions.
-        functions: Only these; empty: all.
+        server: Only this one; all without.
+        brief: True: without functions.
+        names: True: only names and help of the functions.
+        functions: Only these; all without.
 
     Raises:
         click.UsageError: There is no such server.

@@ -1,4 +1,4 @@
-"""Checks a behaviour in this process where no behaviour server runs; running servers check their goals."""
+"""Checks a behaviour in this process, where no server for behaviours runs; those of its goals are asked if they do."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .stack import Stack
 
 
 def check_offline(stack: Stack, request: Any) -> Any:
-    """The answer of `NaoBehavior/list`; the user's behaviours come from the usual folder."""
+    """What `NaoBehavior/list` would answer; behaviours of the user are those in the usual folder."""
     store = BehaviorStore(Path(PARAMETERS["behavior_dir"]).expanduser(), config_file(SHIPPED))
     name = PurePath(request.file).stem if request.text else request.name
     load = (lambda: read(request.text, name, request.file)) if request.text else (lambda: store.load(name))

@@ -33,7 +33,7 @@ def plain(value: Any) -> Any:
 
 
 def say_json(value: Any, compact: bool = False) -> None:
-    """Print a value as indented JSON, or compact on one line."""
+    """Print a value as JSON: a document over several lines, or one line of many."""
     context = click.get_current_context(silent=True)
     if context is not None:
         context.meta[BEGUN] = True
@@ -48,12 +48,12 @@ def said_document(context: click.Context) -> bool:
 
 
 def said_anything(context: click.Context) -> bool:
-    """Whether this run of the program has printed any JSON, a document or lines."""
+    """Whether this run of the program has printed JSON, be it a document or lines."""
     return bool(context.meta.get(BEGUN))
 
 
 def _finite(value: Any) -> Any:
-    """A plain value with None for NaN and infinity, which JSON does not have."""
+    """A plain value with None for the numbers that JSON does not have."""
     if isinstance(value, dict):
         return {name: _finite(entry) for name, entry in value.items()}
     if isinstance(value, list):
@@ -62,6 +62,7 @@ def _finite(value: Any) -> Any:
 
 
 def words(value: Any) -> str:
+    """A value for people, in one line."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
@@ -74,19 +75,19 @@ def words(value: Any) -> str:
 
 
 def filled(value: Any) -> bool:
-    """Whether a field of a message holds something worth printing."""
+    """Whether a field of a message has something to tell."""
     if isinstance(value, Mapping):
         return any(map(filled, value.values()))
     return not (value is None or value == "" or value == [] or value is False)
 
 
 def say_result(result: Mapping[str, Any], end: str = "", failed: bool = False) -> None:
-    """Print the result of a goal: each function's values, then the result's own fields.
+    """Print what a goal answered: each function's values, then the fields that the result has of its own.
 
     Args:
-        end: Last line on success; a failure prints it in any case, so an error that it holds is not repeated.
-        failed: Print only the lists among the own fields, which hold what was made so far: the rest is state. Where no
-            function ran, print none.
+        end: What is told at the end, of a success here, of a failure in any case: an error in it is not told twice.
+        failed: Of its own fields only the lists are told, what was made and found until then: the rest is state. Where
+            no function was done, nothing was.
     """
     told = result.get("results", [])
     several = len(told) > 1
@@ -110,7 +111,7 @@ def say_result(result: Mapping[str, Any], end: str = "", failed: bool = False) -
 
 
 def _own_lines(fields: Mapping[str, Any]) -> Sequence[str]:
-    """Fields of a result; lists of equal length become columns."""
+    """Fields of a result, lists of equal length beside each other."""
     lists = {n: v for n, v in fields.items() if isinstance(v, list) and not any(isinstance(e, Mapping) for e in v)}
     lengths = {len(value) for value in lists.values()}
     lines: list[str] = []
@@ -130,7 +131,7 @@ def _own_lines(fields: Mapping[str, Any]) -> Sequence[str]:
 
 
 def table(rows: Sequence[Sequence[str]], indent: str = "") -> list[str]:
-    """Rows with aligned columns; the last column is not padded."""
+    """Rows with their columns beneath each other; the last column is as wide as it is."""
     if not rows:
         return []
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]) - 1)]

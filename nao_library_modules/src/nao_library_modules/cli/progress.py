@@ -1,4 +1,4 @@
-"""Progress of a running goal on standard error: one changing line on a terminal, plain lines elsewhere."""
+"""What a goal does while it runs: one line that changes on a terminal, plain lines elsewhere. On standard error."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ TOLD_ELSEWHERE = frozenset({"index", "function", "count"})
 class Progress:
     """Shown from the beginning of a `with` block to its end.
 
-    A ROS thread delivers feedback and another thread turns the wheel; the lock guards what they print.
+    Feedback comes from a thread of ROS, the wheel turns in one of its own; the lock guards what they print.
 
     Args:
-        called: Function -> the name to show for it, where its own name says nothing to users.
+        shown: False: nothing is printed.
+        called: Function -> what it is called here, where its name says nothing to people.
     """
 
     def __init__(self, shown: bool, called: Mapping[str, str] = NO_NAMES) -> None:
@@ -42,6 +43,7 @@ class Progress:
         self._thread: threading.Thread | None = None
 
     def feedback(self, message: Any) -> None:
+        """Show a feedback message."""
         fields = plain(message)
         function = fields.get("function", "")
         text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {self._called.get(function, function)}"
@@ -62,7 +64,7 @@ class Progress:
                 click.echo(text, err=True)
 
     def note(self, text: str) -> None:
-        """Print a line that stays."""
+        """Show a line that stays."""
         if self._shown:
             with self._lock:
                 self._wipe()

@@ -1,4 +1,4 @@
-"""The robot's memory and modules for commands that only read: they send no goal, so a running goal continues."""
+"""The robot's memory and modules for commands that only look: without a goal, so that one that runs goes on."""
 
 from __future__ import annotations
 
@@ -55,13 +55,14 @@ class DirectRobot:
             raise CommandFailed(str(error)) from None
 
     def memory(self, method: str, *arguments: Any) -> Any:
+        """Call a method of the memory."""
         return self.call(MEMORY, method, *arguments)
 
     def value(self, key: str) -> Any:
         """Value of a key.
 
         Raises:
-            CommandFailed: There is none; the text has similar keys.
+            CommandFailed: There is none; the text has the keys that come close.
         """
         try:
             return self.memory("getData", key)
@@ -76,13 +77,14 @@ class DirectRobot:
         return sorted({*self.memory("getDataListName"), *self.memory("getEventList")})
 
     def events(self) -> list[str]:
+        """All events."""
         return list(self.memory("getEventList"))
 
     def matching(self, patterns: Sequence[str]) -> list[str]:
-        """Keys and events that match the patterns, in pattern order; a name without wildcards matches itself.
+        """Keys and events that patterns mean, in their order; a name without wildcards means itself.
 
         Raises:
-            CommandFailed: A pattern matches none.
+            CommandFailed: A pattern means none.
         """
         names: list[str] = []
         known: list[str] | None = None
@@ -98,13 +100,13 @@ class DirectRobot:
         return list(dict.fromkeys(names))
 
     def unknown(self, names: Sequence[str]) -> list[str]:
-        """Warnings for names that are neither an event nor a key so far; patterns are skipped."""
+        """What is to be said of names that are neither an event nor a key so far; patterns are none of them."""
         known = self.memory_names()
         plain = [name for name in names if name not in known and not _is_pattern(name)]
         return [f"there is no event and no key {name} so far{did_you_mean(name, known)}" for name in plain]
 
     def subscriber(self, event: str) -> Any:
-        """ALMemory's subscriber of an event."""
+        """Subscriber of an event, as the memory gives it."""
         try:
             return self._proxy(MEMORY).subscriber(event)
         except NaoError as error:
@@ -123,7 +125,7 @@ def _is_pattern(name: str) -> bool:
 
 
 def _instead(key: str, known: Sequence[str]) -> str:
-    """Text after "there is no key ...": similar keys, and how to list those that start with it."""
+    """Text to append to "there is no key ...": keys that come close, and how to see those that it is a part of."""
     hint, parts = did_you_mean(key, known), [name for name in known if key in name]
     if not parts:
         return hint

@@ -1,4 +1,4 @@
-"""Options that every command has, and their values in this run."""
+"""Options that every command has, and what they are for this run of the program."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ QUICK = 1.0
 
 @dataclass
 class CliSettings:
-    """Options of one run.
+    """Of one run.
 
     Attributes:
+        json: Whether answers are JSON.
         namespace: Of the robot; None: none was chosen.
         timeout: s of this computer that a goal may take; None for ever.
-        completing: The shell asks for completions.
-        described_offline: The user has been told that the answers come from the code.
+        completing: Whether the shell asks how a word can go on.
+        described_offline: Whether it was told that the answers come from the code.
     """
 
     json: bool = False
@@ -37,18 +38,19 @@ class CliSettings:
 
     @property
     def stack(self) -> Stack:
+        """The servers of the robot."""
         if self._stack is None:
             self._stack = Stack(self.namespace, QUICK) if self.completing else Stack(self.namespace)
         return self._stack
 
 
 def settings_of(context: click.Context) -> CliSettings:
-    """The settings of a run, created on first use."""
+    """The settings of a run, made when they are asked for first."""
     return context.ensure_object(CliSettings)
 
 
 def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
-    """Decorate a completion: it fails silently and keeps only words that start with what was typed."""
+    """An offer of words that fails in silence and is narrowed to what was begun."""
 
     @functools.wraps(offer)
     def run(context: click.Context, start: str, *more: Any) -> list[str]:
@@ -56,7 +58,7 @@ def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
         settings.completing = True
         try:
             words = list(offer(settings, start, *more))
-        except Exception:  # an error text would appear in the line that is being typed
+        except Exception:  # an error text would end up in the line that is being typed
             return []
         return [word for word in words if word.startswith(start)]
 
@@ -65,11 +67,12 @@ def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
 
 @quietly
 def robots(settings: CliSettings, start: str) -> list[str]:
+    """Namespaces of robots."""
     return [name.strip("/") or "/" for name in settings.stack.robots()]
 
 
 def _keep(context: click.Context, parameter: click.Parameter, value: Any) -> None:
-    # Accepted before and after the command; an option that is not given here must not hide one that was given there.
+    # Standing behind the command as well as before it; what is not given here must not hide what was given there.
     if value is not None and value is not False:
         setattr(settings_of(context), parameter.human_readable_name, value)
 
@@ -79,7 +82,7 @@ def _complete_robot(context: click.Context, _parameter: click.Parameter, start: 
 
 
 def common_options() -> list[click.Option]:
-    """New option objects, for one command."""
+    """The options, made anew for each command."""
     return [
         click.Option(
             ["--robot", "-n", "namespace"],
@@ -102,9 +105,10 @@ def common_options() -> list[click.Option]:
 
 
 class OneOf(click.Choice):
-    """One of several words; the error for another word suggests similar ones."""
+    """One of several words; another one is told with those that look like it."""
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
+        """As click does."""
         from ..base.suggestion import of_those
 
         if value not in self.choices:
@@ -118,7 +122,7 @@ ELSEWHERE = {**dict.fromkeys(LENGTHS, "--for"), "--fps": "--rate", "--frequency"
 
 
 class NaoCommand(click.Command):
-    """A command with the common options."""
+    """A command with the options that every command has."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -126,7 +130,7 @@ class NaoCommand(click.Command):
         self.context_settings.setdefault("help_option_names", ["-h", "--help"])
 
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
-        """Parse as click does; the error for an unknown option suggests known ones."""
+        """As click does; an option that there is not is told with what it may be called here."""
         try:
             return super().parse_args(context, args)
         except click.NoSuchOption as error:
@@ -135,13 +139,13 @@ class NaoCommand(click.Command):
             raise
 
     def instead_of(self, option: str, known: Sequence[str]) -> list[str]:
-        """Known options that an unknown one may mean."""
+        """What an option that there is not may be called here."""
         here = ELSEWHERE.get(option)
         return [here] if here in known else difflib.get_close_matches(option, known, cutoff=0.7)
 
 
 class SignedCommand(NaoCommand):
-    """A command whose arguments may start with one minus sign, as negative numbers do."""
+    """A command whose arguments may begin with a minus sign, as numbers do; with two it is an option all the same."""
 
     words: tuple[str, ...] = ()
     """Arguments that look like options."""
@@ -151,7 +155,7 @@ class SignedCommand(NaoCommand):
         self.context_settings["ignore_unknown_options"] = True
 
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
-        """Parse as click does, but pass unknown options on as arguments."""
+        """As click does, but for options that there are not."""
         known = {name for parameter in self.get_params(context) for name in parameter.opts}
         options = args[: args.index("--")] if "--" in args else args
         for word in options:
@@ -162,20 +166,20 @@ class SignedCommand(NaoCommand):
 
 
 class NaoGroup(click.Group):
-    """A command group that recognises options by their first letter alone."""
+    """Commands that are told apart from options by their first letter alone."""
 
     command_class = NaoCommand
 
     def instead_of(self, word: str) -> str:
-        """Text after "there is no command ...": the command that does what the word says; empty if none is known."""
+        """Text to append to "there is no command ...": what does what the word says; empty if nothing is known."""
         return ""
 
     def resolve_command(self, context: click.Context, arguments: list[str]) -> Any:
-        """Resolve as click does; the error for an unknown command suggests similar ones."""
+        """As click does; a word that is no command is told with those that look like it."""
         from ..base.suggestion import did_you_mean
 
         word, known = arguments[0], self.list_commands(context)
-        # Click also takes "*" for an option, and shows the help.
+        # Click takes "*" for an option, too, and shows the help as if it had been asked for.
         if word not in known and (word == "-" or not word.startswith("-")):
             context.fail(f"there is no command {word!r}{self.instead_of(word) or did_you_mean(word, known)}")
         return super().resolve_command(context, arguments)

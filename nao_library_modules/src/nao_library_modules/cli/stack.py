@@ -1,4 +1,4 @@
-"""The servers of one robot: which robot is meant, which servers it has, how they describe themselves."""
+"""The servers of one robot: which robot is meant, which servers it has, what they say about themselves."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ BEHAVIORS = "NaoBehavior/list"
 
 
 class Stack:
-    """Servers of one namespace. Each question is asked once, on first use.
+    """Servers of one namespace. Nothing is asked before it is needed, and each question once.
 
     Attributes:
         silent: Servers that the master knows and that did not answer.
 
     Args:
-        namespace: As the user gave it; None: that of the environment, or of the only robot.
+        namespace: Of the robot, as it was given; None: that of the environment, or of the only robot there is.
         limit: s that an answer may take.
     """
 
@@ -41,10 +41,10 @@ class Stack:
 
     @property
     def namespace(self) -> str:
-        """Namespace of the robot, with a slash at both ends.
+        """Of the robot, with a slash at both ends.
 
         Raises:
-            click.UsageError: There are several robots and none was chosen, or the chosen one is missing.
+            click.UsageError: There are several robots and none was chosen, or not the one that was.
         """
         if self._namespace is None:
             self._namespace = self._choose()
@@ -85,13 +85,13 @@ class Stack:
     def describe(
         self, server: str, functions: Sequence[str] = (), brief: bool = False, names: bool = False
     ) -> DescribeFunctionsResponse:
-        """The description that a server gives of itself and its functions.
+        """What a server says about its functions and itself.
 
         Args:
-            server: Any name that `server` takes.
-            functions: Names of functions; empty: all.
-            brief: Leave out functions.
-            names: Only names and help of the functions.
+            server: Its name, as `server` takes it.
+            functions: Names of functions; all without.
+            brief: True: only about itself.
+            names: True: only names and help of the functions.
         """
         from nao_library_msgs.srv import DescribeFunctions, DescribeFunctionsRequest
 
@@ -105,7 +105,7 @@ class Stack:
     def described(
         self, functions: Sequence[str] = (), brief: bool = False, names: bool = False
     ) -> list[tuple[str, DescribeFunctionsResponse]]:
-        """Servers that answer, each with what `describe` returns; the others are in `silent` from then on.
+        """Servers that answer, with what they say, as `describe` takes it; `silent` has the others from then on.
 
         Raises:
             StackMissing: None answers.
@@ -114,7 +114,7 @@ class Stack:
         for name in self.servers():
             try:
                 found.append((name, self.describe(name, functions, brief, names)))
-            except StackMissing as error:  # a crashed node stays registered at the master
+            except StackMissing as error:  # a node that died without a word is in the master's books for ever
                 missing[name] = error
         self.silent = list(missing)
         if not found:
@@ -122,7 +122,7 @@ class Stack:
         return found
 
     def connected(self, server: str) -> bool:
-        """Whether a server is connected to its robot now."""
+        """Whether a server reaches its robot at this moment."""
         self._described.clear()
         return bool(self.describe(server, brief=True).connected)
 
@@ -135,7 +135,7 @@ class Stack:
         raise StackMissing("no server knows the address of the robot")
 
     def service(self, name: str) -> str:
-        """Full name of a service of this robot, or of one that all robots share.
+        """Full name of a service: that of this robot, or that which all robots share.
 
         Raises:
             StackMissing: There is none.
@@ -148,13 +148,13 @@ class Stack:
         raise StackMissing(f"{missing}: is this a simulated robot?" if name.startswith(SIMULATOR) else missing)
 
     def behaviors(self, name: str = "") -> list[dict[str, Any]]:
-        """The stored behaviours, or the one of that name, as plain values."""
+        """The stored behaviours, or the one of a name, as plain values."""
         from nao_library_msgs.srv import ListBehaviorsRequest
 
         return plain(self.list_behaviors(ListBehaviorsRequest(name=name)))["behaviors"]
 
     def list_behaviors(self, request: ListBehaviorsRequest, patient: bool = False) -> ListBehaviorsResponse:
-        """The answer of the behaviour server; for `patient` see `Graph.call`."""
+        """What the server of behaviours answers; see `Graph.call`."""
         from nao_library_msgs.srv import ListBehaviors
 
         return self.graph.call(self.service(BEHAVIORS), ListBehaviors, request, patient)
@@ -179,7 +179,7 @@ class Stack:
 
 
 def _plain(namespace: str) -> str:
-    """A robot's namespace as the command line takes it."""
+    """A robot's namespace as it is given on the command line."""
     return namespace.strip("/") or "/"
 
 

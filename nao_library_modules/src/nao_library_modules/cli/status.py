@@ -1,4 +1,4 @@
-"""State of a robot and its servers, for `nao status`."""
+"""How a robot and its servers do, gathered for `nao status`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LEVELS = ("ok", "warning", "error", "stale")
 
 
 def read_status(stack: Stack) -> dict[str, Any]:
-    """Read the status; None stands for what cannot be read.
+    """What there is to tell; what cannot be asked is None.
 
     Raises:
         StackMissing: There are no servers.
@@ -78,7 +78,7 @@ def _robot(address: tuple[str, int]) -> dict[str, Any]:
 
 
 class _Diagnostics:
-    """Diagnostics of all nodes, collected while the rest is read."""
+    """The reports of all nodes, gathered while the rest is asked."""
 
     def __init__(self) -> None:
         from diagnostic_msgs.msg import DiagnosticArray
@@ -94,7 +94,7 @@ class _Diagnostics:
         self._subscriber = rospy.Subscriber(DIAGNOSTICS, DiagnosticArray, self._on_array)
 
     def _on_array(self, message: Any) -> None:
-        """Runs in a ROS thread."""
+        """Called from a thread of ROS."""
         with self._lock:
             self._reports.update((status.name, status) for status in message.status)
 
@@ -119,6 +119,7 @@ def _number(level: Any) -> int:
 
 
 def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
+    """The status for people."""
     stiffness = found["stiffness"]
     rows = [
         ("robot", f"{found['robot']} at {found['address']}, {'connected' if found['connected'] else 'NOT REACHED'}"),

@@ -3,7 +3,7 @@
 from ..base.doors import door
 
 __all__ = ["CAMERAS", "PARAMETERS", "ImageThreads", "NaoVision"]
-# Threads for another camera import no robot code.
+# Threads for another camera import nothing of the robot's.
 __getattr__ = door(
     __name__, {"ImageThreads": "threads", "CAMERAS": "server", "PARAMETERS": "server", "NaoVision": "server"}
 )

@@ -64,7 +64,7 @@ class NaoVision(NaoBasic):
         DetectionFunctions,
     )
     typed_answers = frozenset({"takePicture", "takePictures", "stopRecording", "listThreads"})
-    # These work with topics of any camera.
+    # They take topics, of any camera.
     without_robot = frozenset({**StreamingFunctions.functions, **PictureFunctions.functions})
 
     def __init__(
@@ -84,14 +84,18 @@ class NaoVision(NaoBasic):
         """Start the server.
 
         Args:
-            launchpath: None: the robot's cameras. The images of another launch file are the camera top, and those of a
-                second topic the camera bottom.
-            record_dir: Folder for pictures and videos; "~" is the user's home.
-            camera_top: Topic of its pictures.
-            camera_bottom: Likewise.
-            camera_top_node: dynamic_reconfigure name of its node.
-            camera_bottom_node: Likewise.
-            topics: Replaces VisionTopics of this process's node.
+            ip: Address of the robot.
+            port: Port of its NAOqi.
+            autostart: As NaoBasic takes it.
+            launchpath: As NaoBasic takes it, None stands for the robot's cameras. The images of any other
+                launch file are the camera top, and those of a second topic the camera bottom.
+            record_dir: Folder for pictures and videos; "~" stands for the home of the user.
+            camera_top: Topic of the pictures of the camera top.
+            camera_bottom: Topic of the pictures of the camera bottom.
+            camera_top_node: Where the node of the camera top takes dynamic_reconfigure.
+            camera_bottom_node: Where the node of the camera bottom takes it.
+            topics: Topics and settings of cameras, where not those of this process's node.
+            options: As NaoBasic takes them.
         """
         if topics is None:
             from .capture.topics import VisionTopics
@@ -123,17 +127,19 @@ class NaoVision(NaoBasic):
         self.serve("NaoVision", NaoVisionAction)
 
     def begin_chain(self) -> None:
+        """Forget what the last chain has seen and taken."""
         self._results.clear()
         if not self._took_over and self.robot.connection.state == "connected":
             self._took_over = self.detectors.end_leftovers()
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
+        """Add what the chain has seen and taken."""
         super().fill_result(result, outcomes)
         self._results.fill(result)
 
     def shutdown_steps(self) -> list[Callable[[], Any]]:
-        """As NaoBasic, but streams and recordings end first, so that files are complete even if other steps are slow.
+        """As NaoBasic has them; streams and recordings end first, so that files are complete whatever else takes long.
 
-        They end a second time for a goal that was about to start one.
+        They end once more for a goal that was just about to start one.
         """
         return [self.interrupt.stop, self.jobs.close, *super().shutdown_steps(), self.jobs.close]

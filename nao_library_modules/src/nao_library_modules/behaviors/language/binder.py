@@ -1,4 +1,4 @@
-"""From a behaviour to a program: values for `${}`, boxes and goals, with every check that needs no robot."""
+"""From a behaviour to what runs: values for `${}`, boxes, goals; and everything that can be checked on the way."""
 
 from __future__ import annotations
 
@@ -44,15 +44,15 @@ Library = Callable[[str], Behavior]
 def bind(
     behavior: Behavior, values: Mapping[str, Any], library: Library, tables: FunctionTables | None = None
 ) -> SequenceNode:
-    """Build the program of a behaviour, without asking servers or the robot.
+    """Make a program of a behaviour. Nothing is asked of servers or robot.
 
     Args:
-        values: Values of some or all parameters, by name.
+        values: Name -> value of some or all of its parameters.
         tables: Functions of the servers; without them only messages and fields are checked.
 
     Raises:
-        BehaviorError: Holds every problem found.
-        BadGoal: A parameter cannot have its value.
+        BehaviorError: With everything that is wrong.
+        BadGoal: A value for a parameter will not do.
     """
     program, problems = bind_what_can_be(behavior, values, library, tables)
     if problems:
@@ -63,10 +63,10 @@ def bind(
 def bind_what_can_be(
     behavior: Behavior, values: Mapping[str, Any], library: Library, tables: FunctionTables | None = None
 ) -> tuple[SequenceNode, list[Problem]]:
-    """As `bind`, but return the program of all readable steps, and every problem found.
+    """As `bind`: the program of all steps that could be read, and what is wrong with them and the others.
 
     Raises:
-        BadGoal: A parameter cannot have its value.
+        BadGoal: A value for a parameter will not do.
     """
     binder = _Binder(library, tables or FunctionTables(), tables is not None)
     program = binder.behavior(behavior, arguments(behavior.parameters, values), (), behavior.name)
@@ -74,7 +74,7 @@ def bind_what_can_be(
 
 
 class _Scope:
-    """Context of a step: its file, parameter values, and the paths and boxes above it."""
+    """Where steps stand: the file, its parameters' values, the paths and boxes above."""
 
     def __init__(
         self, behavior: str, file: str, values: Mapping[str, Any], prefix: PathParts, boxes: tuple[str, ...]
@@ -93,7 +93,7 @@ class _Scope:
 
 
 class _Binder:
-    """Turns steps into nodes, and collects problems."""
+    """Makes nodes of steps, and notes what is wrong."""
 
     def __init__(self, library: Library, tables: FunctionTables, checks: bool) -> None:
         self.problems: list[Problem] = []
@@ -104,11 +104,11 @@ class _Binder:
         self._nodes = 0
 
     def behavior(self, behavior: Behavior, values: Mapping[str, Any], prefix: PathParts, *boxes: str) -> SequenceNode:
-        """Program of a behaviour, alone or in a box.
+        """The program of a behaviour, on its own or in a box.
 
         Args:
             prefix: Path of the box.
-            boxes: Names of the enclosing behaviours, this one last.
+            boxes: Names of the behaviours that it is in, itself the last.
         """
         scope = _Scope(behavior.name, behavior.file, values, prefix, boxes)
         body = behavior.body
@@ -133,7 +133,7 @@ class _Binder:
         try:
             return self._node(step, scope, home)
         except NotKnown:
-            pass  # the wrong value that it depends on is already reported
+            pass  # the value that it depends on is told already
         except BehaviorError as error:
             for problem in error.problems:
                 self._note(step, scope, f"behavior {error.name}: {problem}")
@@ -144,7 +144,7 @@ class _Binder:
     def _note(self, step: Step, scope: _Scope, text: str) -> None:
         inside = f" in {scope.behavior}" if len(scope.boxes) > 1 else ""
         problem = Problem(f"step {path_text(scope.path(step.path))}{inside}", text, step.line, scope.file)
-        if problem not in self.problems:  # both the first and the last round of a repetition are bound
+        if problem not in self.problems:  # a repetition is looked at in its first and its last round
             self.problems.append(problem)
 
     def _node(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None) -> Node | None:
@@ -200,7 +200,7 @@ class _Binder:
             messages.append(message)
         failures = self._tables.check(server, messages)[0] if self._checks else []
         for failed in failures:
-            if failed.position not in wrong:  # a field whose value is missing would be reported twice
+            if failed.position not in wrong:  # a field without its value would be told as another mistake
                 self._note(step, scope, str(failed if len(messages) > 1 else failed.cause))
         return None if wrong else GoalNode(**common, server=server.name, goal=server.goal(messages))
 
@@ -244,7 +244,7 @@ class _Binder:
 
         def one(number: int, binder: _Binder) -> SequenceNode:
             values = {**scope.values, step.variable: number} if step.variable else scope.values
-            # Steps of a round stand at 4#2.1: the path with the round replaces the path of the repetition.
+            # Steps of a round stand at 4#2.1: the path of the repetition makes way for the one with the round.
             inside = _Scope(scope.behavior, scope.file, values, (*path, ("#", number)), scope.boxes)
             nodes = []
             for part in step.steps:
@@ -272,7 +272,7 @@ class _Binder:
 
 
 def _moved(step: Step, depth: int) -> Step:
-    """A step and those inside it, with paths that lack the first `depth` parts."""
+    """A step, and those inside, with paths that begin behind the first `depth` parts."""
     changes: dict[str, Any] = {"path": step.path[depth:]}
     if step.parts:
         changes["steps"] = tuple(_moved(part, depth) for part in step.parts)

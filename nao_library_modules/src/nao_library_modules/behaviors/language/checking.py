@@ -1,4 +1,4 @@
-"""Whether a behaviour can run, checked before anything moves; and the facts about a stored behaviour."""
+"""Whether a behaviour can be run, told before anything moves; and what there is to know about it."""
 
 from __future__ import annotations
 
@@ -24,16 +24,19 @@ def check(
     values: Mapping[str, Any] | None = None,
     tables: FunctionTables | None = None,
 ) -> SequenceNode:
-    """Check a whole behaviour and return its program: functions, fields, boxes, times, and names that all robots have.
+    """Check a behaviour as a whole, without servers: functions, fields, boxes, times, and names that all robots have.
 
     Args:
         library: Gives the behaviours of its boxes by name.
-        values: Of its parameters; others have their defaults.
+        values: Of its parameters; the defaults for those that are not named.
         tables: Functions of the servers, if they are known already.
 
+    Returns:
+        What would run.
+
     Raises:
-        BehaviorError: Holds every problem found.
-        BadGoal: A parameter cannot have its value.
+        BehaviorError: With everything that is wrong.
+        BadGoal: A value for a parameter will not do.
     """
     tables = tables or FunctionTables()
     program, problems = bind_what_can_be(behavior, values or {}, library, tables)
@@ -49,14 +52,16 @@ def check_given(
     ask: Ask | None = None,
     read_wrong: Sequence[Problem] = (),
 ) -> tuple[SequenceNode, Validation]:
-    """Program and validation for parameter values as "name=value".
+    """What would run with values as "name=value", if nothing is wrong.
 
     Args:
+        behavior: The behaviour.
         library: Gives the behaviours of its boxes by name.
-        ask: Has the servers check their goals; None: check only what holds for any robot.
+        given: Values of its parameters.
+        ask: Has the servers check their goals; None: only what is true of any robot is looked at.
 
     Raises:
-        BehaviorError: Holds every problem found.
+        BehaviorError: With everything that is wrong.
     """
     problems = [*read_wrong]
     values = given_as_text(behavior.parameters, given, problems, behavior.file)
@@ -68,7 +73,7 @@ def check_given(
 
 def _require_none(behavior: Behavior, problems: Sequence[Problem]) -> None:
     if problems:
-        once = dict.fromkeys(problems)  # the servers also report what holds for any robot
+        once = dict.fromkeys(problems)  # what is true of any robot the servers tell, too
         own = sorted(once, key=lambda problem: (problem.file != behavior.file, problem.file, problem.line))
         raise BehaviorError(behavior.name, own)
 
@@ -80,11 +85,12 @@ def problems_of(
     given: Sequence[str] = (),
     ask: Ask = ask_nobody,
 ) -> list[str]:
-    """All problems of a behaviour; empty if it can run.
+    """What is wrong with a behaviour; nothing if it can be run.
 
     Args:
+        library: For its boxes.
         tables: Functions of the servers, if they are known already.
-        given: Parameter values as "name=value".
+        given: Values of its parameters as "name=value".
         ask: Has the servers check their goals, where there are any.
     """
     try:
@@ -96,7 +102,7 @@ def problems_of(
 
 
 def _as_far_as_read(load: Callable[[], Behavior]) -> tuple[Behavior, Sequence[Problem]]:
-    """A behaviour as far as it can be read, and the problems of its file."""
+    """A behaviour, and what was wrong with its file."""
     try:
         return load(), ()
     except BehaviorError as error:
@@ -111,12 +117,13 @@ def _problems(error: NaoError) -> tuple[Problem, ...]:
 
 @dataclass(frozen=True)
 class Facts:
-    """Facts about a stored behaviour.
+    """What there is to know about a stored behaviour.
 
     Attributes:
-        behavior: None if the file cannot be read.
-        problem: All problems as one text that may be cut; empty if it can run.
-        preview: What it would do; empty unless requested.
+        behavior: It; None if its file cannot be read.
+        problem: What is wrong with it, in one text that may be cut; empty if it can be run.
+        problems: All that is wrong with it, one by one; none if it can be run.
+        preview: What it would do; empty where nobody asked for that.
         unvalidated: Servers that did not check their goals, and why.
     """
 
@@ -130,6 +137,7 @@ class Facts:
 
 
 def facts_of(name: str, library: Library, tables: FunctionTables) -> Facts:
+    """Look at a stored behaviour."""
     behavior = None
     try:
         behavior = library(name)
@@ -146,7 +154,11 @@ def preview_facts(
     given: Sequence[str] = (),
     ask: Ask | None = None,
 ) -> Facts:
-    """As `facts_of`, with a preview; `ask` as for `check_given`."""
+    """As `facts_of`, with what it would do.
+
+    Args:
+        ask: Has the servers check their goals, as `check_given` takes it.
+    """
     behavior = None
     try:
         readable, wrong = _as_far_as_read(load)

@@ -1,4 +1,4 @@
-"""Errors of behaviours, before and while they run.
+"""What is wrong with a behaviour, or went wrong while it ran.
 
 NaoError                 (naoqi.errors)
     BehaviorError        a behaviour cannot be run: name, problems
@@ -25,13 +25,13 @@ MOST_TOLD = 10
 
 @dataclass(frozen=True)
 class Problem:
-    """One problem of a behaviour.
+    """One thing that is wrong.
 
     Attributes:
         where: Path of the step, or the part of the file: "step 2.1", "parameters"; empty: the file as a whole.
         text: What is wrong, and what is allowed.
-        line: Counted from 1; 0 if unknown.
-        file: Path of the file; empty: the text comes from no file.
+        line: Of the file, counted from 1; 0 if it is not known.
+        file: Path of the file; empty: a text of no file.
     """
 
     where: str
@@ -48,7 +48,7 @@ class Problem:
 
 
 def place(file: str, line: int) -> str:
-    """Prefix of a text about a line of a file: "hello.yaml:9: "; empty without a file."""
+    """What a text begins with that is about a line of a file: "hello.yaml:9: "; empty without a file."""
     return f"{file}:{line}: " if file and line else f"{file}: " if file else ""
 
 
@@ -56,8 +56,8 @@ class BehaviorError(NaoError):
     """A behaviour cannot be run.
 
     Attributes:
-        problems: In the order of the file.
-        readable: The `model.Behavior` as far as its file could be read; None if nothing could.
+        problems: What is wrong, in the order of the file.
+        readable: The `model.Behavior` with all that could be read of its file; None if nothing is known of that.
     """
 
     def __init__(self, name: str, problems: Sequence[Problem], readable: Any = None) -> None:
@@ -70,9 +70,14 @@ class BehaviorError(NaoError):
 
 
 class NoSuchBehavior(NaoError):
-    """Nothing is stored under a name."""
+    """Nothing is stored under a name.
+
+    Attributes:
+        known: Names there are, sorted.
+    """
 
     def __init__(self, name: str, known: Iterable[str]) -> None:
+        """Compose the text."""
         self.name = name
         self.known = sorted(known)
         there = f"there are {', '.join(self.known)}" if self.known else "none is stored"
@@ -80,6 +85,8 @@ class NoSuchBehavior(NaoError):
 
 
 class StepFailed(PlanFailure):
+    """A step of a running behaviour failed."""
+
     def __init__(self, path: str, what: str, problem: str, file: str = "", line: int = 0) -> None:
         text = f"{place(file, line)}step {path} ({what}): {problem}"
         super().__init__(text, path=path, what=what, problem=problem)

@@ -1,6 +1,6 @@
 """`${...}` in values of behaviours: names of parameters, numbers, + - * / and parentheses. Pure.
 
-An expression alone keeps the type of its value; inside a text it becomes text. `$${` stands for the characters `${`.
+Alone it stands for the value as it is; in a text it becomes text. `$${` stands for the two characters `${`.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ LONGEST = 200
 
 
 class Unknown:
-    """Replaces a wrong value: nothing that depends on it is checked, because the mistake is already reported."""
+    """Takes the place of a value that is wrong: what depends on it is looked at no further, as that is told already."""
 
     def __repr__(self) -> str:
         return "a value that is wrong"
@@ -43,20 +43,23 @@ UNKNOWN = Unknown()
 
 
 class NotKnown(Exception):  # noqa: N818  a signal: a value depends on one that is wrong
-    """An expression depends on a value that is `UNKNOWN`."""
+    """Something cannot be worked out as a value in it is `UNKNOWN`."""
 
 
 class BadExpression(BadGoal):
+    """An expression cannot be read or worked out."""
+
     def __init__(self, text: str, problem: str, allowed: str = GRAMMAR) -> None:
+        """Compose the text."""
         super().__init__("${" + text + "}", text, allowed, problem=problem)
 
 
 def substitute(value: Any, values: Mapping[str, Any]) -> Any:
-    """A value with every `${}` evaluated, also inside lists and mappings.
+    """A value with everything in `${}` worked out, also inside lists and mappings.
 
     Raises:
-        BadExpression: An expression cannot be evaluated.
-        NotKnown: It depends on a wrong value.
+        BadExpression: If something cannot be worked out.
+        NotKnown: It depends on a value that is wrong.
     """
     if value is UNKNOWN:
         raise NotKnown
@@ -73,7 +76,7 @@ def names_in(value: Any) -> Iterator[str]:
     """Names that the expressions in a value use, also inside lists and mappings.
 
     Raises:
-        BadExpression: An expression cannot be read.
+        BadExpression: If an expression cannot be read.
     """
     if isinstance(value, str):
         for match in _PART.finditer(value):
@@ -88,7 +91,7 @@ def names_in(value: Any) -> Iterator[str]:
 
 
 def escaped(value: Any) -> Any:
-    """A value escaped so that `substitute` returns the original."""
+    """A value such that `substitute` gives it back as it is."""
     if isinstance(value, str):
         return value.replace("${", "$${")
     if isinstance(value, list):

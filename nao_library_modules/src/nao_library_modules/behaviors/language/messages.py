@@ -1,4 +1,4 @@
-"""Converts the fields of a file into function messages and back, by the types that genpy gives for each field."""
+"""Function messages from the fields of a file, and back. By the types that genpy knows of each field."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def message_of(message_type: type, fields: Any, where: str = "", taken: Sequence
 
     Args:
         fields: Name -> plain value; times and durations in s.
-        where: Prefix of field names in error texts.
-        taken: Fields that the function reads, if not all; error texts name these.
+        where: What errors put before the names of fields.
+        taken: Fields that make sense here, where not all do: errors name these.
 
     Raises:
-        BadGoal: A field is unknown, or its value is of the wrong kind.
+        BadGoal: If a field is unknown, or its value is of the wrong kind.
     """
     if not isinstance(fields, dict):
         raise BadGoal(where or message_type.__name__, fields, f"a mapping with {', '.join(message_type.__slots__)}")
@@ -49,7 +49,7 @@ def message_of(message_type: type, fields: Any, where: str = "", taken: Sequence
 
 
 def _in_rad(value: Any) -> Any:
-    """Convert angles in degrees to rad; other values stay as they are."""
+    """Angles in rad; what is no angle in degrees as it is."""
     if isinstance(value, list):
         return [_in_rad(each) for each in value]
     try:
@@ -59,7 +59,7 @@ def _in_rad(value: Any) -> Any:
 
 
 def fields_of(message: Any) -> dict[str, Any]:
-    """Fields of a message that differ from their defaults; the inverse of `message_of`."""
+    """Fields of a message that differ from their defaults: `message_of` makes the same message of them."""
     default = type(message)()
     return {
         name: _plain(kind, getattr(message, name))
@@ -114,7 +114,7 @@ def _integer(kind: str, value: Any, where: str) -> int:
 def _float(kind: str, value: Any, where: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise BadGoal(where, value, "a number")
-    # YAML integers may have any length.
+    # Integers of YAML may have any length.
     if abs(value) > 1e308 or not math.isfinite(value) or abs(value) > _FLOATS[kind]:
         raise BadGoal(where, value, "a finite number")
     return float(value)
@@ -124,7 +124,7 @@ def _time(kind: type, value: Any, where: str) -> Any:
     number = _float("float64", value, where)
     if not -(2**31) <= number < 2**31 or (kind is genpy.Time and number < 0.0):
         raise BadGoal(where, value, "s, less than 2147483648")
-    # from_sec truncates instead of rounding.
+    # from_sec cuts digits off instead of rounding them.
     seconds, nanoseconds = divmod(round(number * NANOSECONDS), NANOSECONDS)
     return kind(seconds, nanoseconds)
 
@@ -143,7 +143,7 @@ def _plain(kind: str, value: Any) -> Any:
 
 
 def _same(a: Any, b: Any) -> bool:
-    """Whether two values are equal; a list equals a tuple with equal items."""
+    """Whether two values are equal; lists and tuples are, when what is in them is."""
     if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
         return len(a) == len(b) and all(map(_same, a, b))
     return bool(a == b)

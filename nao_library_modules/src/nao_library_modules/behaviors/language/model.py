@@ -1,4 +1,4 @@
-"""Parts of a behaviour as its file states them: values may still hold `${...}`."""
+"""What a behaviour is made of, as it stands in its file: values may still hold `${...}`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PathParts = Tuple[Tuple[str, int], ...]
 
 
 def path_text(path: PathParts) -> str:
-    """A path as text: 2.1, 3/1, 4#2.1."""
+    """A path as people read it: 2.1, 3/1, 4#2.1."""
     return "".join(f"{separator}{number}" for separator, number in path)
 
 
@@ -26,15 +26,16 @@ def child(path: PathParts, number: int, separator: str = ".") -> PathParts:
 
 @dataclass(frozen=True)
 class Step(ABC):
-    """Common fields of all steps.
+    """What all steps have.
 
     Attributes:
-        line: Of the file; 0 if unknown.
-        label: Name on a timeline; may be empty.
+        path: Where it stands.
+        line: Of the file; 0 if it is not known.
+        label: Its name on a timeline; may be empty.
         policy: What happens when it fails.
         limit: s after which it is ended and counts as done; None for no limit. May hold `${}`.
-        at: Start, on a timeline.
-        whole: The step itself is fully readable; steps inside it do not count.
+        at: When it begins, on a timeline.
+        whole: Whether all of it could be read; what is inside of it does not count.
     """
 
     path: PathParts
@@ -48,28 +49,33 @@ class Step(ABC):
     @property
     @abstractmethod
     def what(self) -> str:
-        """A word or two for error texts and previews."""
+        """What it is, in a word or two."""
 
     @property
     def parts(self) -> tuple[Step, ...]:
-        """Steps inside it, in the same file."""
+        """Steps inside of it, in the same file."""
         return ()
 
 
 @dataclass(frozen=True)
 class Unreadable(Step):
-    """Placeholder for a step that cannot be read."""
+    """Something in the place of a step that is none."""
 
     whole: bool = False
 
     @property
     def what(self) -> str:
+        """Nothing is known of it."""
         return "step"
 
 
 @dataclass(frozen=True)
 class Functions(Step):
-    """One goal for a server: a function, or a chain of them."""
+    """One goal for a server: a function, or a chain of them.
+
+    Attributes:
+        functions: Fields of each function message.
+    """
 
     server: str = ""
     functions: Tuple[Mapping[str, Any], ...] = ()
@@ -95,58 +101,70 @@ class Wait(Step):
 
     @property
     def what(self) -> str:
+        """What it is."""
         return "wait"
 
 
 @dataclass(frozen=True)
 class Barrier(Step):
-    """On a timeline: waits for all entries above. In a parallel: waits for the other branches that have it."""
+    """On a timeline: when all above has ended. In a parallel: where the branches that have it wait for each other."""
 
     name: str = ""
 
     @property
     def what(self) -> str:
+        """What it is."""
         return f"barrier {self.name}"
 
 
 @dataclass(frozen=True)
 class Composite(Step):
+    """Steps in steps."""
+
     steps: Tuple[Step, ...] = ()
 
     @property
     def parts(self) -> tuple[Step, ...]:
+        """Its steps."""
         return self.steps
 
 
 @dataclass(frozen=True)
 class Sequence(Composite):
+    """One after the other."""
+
     @property
     def what(self) -> str:
+        """What it is."""
         return "sequence"
 
 
 @dataclass(frozen=True)
 class Parallel(Composite):
+    """All at once."""
+
     @property
     def what(self) -> str:
+        """What it is."""
         return "parallel"
 
 
 @dataclass(frozen=True)
 class Timeline(Composite):
-    """Steps that start at given times."""
+    """Each at its time."""
 
     @property
     def what(self) -> str:
+        """What it is."""
         return "timeline"
 
 
 @dataclass(frozen=True)
 class Repeat(Composite):
-    """A sequence that runs several times.
+    """A sequence several times.
 
     Attributes:
-        variable: Parameter that holds the number of the round, counted from 1; may be empty.
+        variable: Parameter that has the number of the round, counted from 1; may be empty.
     """
 
     count: Any = 1
@@ -154,18 +172,20 @@ class Repeat(Composite):
 
     @property
     def what(self) -> str:
+        """What it is."""
         return "repeat"
 
 
 @dataclass(frozen=True)
 class Box(Step):
-    """A step that runs another behaviour."""
+    """Another behaviour."""
 
     name: str = ""
     arguments: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def what(self) -> str:
+        """What it is."""
         return f"behavior {self.name}"
 
 
@@ -175,6 +195,7 @@ class Behavior:
 
     Attributes:
         help: What it does, in a line.
+        tags: What it is filed under.
         file: Path of its file; empty if it is none.
     """
 

@@ -1,4 +1,4 @@
-"""Parameters of behaviours: their kinds, allowed values, and values from text."""
+"""Parameters of behaviours: what they may be, and values for them."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ TEXT, NUMBER, TRUTH, LIST = "text", "number", "truth value", "list"
 
 
 def kind_of(value: Any) -> str | None:
-    """The kind of a value; None if no parameter can have it."""
+    """The kind of a value; None if parameters have none such."""
     if isinstance(value, bool):
         return TRUTH
     if isinstance(value, (int, float)):
-        return NUMBER if abs(value) <= LARGEST else None  # YAML integers may have any length; excludes NaN
+        return NUMBER if abs(value) <= LARGEST else None  # integers of YAML may have any length; not for NaN either
     if isinstance(value, str):
         return TEXT
     if isinstance(value, list) and all(kind_of(each) in (TEXT, NUMBER, TRUTH) for each in value):
@@ -34,9 +34,9 @@ class Parameter:
     """A parameter of a behaviour.
 
     Attributes:
-        default: Also fixes the kind. `UNKNOWN`: the file declares it wrongly.
-        choices: Allowed values; empty: any.
-        line: Of the declaration; 0 if unknown.
+        default: Value where none is given; its kind is that of the parameter. `UNKNOWN`: the file is wrong about it.
+        choices: Values that it may have; empty: any.
+        line: Of its file, where it is declared; 0 if it is not known.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Parameter:
 
     @property
     def allowed(self) -> str:
-        """Allowed values in words."""
+        """What it may be, in words."""
         if self.choices:
             return f"one of {', '.join(map(text_of, self.choices))}"
         unit = f" {self.unit}" if self.unit else ""
@@ -72,7 +72,7 @@ class Parameter:
         """The value as it is used.
 
         Raises:
-            BadGoal: The parameter cannot have it.
+            BadGoal: If the parameter cannot have it.
         """
         if UNKNOWN in (self.default, value):
             return UNKNOWN
@@ -88,10 +88,10 @@ class Parameter:
         return value
 
     def parse(self, text: str) -> Any:
-        """Convert a text: text parameters take it as it is, all others parse it as YAML.
+        """The value that a text stands for: texts as they are, all else as in YAML.
 
         Raises:
-            BadGoal: The value is not of the parameter's kind.
+            BadGoal: If it is none of the parameter's kind.
         """
         if self.default is UNKNOWN or self.kind == TEXT:
             return self.check(text)
@@ -103,20 +103,20 @@ class Parameter:
 
 
 def arguments(parameters: Mapping[str, Parameter], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of all parameters by name: the given ones, and defaults for the others.
+    """Name -> value of all parameters: those given, and the defaults of the others.
 
     Raises:
-        BadGoal: A name is unknown, or a parameter cannot have its value.
+        BadGoal: If one is unknown, or a value will not do.
     """
     require_known(given, parameters)
     return {name: each.check(given[name]) if name in given else each.default for name, each in parameters.items()}
 
 
 def require_known(names: Iterable[str], parameters: Mapping[str, Parameter]) -> None:
-    """Check that all names are parameters.
+    """See that all names are parameters.
 
     Raises:
-        BadGoal: One is not.
+        BadGoal: If one is not.
     """
     for name in names:
         if name not in parameters:
@@ -128,11 +128,11 @@ def require_known(names: Iterable[str], parameters: Mapping[str, Parameter]) -> 
 def given_as_text(
     parameters: Mapping[str, Parameter], texts: Sequence[str], problems: list[Problem], file: str = ""
 ) -> dict[str, Any]:
-    """Parse "name=value" texts into values by name.
+    """Name -> value of what is given as "name=value".
 
     Args:
-        problems: Receives names that are unknown or repeated, and wrong values; such values become `UNKNOWN`.
-        file: The file that declares the parameters.
+        problems: Where to note what is unknown, comes twice, or has a value that will not do; that becomes `UNKNOWN`.
+        file: That declares the parameters.
     """
     given: dict[str, Any] = {}
     for text in texts:

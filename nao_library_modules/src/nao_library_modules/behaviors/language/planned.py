@@ -1,4 +1,4 @@
-"""The behaviour store as the earlier functions of a chain will leave it."""
+"""The store as it will be when the functions of a chain before this one have been carried out."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ _UNKNOWN, _GONE = object(), object()
 
 
 class UnknownYet(Exception):
-    """An earlier function of the chain will record this behaviour: its content is not known yet."""
+    """A behaviour will be recorded by a function of the chain: nothing is known of it yet."""
 
 
 class PlannedStore:
-    """Replaces the store during checks."""
+    """What checks ask instead of the store."""
 
     def __init__(self, store: BehaviorStore) -> None:
         self._store = store
@@ -27,7 +27,11 @@ class PlannedStore:
 
     @classmethod
     def of(cls, store: BehaviorStore, context: dict[str, Any]) -> PlannedStore:
-        """The instance for the check of one chain; `context` lives as long as that check."""
+        """The one that belongs to the check of a chain.
+
+        Args:
+            context: Lives as long as the check.
+        """
         return context.setdefault(KEY, cls(store))
 
     def load(self, name: str) -> Behavior:
@@ -56,7 +60,7 @@ class PlannedStore:
         raise self._unknown(name)
 
     def require_of_user(self, name: str) -> None:
-        """Check that a behaviour can be changed.
+        """See that one can be changed.
 
         Raises:
             NaoError: As `BehaviorStore.require_of_user`.
@@ -68,10 +72,10 @@ class PlannedStore:
             self._store.require_of_user(name)
 
     def require_free(self, name: str, overwrite: bool, field: str = "str_param") -> None:
-        """Check that a behaviour can have this name.
+        """See that a name can be given to a behaviour.
 
         Raises:
-            BadGoal: The name is not allowed or taken.
+            BadGoal: If it will not do, or is taken.
         """
         self._store.path(name, field)
         change = self._changes.get(name)
@@ -84,11 +88,15 @@ class PlannedStore:
         self._store.require_free(name, field)
 
     def put(self, name: str, text: str | None) -> None:
-        """Add a behaviour; `text` is None if it will be recorded."""
+        """A behaviour will be there.
+
+        Args:
+            text: None if it is recorded.
+        """
         self._changes[name] = _UNKNOWN if text is None else text
 
     def remove(self, name: str) -> None:
-        """Remove the user's behaviour of this name."""
+        """The user's behaviour of a name will not be there any more."""
         self._changes[name] = _GONE
 
     def _unknown(self, name: str) -> NoSuchBehavior:

@@ -1,4 +1,4 @@
-"""What a program would do: its steps, boxes and waits, and what could not be checked."""
+"""What a program would do, told before it does it: its steps, boxes, waits, and what could not be checked."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ LONGEST = 200
 
 @dataclass(frozen=True)
 class Preview:
-    """Summary of a program.
+    """What there is to know of a program.
 
     Attributes:
-        steps: Path, name and fields of each step; repetitions by their first round.
-        boxes: Behaviours that it runs, including those inside boxes.
-        waits: Total s of the waits if nothing fails, repetitions as their first round; goals count as 0.
-        unchecked: Functions with fields that only their server can check, with its robot.
+        steps: Path of each step, what it is, and its fields; of repetitions the first round.
+        boxes: Behaviours that it runs, also by way of its boxes.
+        waits: s that its waits take if nothing fails, repetitions as their first round; goals take what they take.
+        unchecked: Functions with fields that only their server knows together with its robot.
     """
 
     steps: tuple[str, ...] = ()
@@ -46,6 +46,7 @@ class Preview:
 
 
 def preview_of(program: SequenceNode, tables: FunctionTables) -> Preview:
+    """Look at a program."""
     nodes = [node for part in program.parts for node in walk(part)]
     boxes = dict.fromkeys(node.box for node in nodes if isinstance(node, SequenceNode) and node.box)
     return Preview(
@@ -57,7 +58,7 @@ def preview_of(program: SequenceNode, tables: FunctionTables) -> Preview:
 
 
 def waits_of(node: Node) -> float:
-    """Total s of the waits of a node."""
+    """S that the waits of a node take."""
     own = _waits_inside(node)
     return own if node.limit is None else min(own, node.limit)
 
@@ -77,7 +78,7 @@ def _waits_inside(node: Node) -> float:
 
 
 def in_order_of_time(node: Node) -> Sequence[Node]:
-    """Parts of a node by start time if goals take no time; on a timeline that order may differ from the file's."""
+    """Parts of a node as they begin if goals take no time; of a timeline that may be another order than its own."""
     if not isinstance(node, OnTimeline):
         return node.parts
     begins, _ = _times_of(node)
@@ -85,15 +86,15 @@ def in_order_of_time(node: Node) -> Sequence[Node]:
 
 
 def _times_of(timeline: OnTimeline) -> tuple[dict[int, float], dict[int, float]]:
-    """Start and end of each timeline entry, s from its beginning. No entry waits for itself: that is checked.
+    """When the entries of a timeline begin and end, s from its beginning. None waits for itself: that was checked.
 
-    Entries that refer to missing (wrong) ones are left out.
+    Of one from which others are missing, as something is wrong with them, as much as can be told.
     """
     entries = timeline.nodes
     named = {name_of(entry): i for i, entry in enumerate(entries) if name_of(entry)}
     begins: dict[int, float] = {}
     ends: dict[int, float] = {}
-    while len(ends) < len(entries):  # one pass suffices if no entry refers to one below it
+    while len(ends) < len(entries):  # once is enough where nobody refers to what stands below
         for i, entry in enumerate(entries):
             other = named.get(entry.at.label) if entry.at.label else None
             if i in ends or not (other is None or other in ends):
@@ -133,7 +134,7 @@ def _messages(node: GoalNode) -> list[Any]:
 
 
 def _fields(message: Any) -> str:
-    """The non-default fields of a message in one line."""
+    """Fields of a message that say what its function does, in one line."""
     fields = {name: value for name, value in fields_of(message).items() if name not in ("function", "on_error", "time")}
     return ", ".join(f"{name} {dump_line(value)}" for name, value in fields.items())
 

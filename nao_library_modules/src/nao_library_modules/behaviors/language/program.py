@@ -1,4 +1,4 @@
-"""An executable behaviour: parameters have values, boxes are expanded, goals are built."""
+"""What runs: a behaviour with values for its parameters, its boxes unfolded, its goals built."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from .times import At
 
 @dataclass(frozen=True)
 class Node:
-    """An executable step.
+    """A step that can run.
 
     Attributes:
-        path: Includes boxes and rounds.
-        behavior: Behaviour whose file holds it.
+        path: Where it stands, boxes and rounds included.
+        behavior: File that it is in.
         policy: What happens when it fails.
         limit: s after which it is ended and counts as done; None for no limit.
-        at: Start, on a timeline.
-        file: Path of the file; empty: the text comes from no file.
-        line: Of the file; 0 if unknown.
+        at: When it begins, on a timeline.
+        file: Path of the file; empty: a text of no file.
+        line: Of the file; 0 if it is not known.
     """
 
     path: PathParts
@@ -37,24 +37,26 @@ class Node:
 
     @property
     def where(self) -> str:
-        """Its path as text."""
+        """Its path as people read it."""
         return path_text(self.path)
 
     @property
     def parts(self) -> tuple[Node, ...]:
-        """Nodes inside it; of a repetition those of the first round."""
+        """Nodes inside of it; of a repetition those of the first round."""
         return ()
 
 
 @dataclass(frozen=True)
 class GoalNode(Node):
+    """A goal for a server."""
+
     server: str = ""
     goal: Any = None
 
 
 @dataclass(frozen=True)
 class Pause(Node):
-    """A wait; duration in s."""
+    """Time that passes, s."""
 
     duration: float = 0.0
 
@@ -65,7 +67,7 @@ class BarrierNode(Node):
 
     Attributes:
         home: Path of the parallel whose branches meet here; None on a timeline.
-        branch: Number of its branch, counted from 1.
+        branch: Number of the branch that it is in, counted from 1.
     """
 
     name: str = ""
@@ -75,19 +77,22 @@ class BarrierNode(Node):
 
 @dataclass(frozen=True)
 class Group(Node):
+    """Nodes in a node."""
+
     nodes: Tuple[Node, ...] = ()
 
     @property
     def parts(self) -> tuple[Node, ...]:
+        """Its nodes."""
         return self.nodes
 
 
 @dataclass(frozen=True)
 class SequenceNode(Group):
-    """Nodes that run one after the other.
+    """One after the other.
 
     Attributes:
-        box: Behaviour of the box that it expands; empty: no box.
+        box: Behaviour that runs here, of a box; empty of what is none.
     """
 
     box: str = ""
@@ -98,15 +103,15 @@ class ParallelNode(Group):
 
 
 class OnTimeline(Group):
-    """Nodes that start at given times."""
+    """Each at its time."""
 
 
 @dataclass(frozen=True)
 class RepeatNode(Node):
-    """A sequence that runs several times.
+    """A sequence several times.
 
     Attributes:
-        round: Gives the sequence of a round, counted from 1.
+        round: The sequence of a round, counted from 1.
     """
 
     count: int = 0
@@ -114,12 +119,12 @@ class RepeatNode(Node):
 
     @property
     def parts(self) -> tuple[Node, ...]:
-        """The first round."""
+        """What it does in the first round."""
         return self.round(1).parts if self.count else ()
 
 
 def walk(node: Node) -> Iterator[Node]:
-    """A node and all inside it, in file order."""
+    """A node and all inside of it, in the order of the file."""
     yield node
     for part in node.parts:
         yield from walk(part)
@@ -128,11 +133,11 @@ def walk(node: Node) -> Iterator[Node]:
 def walk_rounds(
     node: Node, left_out: Callable[[PathParts], bool], rounds: tuple[tuple[int, int], ...] = ()
 ) -> Iterator[Node]:
-    """As `walk`, but with every round of a repetition; rounds after the first are cheap plain nodes.
+    """As `walk`, with all rounds of repetitions; those after the first one as plain nodes, which are quickly made.
 
     Args:
-        left_out: Whether to skip the repetition at a path with all its rounds.
-        rounds: Position in the path of `node`, and round number, for each round other than the first.
+        left_out: Whether the repetition at a path is to be passed over with all its rounds.
+        rounds: Where in its path `node` has the number of a round that is not the first one, and that number.
     """
     here = _in_rounds(node, rounds)
     yield here
@@ -148,7 +153,7 @@ def walk_rounds(
 
 
 def _in_rounds(node: Node, rounds: tuple[tuple[int, int], ...]) -> Node:
-    """A node of a first round, with its path moved to the given rounds."""
+    """A node of the first rounds as it stands in others."""
     if not rounds:
         return node
     path = list(node.path)
@@ -158,10 +163,10 @@ def _in_rounds(node: Node, rounds: tuple[tuple[int, int], ...]) -> Node:
 
 
 def servers_in(node: Node) -> dict[str, None]:
-    """Servers that a node uses, in order of first use."""
+    """Servers that a node uses, in the order in which they come."""
     return dict.fromkeys(each.server for each in walk(node) if isinstance(each, GoalNode))
 
 
 def name_of(node: Node) -> str:
-    """The name by which timeline times refer to it."""
+    """What times on a timeline may refer to."""
     return node.name if isinstance(node, BarrierNode) else node.label

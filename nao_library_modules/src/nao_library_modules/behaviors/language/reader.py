@@ -26,14 +26,14 @@ PARAMETER_KEYS = ("default", "help", "choices", "min", "max", "unit")
 
 
 def read(text: str, name: str, file: str = "") -> Behavior:
-    """Read a behaviour. Servers, functions, fields and other behaviours are unknown here: see `check`.
+    """Read a behaviour. Nothing is known here of servers, functions, fields and other behaviours: see `check`.
 
     Args:
         text: YAML, see docs/behaviors.md.
-        file: Path of the source file, for errors.
+        file: Path of the file that the text is from, for errors.
 
     Raises:
-        BehaviorError: Holds every problem found, and the behaviour as far as it could be read.
+        BehaviorError: With everything that is wrong, and the behaviour as far as it could be read.
     """
     problems: list[Problem] = []
     behavior = None
@@ -50,10 +50,10 @@ def read(text: str, name: str, file: str = "") -> Behavior:
 
 
 def require_name(name: str, field: str = "str_param") -> str:
-    """Return the name if a behaviour may have it: its file stays inside its folder.
+    """A name that a behaviour may have: it stays inside its folder.
 
     Raises:
-        BadGoal: The name is not allowed.
+        BadGoal: If it will not do.
     """
     if not NAME.fullmatch(name):
         raise BadGoal(field, name, NAME_ALLOWED, problem=f"{name[:120]!r} is no name for a behavior")
@@ -103,7 +103,7 @@ def _parameters(content: Any, line: int, problems: list[Problem]) -> dict[str, P
         if wrong:
             there = line_in(content, name)
             problems.extend(Problem(f"parameter {name}", str(error), there) for error in wrong)
-            # The steps are read as if the parameter existed, so that its use is no second mistake.
+            # The steps are read as if it were there: that they use it is no further mistake.
             parameters[name] = Parameter(str(name), UNKNOWN, "", line=there)
     return parameters
 

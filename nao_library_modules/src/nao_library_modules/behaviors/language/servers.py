@@ -1,4 +1,4 @@
-"""The servers that steps may use: their actions, functions, and checks that need no robot."""
+"""The servers that steps may use: their actions, their functions, and what can be checked of a goal without a robot."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NotDescribed if no server of that name runs."""
 
 
 class NotDescribed(NaoError):  # noqa: N818  it says what became of the question
-    """A server did not describe its functions."""
+    """A server did not tell what its functions are."""
 
 
 Running = Callable[[], Iterable[str]]
@@ -37,18 +37,19 @@ Running = Callable[[], Iterable[str]]
 
 
 def nobody_describes(_server: str, _functions: Sequence[str] | None) -> DescribeFunctionsResponse:
-    """A `Describe` for use without servers."""
+    """A `Describe` for where no servers are."""
     raise NotDescribed("no server was asked")
 
 
 class FunctionTables:
-    """Functions of the servers, and checks that need no robot.
+    """What the servers can do: functions, and checks that need no robot.
 
-    Functions of this package's servers are read from their classes on first use; for other servers and unknown
-    functions the running server is asked. Safe from any thread; two concurrent calls do the same work twice.
+    Functions of the servers of this package are read from their classes, each when it is asked for the first time. A
+    server of another name, and a function that one of these does not have, is asked of the server that runs. Any thread
+    may ask; two that come at the same time do the same work.
 
     Args:
-        describe: Has a running server describe its functions.
+        describe: Has a server that runs describe its functions.
     """
 
     def __init__(self, describe: Describe = nobody_describes, running: Running = tuple) -> None:
@@ -59,14 +60,14 @@ class FunctionTables:
         self._others: dict[str, ServerType] = {}
 
     def server(self, name: str, field: str = "step") -> ServerType:
-        """Types of a server that steps may use.
+        """The types of a server that steps may use.
 
         Args:
             name: Its relative name.
-            field: Source of the name, for the error.
+            field: What names it, for the error.
 
         Raises:
-            BadGoal: There is none of that name.
+            BadGoal: If there is none of that name.
         """
         if name in NAMES:
             return server_type(name)
@@ -83,7 +84,7 @@ class FunctionTables:
         return self._others[name]
 
     def fields(self, server: ServerType, function: str) -> list[str]:
-        """Fields that a function takes, including those that all functions have; empty: there is no such function."""
+        """Fields that a function of a server takes, with those that all functions have; empty: there is none such."""
         known = self._functions(server)
         if function in known:
             taken = fields_taken(known[function], server.function.__slots__)
@@ -95,15 +96,16 @@ class FunctionTables:
         return [*taken, *(name for name in COMMON if name in server.function.__slots__)]
 
     def check(self, server: ServerType, messages: Sequence[Any]) -> tuple[list[FunctionFailed], list[int]]:
-        """Check a goal without a robot, and regardless of the effect of earlier goals.
+        """Check a goal as far as that is possible without any robot and without what goals before it have done.
 
         Returns:
-            Failures that hold for any robot; and positions, from 1, of functions that only the server can fully check.
+            What is wrong with it, whichever robot it is for; and the places, counted from 1, of the functions whose
+            checks only the server can finish.
         """
         if server.ours:
             failures = self._chain(server).failures(messages)
         else:
-            # Unknown here: all its functions are asked of the running server.
+            # Nothing of it is known here: all its functions are asked of the server that runs.
             names = [message.function for message in messages]
             failures = [FunctionFailed(i, name, UnknownFunction(name, [])) for i, name in enumerate(names, start=1)]
         failures = [self._checked_there(server, failed) for failed in failures]
@@ -111,7 +113,11 @@ class FunctionTables:
         return [failed for failed in failures if failed.position not in unfinished], unfinished
 
     def check_goals(self, name: str, goals: Sequence[Any]) -> GoalCheck:
-        """Check goals, in sending order, as their server would for a robot with the defaults of its family."""
+        """Check goals as their server would for a robot that is as all of its family are.
+
+        Args:
+            goals: In the order in which they would be sent.
+        """
         server = self.server(name)
         if not server.ours:
             unchecked = [
@@ -129,7 +135,7 @@ class FunctionTables:
         )
 
     def _checked_there(self, server: ServerType, failed: FunctionFailed) -> FunctionFailed:
-        """Return the failure; if only the running server has the function, mark it as one for that server to check."""
+        """A failure as it is; one of a function that only the server that runs has, as its to check."""
         if not isinstance(failed.cause, UnknownFunction):
             return failed
         if self._described(server, [failed.function]):
@@ -145,7 +151,7 @@ class FunctionTables:
         return FunctionFailed(failed.position, failed.function, cause)
 
     def _described(self, server: ServerType, functions: Sequence[str]) -> Mapping[str, Any]:
-        """Functions of a running server by name, as FunctionDescription; empty if it does not run."""
+        """Functions of a server that runs by name, as FunctionDescription; none if it does not."""
         try:
             return {each.name: each for each in self._describe(server.name, functions).functions}
         except NotDescribed:
@@ -168,11 +174,11 @@ class FunctionTables:
 
 
 class _AtTheServer(Exception):  # noqa: N818  a signal: the rest of a check can only be done by the server
-    """A check needs a value that only the running server has."""
+    """A check asks for something that is only known where the server runs."""
 
 
 class _Elsewhere:
-    """Stands for the server in its checks: every question raises."""
+    """Stands for the server in its checks: it knows nothing."""
 
     def __getattr__(self, name: str) -> Any:
         raise _AtTheServer(name)

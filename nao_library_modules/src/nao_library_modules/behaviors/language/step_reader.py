@@ -1,4 +1,4 @@
-"""Reads the steps of a behaviour: their kinds and keys. No ROS."""
+"""Reads the steps of a behaviour: which kind each is, and its keys. No ROS."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _FUNCTION = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)\.([A-Za-z_][A-Za-z0-9_]*)")
 
 
 class StepReader:
-    """Reads steps, and collects problems.
+    """Reads steps, and notes what is wrong with them.
 
     Args:
         parameters: Names that `${}` may use.
@@ -62,11 +62,11 @@ class StepReader:
         }
 
     def steps(self, content: list[Any], path: PathParts, separator: str = ".", timed: bool = False) -> tuple[Step, ...]:
-        """The steps of a list. An unreadable step is reported, and replaced by an `Unreadable`.
+        """The steps of a list. What cannot be read is noted, and nothing is known of it.
 
         Args:
-            separator: Between `path` and the step numbers.
-            timed: The steps are timeline entries.
+            separator: Between that path and their numbers.
+            timed: Whether they are entries of a timeline.
         """
         steps = []
         for number, each in enumerate(content, start=1):
@@ -218,7 +218,7 @@ class StepReader:
         return FailurePolicy.of(value)
 
     def _number(self, key: str, value: Any, unit: str) -> Any:
-        """A number >= 0, or an expression that will be one."""
+        """A number of 0 or more, or an expression that will be one."""
         if isinstance(value, str) and value.strip().startswith("${"):
             return value.strip() if self._known_names(key, value) else UNKNOWN
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value < 1e9:
@@ -226,7 +226,7 @@ class StepReader:
         return value
 
     def _known_names(self, where: str, value: Any) -> bool:
-        """Whether all names in a value are known; reports unknown names and unreadable expressions."""
+        """Whether all names in a value are known; those that are not are noted, and so is what cannot be read."""
         wrong: list[BadGoal] = []
         try:
             for name in names_in(value):

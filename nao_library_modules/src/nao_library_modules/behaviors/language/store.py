@@ -1,4 +1,4 @@
-"""Behaviours as files: the user's in a folder of their own, and those shipped with the library."""
+"""Behaviours as files: those of the user in a folder of theirs, and those that come with the library."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ SUFFIX = ".yaml"
 
 
 class BehaviorStore:
-    """Behaviours by name. The user's hides the library's of the same name.
+    """Behaviours by name. One of the user's counts instead of one of the library's.
 
     Args:
-        folder: The user's; created on the first save.
-        shipped: The library's; read only.
+        folder: Of the user; made when the first one is saved.
+        shipped: Of the library; never written to.
     """
 
     def __init__(self, folder: Path, shipped: Path) -> None:
@@ -35,41 +35,49 @@ class BehaviorStore:
         return sorted({*_names(self.folder), *_names(self.shipped)})
 
     def text(self, name: str) -> str:
-        """The text of a behaviour's file.
+        """The text of a file.
 
         Raises:
-            NoSuchBehavior: There is none of that name.
-            BehaviorError: The file cannot be read.
+            NoSuchBehavior: If there is none of that name.
+            BehaviorError: If the file cannot be read.
         """
         return self._read(self._existing(name))
 
     def shipped_text(self, name: str) -> str:
-        """As `text`, of a behaviour shipped with the library."""
+        """The text of a file that comes with the library.
+
+        Raises:
+            NoSuchBehavior: If there is none of that name.
+            BehaviorError: If the file cannot be read.
+        """
         if not self.is_shipped(name):
             raise NoSuchBehavior(name, self.names())
         return self._read(self.shipped / f"{name}{SUFFIX}")
 
     def load(self, name: str) -> Behavior:
-        """A behaviour, read without knowledge of servers and boxes.
+        """A behaviour, as far as it can be read without knowing servers and boxes.
 
         Raises:
-            NoSuchBehavior: There is none of that name.
-            BehaviorError: It has a problem.
+            NoSuchBehavior: If there is none of that name.
+            BehaviorError: If there is something wrong with it.
         """
         path = self._existing(name)
         return read(self._read(path), name, str(path))
 
     def exists(self, name: str) -> bool:
+        """Whether there is one of that name."""
         return self.of_user(name) or self.is_shipped(name)
 
     def is_shipped(self, name: str) -> bool:
+        """Whether one of that name comes with the library."""
         return (self.shipped / f"{require_name(name)}{SUFFIX}").is_file()
 
     def of_user(self, name: str) -> bool:
+        """Whether there is one of that name in the folder of the user."""
         return self.path(name).is_file()
 
     def users_of(self, name: str) -> list[str]:
-        """Behaviours that use this one as a box, as far as their files can be read."""
+        """Behaviours that have one as a box, as far as their files can be read."""
         users = []
         for other in self.names():
             try:
@@ -81,16 +89,20 @@ class BehaviorStore:
         return users
 
     def save(self, name: str, text: str, overwrite: bool = False, numbered: bool = False) -> Path:
-        """Write a behaviour atomically, and return its file.
+        """Write a behaviour; one of that name is replaced as a whole, never left half written.
 
         Args:
-            text: Written unchecked.
-            overwrite: Replace one of the user's.
-            numbered: If the name is taken and must not be replaced, use name-2, name-3, ...
+            name: A name that a behaviour may have.
+            text: What to write; it is not looked at.
+            overwrite: Whether one of the user's may be replaced.
+            numbered: Whether, where it may not, it becomes name-2, name-3, ...
+
+        Returns:
+            Its file.
 
         Raises:
-            BadGoal: The name is not allowed or taken.
-            FileTrouble: The file cannot be written.
+            BadGoal: If the name will not do or is taken.
+            FileTrouble: If the file cannot be written.
         """
         path = self.path(name)
         if not overwrite and not numbered:
@@ -103,11 +115,11 @@ class BehaviorStore:
             ) from error
 
     def rename(self, name: str, new_name: str, overwrite: bool = False) -> Path:
-        """Rename one of the user's behaviours, and return its file.
+        """Give one of the user's behaviours another name; answers its file.
 
         Raises:
-            NoSuchBehavior: There is none of that name.
-            BadGoal: It is one of the library's, or the new name is not allowed.
+            NoSuchBehavior: If there is none of that name.
+            BadGoal: If it is one of the library's, or the new name will not do.
         """
         path, target = self.require_of_user(name), self.path(new_name, "new_name")
         if not overwrite:
@@ -116,14 +128,14 @@ class BehaviorStore:
             given = os.replace(path, target) is None if overwrite else give_name(path, target)
         except OSError as error:
             raise BadGoal("new_name", new_name, "a folder to write to", problem=str(error)) from error
-        return target if given else self.rename(name, new_name)  # else the new name was taken a moment ago
+        return target if given else self.rename(name, new_name)  # one of that name came a moment ago
 
     def delete(self, name: str) -> None:
         """Delete one of the user's behaviours.
 
         Raises:
-            NoSuchBehavior: There is none of that name.
-            BadGoal: It is one of the library's.
+            NoSuchBehavior: If there is none of that name.
+            BadGoal: If it is one of the library's.
         """
         try:
             self.require_of_user(name).unlink()
@@ -131,10 +143,10 @@ class BehaviorStore:
             raise BadGoal("str_param", name, "a folder to write to", problem=str(error)) from error
 
     def require_free(self, name: str, field: str = "str_param") -> None:
-        """Check that the user has no behaviour of this name. One of the library's may: it is hidden, not replaced.
+        """See that no behaviour of the user has a name. One of the library may: it is not replaced, only put behind.
 
         Raises:
-            BadGoal: The user has one.
+            BadGoal: If one has.
         """
         if self.path(name, field).is_file():
             problem = f"there is a behavior {name!r} already"
@@ -144,8 +156,8 @@ class BehaviorStore:
         """File of one of the user's behaviours.
 
         Raises:
-            NoSuchBehavior: There is none of that name.
-            BadGoal: It is one of the library's.
+            NoSuchBehavior: If there is none of that name.
+            BadGoal: If it is one of the library's.
         """
         if self.of_user(name):
             return self.path(name)
@@ -155,10 +167,10 @@ class BehaviorStore:
         raise NoSuchBehavior(name, self.names())
 
     def path(self, name: str, field: str = "str_param") -> Path:
-        """File of a user's behaviour, whether it exists or not.
+        """File of a behaviour of the user, whether it is there or not.
 
         Raises:
-            BadGoal: The name is not allowed.
+            BadGoal: If the name will not do.
         """
         return self.folder / f"{require_name(name, field)}{SUFFIX}"
 

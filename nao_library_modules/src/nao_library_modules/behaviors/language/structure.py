@@ -1,4 +1,4 @@
-"""Relations between the steps of a file: labels, times, barriers. No ROS."""
+"""What steps have to do with each other within a file: labels, times, barriers. No ROS."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from .model import Barrier, Behavior, Parallel, PathParts, Repeat, Step, Timelin
 
 
 def structure_problems(behavior: Behavior) -> list[Problem]:
-    """Problems of labels, times and barriers, except those that an unreadable step may cause."""
+    """What is wrong with labels, times and barriers of a behaviour; nothing that a step not read whole may cause."""
     return [*_labels(behavior), *_times(behavior.body), *_barriers(behavior.body, None)]
 
 
 def walk(step: Step) -> Iterator[Step]:
-    """A step and all inside it, in file order."""
+    """A step and all inside of it, in the order of the file."""
     yield step
     for part in step.parts:
         yield from walk(part)
 
 
 def name_on_timeline(step: Step) -> str:
-    """The name by which times refer to it: the label of an entry, the name of a barrier."""
+    """What times may refer to: the label of an entry, the name of a barrier."""
     return step.name if isinstance(step, Barrier) else step.label
 
 
@@ -31,7 +31,7 @@ def barriers_in(step: Step) -> tuple[str, ...]:
     if isinstance(step, Barrier):
         return (step.name,)
     if isinstance(step, (Parallel, Timeline)):
-        return ()  # barriers inside belong to that step
+        return ()  # those inside are its own
     return tuple(name for part in step.parts for name in barriers_in(part))
 
 
@@ -85,7 +85,12 @@ def _times_of(timeline: Timeline) -> Iterator[Problem]:
 
 
 def _barriers(step: Step, home: Step | None) -> Iterator[Problem]:
-    """Barriers belong on timelines and in branches of a parallel `home`, where every branch meets each of them once."""
+    """Barriers have a meaning on timelines and in branches of a parallel, and there every branch meets them once.
+
+    Args:
+        step: Where to look.
+        home: The parallel that barriers inside belong to.
+    """
     if isinstance(step, Parallel):
         if all(each.whole for branch in step.steps for each in walk(branch)):
             yield from _orders(step, [barriers_in(branch) for branch in step.steps])
@@ -115,7 +120,7 @@ def _orders(parallel: Parallel, orders: list[tuple[str, ...]]) -> Iterator[Probl
     for name, count in branches_of.items():
         if count == 1:
             yield _problem(parallel, f"only one branch comes to the barrier {name!r}: it would wait for nobody")
-    # Branches that meet the same barriers in different orders deadlock; so do longer cycles.
+    # Two branches that come to the same barriers in another order wait for each other for ever; so do longer circles.
     open_orders = [list(names) for names in orders]
     while any(open_orders):
         heads = [names[0] for names in open_orders if names]

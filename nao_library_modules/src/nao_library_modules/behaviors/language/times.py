@@ -1,4 +1,4 @@
-"""Start of a timeline entry: `1.5`, `eyes`, `eyes.end`, `eyes.end + 0.5`, `${pause}`. Pure."""
+"""When an entry of a timeline begins: `1.5`, `eyes`, `eyes.end`, `eyes.end + 0.5`, `${pause}`. Pure."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ ALLOWED = "s from the beginning of the timeline, LABEL, LABEL.end, or one of the
 
 @dataclass(frozen=True)
 class At:
-    """Start of an entry.
+    """When an entry begins.
 
     Attributes:
         offset: s, >= 0, from the beginning of the timeline or from the label; may hold `${}`.
         label: Entry or barrier that it depends on; empty: the beginning of the timeline.
-        of_end: Relative to the end of that entry, not its beginning.
+        of_end: Whether it is the end of that entry that counts, not its beginning.
     """
 
     offset: Any = 0.0
@@ -29,10 +29,10 @@ class At:
 
 
 def at_of(value: Any) -> At:
-    """Parse a value of `at`.
+    """What a value of `at` means.
 
     Raises:
-        BadGoal: It is no such value.
+        BadGoal: If it means nothing.
     """
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return At(value)

@@ -16,10 +16,10 @@ _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def step_of(server: str, goal: Any) -> dict[str, Any]:
-    """Convert a goal into a step of a file: a function, or a chain of them.
+    """A goal as a step of a file: a function, or a chain of them.
 
     Raises:
-        BadGoal: Steps may not use the server.
+        BadGoal: If steps may not use the server.
     """
     if server == OWN:
         raise BadGoal("server", server, "another one", "a behavior that sends goals to NaoBehavior would end itself")
@@ -32,6 +32,7 @@ def step_of(server: str, goal: Any) -> dict[str, Any]:
 
 
 def text_of(help_: str, steps: Sequence[Mapping[str, Any]], tags: Sequence[str] = ()) -> str:
+    """The text of a behaviour without parameters."""
     content: dict[str, Any] = {"help": help_}
     if tags:
         content["tags"] = list(tags)
@@ -39,9 +40,9 @@ def text_of(help_: str, steps: Sequence[Mapping[str, Any]], tags: Sequence[str] 
 
 
 def from_goal(server: str, goal: Any, help_: str = "") -> str:
-    """Write one goal as a behaviour; store the text with `store.save(name, text)`.
+    """Write down one goal as a behaviour; what is returned can be stored: `store.save(name, text)`.
 
     Raises:
-        BadGoal: Steps may not use the server.
+        BadGoal: If steps may not use the server.
     """
     return text_of(help_ or f"A goal of {server}.", [step_of(server, goal)])

@@ -1,4 +1,4 @@
-"""Strict YAML of behaviours: no repeated key, bounded size, and every mapping knows its line."""
+"""YAML of behaviours, read strictly: no key twice, nothing endless, and every mapping knows its line."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Items(list):  # type: ignore[type-arg]
 
     Attributes:
         line: Where it begins, counted from 1.
-        lines: Position, counted from 0 -> its line.
+        lines: Position, counted from 0 -> line of what stands there.
     """
 
     line = 0
@@ -45,16 +45,16 @@ class Items(list):  # type: ignore[type-arg]
 
 
 def line_of(value: Any) -> int:
-    """Line of a value of a file; 0 if unknown."""
+    """Line of a value of a file; 0 if it is not known."""
     return getattr(value, "line", 0)
 
 
 def line_in(value: Any, key: Any) -> int:
-    """Line of a key of a mapping, or of a position in a list, counted from 0; 0 if unknown."""
+    """Line of a key of a mapping, or of a place in a list, counted from 0; 0 if it is not known."""
     return getattr(value, "lines", {}).get(key, 0)
 
 
-# As in YAML 1.2: on, off, yes and no are words (NaoLights has functions of these names), 1e3 is a number, and
+# YAML 1.2's: on, off, yes and no are words as any other (NaoLights has functions of these names), 1e3 is a number, and
 # 1:30 and 2024-01-01 are texts.
 _PLAIN = (
     ("bool", re.compile(r"true|True|TRUE|false|False|FALSE"), "tTfF"),
@@ -81,6 +81,8 @@ def _resolvers() -> dict[Any, list[tuple[str, re.Pattern[str]]]]:
 
 
 class _Loader(ShallowLoader):
+    """Plain values only."""
+
     yaml_implicit_resolvers = _resolvers()
 
 
@@ -115,7 +117,7 @@ def load(text: str, name: str) -> Any:
     """The value of a text.
 
     Raises:
-        BehaviorError: The text is no YAML, or too large.
+        BehaviorError: If it is no YAML, or too much of it.
     """
     if len(text) > LONGEST:
         raise BehaviorError(name, [Problem("", f"the file has {len(text)} characters: at most {LONGEST} are read")])
@@ -129,14 +131,14 @@ def load(text: str, name: str) -> Any:
 
 
 def _in_a_line(error: Exception) -> tuple[str, int]:
-    """Message of the error, and its line; 0 if unknown."""
+    """What is wrong, and in which line; 0 if that is not known."""
     mark = getattr(error, "problem_mark", None)
     problem = getattr(error, "problem", None) or str(error)
     return " ".join(str(problem).split()), 0 if mark is None else mark.line + 1
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes no anchors: people edit these files. Quotes texts that YAML 1.1 or 1.2 would read as another type."""
+    """Without anchors: people read and change these files. Quotes what YAML 1.1 or 1.2 would not take for a text."""
 
     yaml_implicit_resolvers = {
         first: [*yaml.SafeDumper.yaml_implicit_resolvers.get(first, []), *_resolvers().get(first, [])]
@@ -157,5 +159,6 @@ def dump(value: Any) -> str:
 
 
 def dump_line(value: Any) -> str:
+    """A value as YAML in one line."""
     text = yaml.dump(value, Dumper=_Dumper, default_flow_style=True, sort_keys=False, width=10**9, allow_unicode=True)
     return text.replace("\n...\n", "").strip()

@@ -45,7 +45,7 @@ def _the_stored(settings: CliSettings, name: str) -> dict[str, Any]:
 
 
 def _file_of(name: str) -> str:
-    """A hint if the current folder has a file with the name of the behaviour; else empty."""
+    """A hint to the file that is beside the user and called like a behaviour; nothing where there is none."""
     return f": did you mean the file {name + SUFFIX}?" if Path(name + SUFFIX).is_file() else ""
 
 
@@ -69,7 +69,7 @@ def run_command(context: click.Context, name: str, parameters: tuple[str, ...]) 
     if not settings.json:
         from ...behaviors.language.errors import place
 
-        # A behaviour continues after steps that may fail; progress has reported them.
+        # A behaviour goes on after steps that may fail; progress has told of the others.
         for step in end.result.get("steps", []):
             if step["error"]:
                 told = f"{step['path']} {step['what']} {step['state']}: {step['error']}"
@@ -113,7 +113,7 @@ def check_command(context: click.Context, what: str, parameters: tuple[str, ...]
     which = {"text": _text_of(what), "file": what} if of_file else {"name": what}
     request = ListBehaviorsRequest(parameters=list(parameters), validate=True, **which)
     try:
-        # The servers are asked one after the other, each with its own time limit.
+        # The servers of its goals are asked in turn, and have their time each.
         answer = settings.stack.list_behaviors(request, patient=True)
     except StackMissing:
         from ..offline_check import check_offline

@@ -137,6 +137,7 @@ def walk_command(context: click.Context, x: float, y: float, theta: float) -> No
 
 
 def _stands(settings: Any) -> bool:
+    """Whether the robot is awake and on its feet."""
     from ..robot_link import DirectRobot
 
     with DirectRobot(settings.stack.robot_address()) as robot:

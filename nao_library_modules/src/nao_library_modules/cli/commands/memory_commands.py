@@ -90,7 +90,7 @@ def watch_command(context: click.Context, names: tuple[str, ...], count: int | N
     with DirectRobot(settings.stack.robot_address()) as robot:
         wanted = robot.matching(names)
         known = frozenset(robot.events())
-        for text in robot.unknown(names):  # they may appear later, or be misspelt
+        for text in robot.unknown(names):  # they may come, or be misspelt
             click.echo(text, err=True)
         with _Watch(robot, [n for n in wanted if n in known], [n for n in wanted if n not in known], rate) as watch:
             _tell(watch, settings, count)
@@ -115,7 +115,7 @@ def _tell(watch: _Watch, settings: Any, count: int | None) -> None:
 
 
 class _Watch:
-    """Event subscriptions, and a thread that watches the other values, for a `with` block."""
+    """Subscriptions to events, and a thread that looks at the other values, for a `with` block."""
 
     def __init__(self, robot: Any, events: list[str], keys: list[str], rate: float) -> None:
         self._robot = robot
@@ -127,7 +127,10 @@ class _Watch:
         self._links: list[tuple[Any, Any]] = []
 
     def next(self, limit: float | None) -> tuple[str, Any]:
-        """Wait up to `limit` s (None: for ever) for the next name and value.
+        """The next name and value.
+
+        Args:
+            limit: s to wait for it; None for ever.
 
         Raises:
             queue.Empty: None came in time.
@@ -158,7 +161,7 @@ class _Watch:
         last: dict[str, Any] = {}
         while not self._ended.is_set():
             try:
-                # Also called without keys: the call shows whether the robot still answers.
+                # Without keys as well: it tells whether the robot is still there.
                 values = self._robot.memory("getListData", self._keys) if self._keys else self._robot.memory("ping")
             except click.ClickException as error:
                 self._came.put(StackMissing(error.message))

@@ -36,7 +36,7 @@ def stop_command(context: click.Context) -> None:
 
 
 def _cancel(topics: list[str]) -> None:
-    """Cancel all goals of each server, as soon as it listens."""
+    """Send each server a cancel for all its goals, as soon as it listens."""
     import rospy
     from actionlib_msgs.msg import GoalID
 
@@ -55,7 +55,7 @@ def _cancel(topics: list[str]) -> None:
 
 
 def _stop_walk(settings: object) -> str:
-    """Stop a walk that belongs to no goal, and return a line about the outcome."""
+    """Stop a walk that no goal holds any more; tells how that went."""
     from ..robot_link import DirectRobot
 
     try:

@@ -1,4 +1,4 @@
-"""State shared by the functions of NaoVision: the cameras, and the results of a chain."""
+"""State that the functions of NaoVision share: which cameras there are, and what a chain has seen and taken."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ CAMERA_TOPICS = {"top": "nao_robot/camera/top/image_raw", "bottom": "nao_robot/c
 
 
 class ChainResults(Part):
-    """What the functions of one chain have detected and recorded, for the result message."""
+    """What the functions of one chain have seen and taken, for the result message."""
 
     def __init__(self) -> None:
         self.clear()
@@ -33,7 +33,7 @@ class ChainResults(Part):
     def clear(self) -> None:
         self.objects: list[SeenObject] = []
         self.pictures: list[PictureFile] = []
-        self.recordings: list[RecordedVideo] = []  # complete ones
+        self.recordings: list[RecordedVideo] = []  # those that are complete
         self.threads: list[VisionThread] = []
 
     def fill(self, result: Any) -> None:
@@ -47,39 +47,39 @@ class Cameras(Part):
     left_by_goals = frozenset({"topics"})
 
     def __init__(self, module: NaoBasic, topics: Any, camera_topics: Mapping[str, str], namespace: str) -> None:
-        """Make the top camera the active one.
+        """Begin with the top camera as the active one.
 
         Args:
-            module: Its launch file starts the cameras.
-            topics: VisionTopics or a substitute.
+            module: Its launch file brings the cameras.
+            topics: VisionTopics, or what takes its place.
             camera_topics: Camera -> topic of its pictures.
-            namespace: Of the node, and so of what the launch file starts.
+            namespace: Of the node, and so of what the launch file brings.
         """
         self.active = "top"
         self.topics = topics
         self._module = module
         self._camera_topics = camera_topics
         self._namespace = namespace
-        self._launchpath: LaunchPath | None = None  # the launch file whose nodes and images are known
+        self._launchpath: LaunchPath | None = None  # the launch file that nodes and images are of
         self._nodes: frozenset[str] = frozenset()
         self._images: list[str] = []
 
     def name(self, camera: str) -> str:
-        """Name of the camera in a goal; empty: the active one."""
+        """Name of a camera as a goal has it; of the active one if that is empty."""
         return camera_name(camera, self.active)
 
     def source(self, camera: str, topic: str) -> str:
-        """Full name of the topic in a goal, else of the topic of its camera."""
+        """Full name of the topic that a goal names, or of that of the camera that it names."""
         return self.topics.resolved(topic.strip() or self.topic_of(self.name(camera)))
 
     def topic_of(self, camera: str) -> str:
         """Topic of a camera's pictures.
 
-        With a user's launch file, this is the robot's own topic if it is among the images of that file; else images
-        named image_raw come first, then the others by name.
+        A user's launch file brings its cameras: the topic of the robot's own if that is among its images, else those
+        named image_raw first, then by name.
 
         Raises:
-            BadGoal: The nodes of the launch file publish no image for it.
+            BadGoal: If the nodes of the launch file publish no image for it.
         """
         topic, launchpath = self._camera_topics[camera], self._module.launchpath
         if tuple(launchpath) == CAMERAS_LAUNCH or topic != CAMERA_TOPICS[camera]:
@@ -93,7 +93,7 @@ class Cameras(Part):
             published = self.topics.images_of(self._nodes)
             if self.topics.resolved(topic) in published:
                 return topic
-            # New images are appended: a camera keeps its topic.
+            # A later image stands behind the earlier ones: a camera keeps its topic.
             self._images += [image for image in published if image not in self._images]
             if len(self._images) > place:
                 return self._images[place]

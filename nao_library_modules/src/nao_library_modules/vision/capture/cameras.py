@@ -59,10 +59,10 @@ _OTHERWISE.update(setdefaultparams="setAllParametersToDefault")
 
 
 def camera_name(text: str, active: str) -> str:
-    """Camera name from a name or NAOqi's number in a goal; the active one for an empty text.
+    """Name of a camera from its name or NAOqi's number in a goal; the active one for an empty text.
 
     Raises:
-        BadGoal: There is no such camera.
+        BadGoal: If there is no such camera.
     """
     bare = text.strip().lower()
     if not bare:
@@ -75,10 +75,10 @@ def camera_name(text: str, active: str) -> str:
 
 
 def resolution_name(text: str) -> str:
-    """Resolution name without the k (VGA), from a name, NAOqi's number or 640x480.
+    """Name of a resolution, without the k (VGA), from its name, NAOqi's number or 640x480.
 
     Raises:
-        BadGoal: There is no such resolution.
+        BadGoal: If there is no such resolution.
     """
     bare = re.sub(r"\s", "", text).lower()
     for name, (number, width, height) in RESOLUTIONS.items():
@@ -89,7 +89,7 @@ def resolution_name(text: str) -> str:
 
 
 def resolution_of(number: int) -> str:
-    """Name of a resolution by NAOqi's number; the number itself if it has none."""
+    """Name of a resolution by NAOqi's number; the number itself where it has none."""
     return next((name for name, (own, *_) in RESOLUTIONS.items() if own == number), str(number))
 
 
@@ -97,7 +97,7 @@ def parameter_number(text: str) -> int:
     """NAOqi's number of a parameter from brightness, kCameraBrightnessID or 0.
 
     Raises:
-        BadGoal: There is no such parameter, or another function sets it.
+        BadGoal: If there is no such parameter, or another function sets it.
     """
     bare = re.sub(r"^k?camera_?|_?id$", "", text.strip(), flags=re.IGNORECASE).replace("_", "").lower()
     if bare in _OTHERWISE:

@@ -41,7 +41,7 @@ WHOLE = "one whole number"
 
 
 def _require_id(name: str, ident: str) -> None:
-    """Check that a name can be part of file and topic names."""
+    """Check that a name can be part of names of files and topics."""
     bare = require_text(name, ident, IDS)
     if len(bare) > LONGEST_ID or "/" in bare or CONTROL.search(bare) or bare.startswith((".", "~")):
         raise BadGoal(name, ident, IDS)

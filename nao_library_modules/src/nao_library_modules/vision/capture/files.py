@@ -23,10 +23,11 @@ class VisionFiles:
     """Files of one server. Any thread."""
 
     def __init__(self, folder: str) -> None:
-        """Remove temporary files of killed servers; the folder is not created yet.
+        """Remove what killed servers have left; nothing is made yet.
 
         Args:
-            folder: "~" is the user's home; relative to the working directory, which is ROS_HOME for a launched node.
+            folder: "~" stands for the home of the user; relative to the working directory, which is ROS_HOME for a
+                node that a launch file started.
         """
         self.folder = Path(folder).expanduser().absolute()
         self._lock = threading.Lock()
@@ -34,10 +35,10 @@ class VisionFiles:
         tidy(self.folder)
 
     def file_type(self, name: str, file_type: str, known: Sequence[str]) -> str:
-        """File type from the field, the suffix of the name, or the first known one.
+        """Type of a file: that of the field, of the end of the name, or the first known one.
 
         Raises:
-            BadGoal: It is unknown, or name and field differ.
+            BadGoal: It is not known, or name and field differ.
         """
         field = known_type("file_type", file_type, known)
         end = known_type("str_param", Path(name.strip()).suffix, known)
@@ -47,14 +48,14 @@ class VisionFiles:
         return field or end or known[0]
 
     def path(self, name: str, file_type: str) -> Path:
-        """Path of a file that a goal names; its folder may not exist yet.
+        """Path of a file that a goal names; its folder may have to be made.
 
         Args:
             name: Relative to the folder, or absolute and inside it, with or without a suffix.
             file_type: Suffix where the name has none.
 
         Raises:
-            BadGoal: It leads out of the folder or is no valid name.
+            BadGoal: It leads out of the folder or cannot be a name.
         """
         allowed = f"a name of a file in {self.folder}"
         bare = name.strip()
@@ -85,10 +86,10 @@ class VisionFiles:
             raise BadGoal("str_param", path.name, "another name, or overwrite", problem=f"{path} is there already")
 
     def plan(self, path: Path, overwrite: bool, planned: set[Path]) -> None:
-        """Check that a file may be written after the planned ones, and add it to them.
+        """Check that a file may be written after the planned ones, and add it to these.
 
         Raises:
-            BadGoal: As `require_free`, or an earlier function of the chain writes it.
+            BadGoal: As `require_free`, or if an earlier function of the chain writes it.
         """
         self.require_free(path, overwrite)
         if path in planned and not overwrite:
@@ -97,7 +98,7 @@ class VisionFiles:
         planned.add(path)
 
     def named_by_time(self, prefix: str, file_type: str) -> Path:
-        """Path for a file without a name: the prefix and the local time."""
+        """Path of a file that a goal does not name: a prefix and the local time."""
         now = time.time()
         stamp = time.strftime("%Y-%m-%d_%H-%M-%S", time.localtime(now))
         return self.folder.resolve() / f"{prefix}_{stamp}.{int(now * 1000) % 1000:03d}.{file_type}"
@@ -106,11 +107,12 @@ class VisionFiles:
         """Open a file for writing; call `done` at its end.
 
         Args:
-            overwrite: Replace an existing file.
-            numbered: Beside an existing file, use name-2, name-3, ...
+            path: See `path`.
+            overwrite: Whether an existing file is replaced.
+            numbered: Whether this file becomes name-2, name-3, ... beside an existing one.
 
         Raises:
-            BadGoal: It exists, and neither flag is set.
+            BadGoal: It exists and is neither to be replaced nor to be numbered.
             FileTrouble: It cannot be written.
         """
         with self._lock:
@@ -126,12 +128,12 @@ class VisionFiles:
         return file
 
     def done(self, path: Path) -> None:
-        """Mark a file as complete: it may be replaced from now on."""
+        """Take note that a file is complete: it may be replaced from now on."""
         with self._lock:
             self._open.discard(path)
 
     def write(self, path: Path, data: bytes, overwrite: bool = False, numbered: bool = False) -> Path:
-        """Write a whole file and return its path; flags as for `create`."""
+        """Write a whole file, as `create` takes it; answers its path."""
         file = self.create(path, overwrite, numbered)
         wanted = file.path
         try:
@@ -143,10 +145,10 @@ class VisionFiles:
 
 
 def known_type(field: str, text: str, known: Sequence[str]) -> str:
-    """Canonical name of a file type; empty for none.
+    """Usual name of a type of file; empty for none.
 
     Raises:
-        BadGoal: It is unknown.
+        BadGoal: It is not known.
     """
     bare = text.strip().lower().lstrip(".")
     kind = SYNONYMS.get(bare, bare)
@@ -157,6 +159,6 @@ def known_type(field: str, text: str, known: Sequence[str]) -> str:
 
 
 def require_short(field: str, name: str) -> None:
-    """Check that each part of a path is short enough for file systems, with room for a number and a suffix."""
+    """Check that file systems take each part of a path, also with a number and a suffix behind it."""
     if any(len(os.fsencode(part)) > LONGEST_NAME - len("-000.webp") for part in Path(name.strip()).parts):
         raise BadGoal(field, name, SHORT, problem="the name is too long")

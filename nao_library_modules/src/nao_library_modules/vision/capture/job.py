@@ -1,4 +1,4 @@
-"""Base of streams and recordings: a thread that handles the frames of a camera in order. No ROS."""
+"""What streams and recordings have in common: a thread that handles the frames of a camera in order. No ROS."""
 
 from __future__ import annotations
 
@@ -33,14 +33,15 @@ LAST_FRAME_LIMIT = 1.0
 
 
 def taken(ident: str) -> BadGoal:
+    """The error for the name of a job that runs."""
     return BadGoal("id", ident, "stop it first, or take another name", problem=f"{ident!r} runs already")
 
 
 class CaptureJob(ABC):
-    """Handles the frames of a topic in its own thread from each start to the next stop.
+    """Handles the frames of a topic in a thread of its own from each start to the next stop.
 
-    Threads: the subscriber thread calls `_arrived`, the worker `_handle` and `_end`, the goal executor all else; the
-    thread that shuts the node down may call `stop`. The condition guards shared state.
+    Threads: the receiver of messages calls `_arrived`, the worker `_handle` and `_end`, the executor of goals all else;
+    the thread that ends the node may call `stop`. The condition guards what they share.
     """
 
     kind = ""
@@ -49,13 +50,13 @@ class CaptureJob(ABC):
     """Whether a stop waits for frames that were taken before it and have not come yet."""
 
     def __init__(self, ident: str, topic: str, rate: float, topics: Any, clock: Any) -> None:
-        """Receive nothing before `start`.
+        """Nothing is received before `start`.
 
         Args:
             ident: The user's name for the job.
             topic: Full name of the source.
             rate: Frames a second at most; 0: all.
-            topics: VisionTopics or a substitute.
+            topics: VisionTopics, or what takes its place.
             clock: ROS time.
         """
         self.ident = ident
@@ -75,10 +76,10 @@ class CaptureJob(ABC):
 
     @abstractmethod
     def _handle(self, frame: Frame) -> tuple[int, int] | None:
-        """Pass a frame on; return its size (width, height) at the target, or None if it was dropped.
+        """Pass a frame on; width and height at the target, None if the frame was dropped.
 
         Raises:
-            BadPicture: The frame cannot be read; the job continues.
+            BadPicture: The frame cannot be read; the job goes on.
             NaoError: The job fails.
         """
 
@@ -89,7 +90,7 @@ class CaptureJob(ABC):
     @property
     @abstractmethod
     def settings(self) -> dict[str, Any]:
-        """Constructor arguments that JSON can hold, to restore the job after the node died."""
+        """Arguments of the constructor that JSON can hold, to make the job again after the death of the node."""
 
     @abstractmethod
     def _fill(self, report: VisionThread) -> None:
@@ -106,11 +107,11 @@ class CaptureJob(ABC):
         """Begin to take frames.
 
         Raises:
-            NaoError: It runs already, or cannot start.
+            NaoError: If it runs already, or cannot.
         """
         if self.runs:
             raise taken(self.ident)
-        self._finish()  # a failed run may have left something open
+        self._finish()  # what failed before may still have something open
         self._forget()
         self._begin()
         with self._changed:
@@ -126,7 +127,11 @@ class CaptureJob(ABC):
             raise
 
     def stop(self, at_once: bool = False) -> None:
-        """End after the frames received so far, unless `at_once`; no effect on a job that does not run."""
+        """End after the frames that have come; no effect on a job that does not run.
+
+        Args:
+            at_once: Whether not to wait for frames that are on their way.
+        """
         with self._changed:
             if self._state == "running" and self.whole and not at_once:
                 self._wait_for_the_last()
@@ -135,7 +140,7 @@ class CaptureJob(ABC):
         self._finish()
 
     def let_go(self) -> None:
-        """Take no further frames, without waiting; `stop` must follow."""
+        """Take no further frames, without any wait; `stop` has to follow."""
         with self._changed:
             if self._state == "running":
                 self._state = "stopped"
@@ -143,7 +148,7 @@ class CaptureJob(ABC):
             self._changed.notify_all()
 
     def wait_until(self, deadline: float) -> None:
-        """Wait until the received frames are handled; drop those left at the deadline (`time.monotonic`, s)."""
+        """Wait until the frames that have come are handled; drop those left at the deadline (`time.monotonic`, s)."""
         worker = self._worker
         if worker is not None:
             worker.join(max(0.0, deadline - time.monotonic()))
@@ -151,7 +156,7 @@ class CaptureJob(ABC):
                 self._queue.drop_all()
 
     def _wait_for_the_last(self) -> None:
-        """Wait for a frame stamped after this moment; the caller holds the condition."""
+        """Wait for a frame that was taken after this moment; with the condition held."""
         now = self._clock.now()
         late = self._last_arrival - self._last_stamp
         if not self._arrivals or self._stalled(now) or not -STAMP_STEP <= late < LAST_FRAME_LIMIT:
@@ -175,6 +180,7 @@ class CaptureJob(ABC):
                 log.warning("%s %r has not ended after %g s", self.kind, self.ident, END_LIMIT)
 
     def report(self) -> VisionThread:
+        """State, counts, rate and size now."""
         now = self._clock.now()
         with self._changed:
             stalled = self._stalled(now)
@@ -213,7 +219,7 @@ class CaptureJob(ABC):
         self._stall_reported = False
 
     def _arrived(self, message: Any) -> None:
-        """Queue a message without delay: this is rospy's receiving thread."""
+        """Queue a message, and nothing that takes time: rospy calls this from the thread that receives."""
         now = self._clock.now()
         frame = frame_of(message, now)
         with self._changed:
@@ -230,7 +236,7 @@ class CaptureJob(ABC):
             self._changed.notify_all()
 
     def _next(self) -> Frame | None:
-        """The oldest queued frame, or the next to come; None if none will come."""
+        """The oldest frame that waits, or the next to come; None when no further one will come."""
         while True:
             with self._changed:
                 if not self._queue and self._state == "running":
@@ -260,7 +266,7 @@ class CaptureJob(ABC):
             with self._changed:
                 self._state, self._error = "failed", problem
                 self._ended = self._ended or self._clock.now()
-            subscription = self._subscription  # closing it twice, as `stop` may, is harmless
+            subscription = self._subscription  # `stop` may close it as well, which does no harm
             if subscription is not None:
                 subscription.close()
 
@@ -285,7 +291,7 @@ class CaptureJob(ABC):
             self._meter.count(frame.stamp)
 
     def _stalled(self, now: float) -> bool:
-        """Whether frames used to come and have stopped; the caller holds the condition."""
+        """Whether frames have come and no longer come; with the condition held."""
         if not self._arrivals or self._state != "running":
             return False
         rate = self._meter.rate

@@ -1,4 +1,4 @@
-"""The streams and recordings of a server, by user-given name."""
+"""The streams and recordings of a server, by the names that users gave them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CLOSING = 2.0
 
 
 class CaptureJobs:
-    """A table of capture jobs. The goal thread and the shutdown thread use it."""
+    """A table of capture jobs. Goals use it from one thread, the end of the node from another."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -27,7 +27,7 @@ class CaptureJobs:
 
     @property
     def known(self) -> dict[str, CaptureJob]:
-        """A copy, sorted by name."""
+        """Name -> job, in the order of the names; a copy."""
         with self._lock:
             return dict(sorted(self._jobs.items()))
 
@@ -35,7 +35,7 @@ class CaptureJobs:
         """The job of a name.
 
         Raises:
-            BadGoal: There is none.
+            BadGoal: If there is none.
         """
         known = self.known
         if ident not in known:
@@ -43,10 +43,10 @@ class CaptureJobs:
         return known[ident]
 
     def add(self, job: CaptureJob) -> None:
-        """Add a job; it replaces a stopped one of the same name.
+        """Add a job; it replaces one of the same name that does not run.
 
         Raises:
-            BadGoal: One of that name runs, or there are too many.
+            BadGoal: If one of that name runs, or there are too many.
         """
         with self._lock:
             old = self._jobs.get(job.ident)
@@ -58,15 +58,15 @@ class CaptureJobs:
                 raise BadGoal("id", job.ident, "none any more", problem="the server ends")
             self._jobs[job.ident] = job
         if old is not None:
-            old.stop()  # it failed, or was never started
+            old.stop()  # it has failed, or was never started
 
     def remove(self, ident: str) -> None:
-        """Forget a stopped job."""
+        """Forget a job; it must have been stopped."""
         with self._lock:
             self._jobs.pop(ident, None)
 
     def close(self) -> None:
-        """Stop all jobs in parallel, quickly: a node killed meanwhile would leave incomplete files."""
+        """Stop all jobs together and soon: the files of a node that is killed meanwhile would be incomplete."""
         with self._lock:
             self._closed = True
         jobs = list(self.known.values())
@@ -83,11 +83,13 @@ class CaptureJobs:
 
 
 def unknown(ident: str, known: object) -> BadGoal:
+    """The error for a name that no job has."""
     names = list(known)
     problem = f"there is no stream or recording {ident!r}{did_you_mean(ident, names)}"
     return BadGoal("id", ident, f"one of {', '.join(names)}" if names else "there are none", problem=problem)
 
 
 def too_many(ident: str) -> BadGoal:
+    """The error for one job too many."""
     problem = "there are too many streams and recordings"
     return BadGoal("id", ident, f"up to {MOST_JOBS}: deleteThread makes room", problem=problem)

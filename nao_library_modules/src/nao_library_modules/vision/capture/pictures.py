@@ -32,7 +32,7 @@ Picture = np.ndarray
 
 
 class BadPicture(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A message holds no readable picture."""
+    """A message holds no picture that can be read."""
 
     def __init__(self, encoding: str, problem: str) -> None:
         super().__init__(f"a picture of encoding {encoding!r} cannot be read: {problem}")
@@ -78,14 +78,14 @@ def is_compressed(message: Any) -> bool:
 
 
 def encoding_of(message: Any) -> str:
-    """Encoding of an Image (bgr8, ...), or format of a CompressedImage (jpeg, png, ...)."""
+    """Encoding of a message: bgr8, ...; of a compressed one its format: jpeg, png, ..."""
     if not is_compressed(message):
         return message.encoding
     return message.format.split(";")[-1].replace("compressed", " ").split()[0] if message.format.strip() else "jpeg"
 
 
 def size_rows() -> list[tuple[str, int, str, str]]:
-    """The limits as rows of a table: name, limit, unit, where it applies."""
+    """The limits as rows of a table: name, limit, unit, where it holds."""
     where = "pictures of camera topics"
     return [
         ("width, height", LARGEST, "pixels", where),
@@ -98,7 +98,7 @@ def picture_of(message: Any) -> Picture:
     """The picture of a sensor_msgs/Image or sensor_msgs/CompressedImage.
 
     Raises:
-        BadPicture: It holds none that can be read.
+        BadPicture: If it holds none that can be read.
     """
     if is_compressed(message):
         return _decompressed(message)
@@ -123,10 +123,10 @@ def picture_of(message: Any) -> Picture:
 
 
 def _decompressed(message: Any) -> Picture:
-    """Decode with Pillow, only the formats `DECODED`, after a size check in the header.
+    """Decode with Pillow, only the formats `DECODED`, after a check of the size in the header.
 
-    OpenCV 4.11, the last one for NumPy 1, decodes many more formats, including JPEG 2000 with a vulnerability
-    (CVE-2025-53644), and fills the missing part of broken pictures with earlier picture data.
+    OpenCV 4.11, the last one for NumPy 1, decodes many more formats, JPEG 2000 with a hole (CVE-2025-53644) among them,
+    and fills broken pictures with what it decoded before.
     """
     content = bytes(message.data)
     if len(content) > LARGEST_COMPRESSED:
@@ -138,13 +138,13 @@ def _decompressed(message: Any) -> Picture:
             if image.format == "WEBP" and image.is_animated:
                 raise ValueError("it is WebP that moves")
             ImageOps.exif_transpose(image, in_place=True)
-            if image.mode.startswith("I"):  # 16-bit grey
+            if image.mode.startswith("I"):  # grey of 16 bits
                 grey = (np.asarray(image).astype(np.uint32) >> 8).astype(np.uint8)
                 return cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR)
             return np.ascontiguousarray(np.asarray(image.convert("RGB"))[:, :, ::-1])
     except BadPicture:
         raise
-    except Exception as error:  # broken files raise errors specific to their format, even SyntaxError
+    except Exception as error:  # formats have errors of their own for broken files, a SyntaxError among them
         reason = f"none of {', '.join(DECODED)}" if isinstance(error, UnidentifiedImageError) else error
         problem = f"its {len(content)} bytes are no compressed picture: {reason}"
         raise BadPicture(encoding_of(message), problem) from error
@@ -164,12 +164,12 @@ def visible(picture: Picture) -> Picture:
 
 
 def wanted_size(size: tuple[int, int], width: int, height: int) -> tuple[int, int]:
-    """Target size (width, height) in pixels.
+    """Size of a scaled picture, (width, height) in pixels.
 
     Args:
-        size: (width, height) of the original.
-        width: 0: in proportion to the height, or unchanged.
-        height: Likewise.
+        size: That of the original.
+        width: Pixels; 0: in proportion to the height, or as it is.
+        height: Pixels, likewise.
     """
     own_width, own_height = size
     if not width and not height:
@@ -196,7 +196,7 @@ def scaled(picture: Picture, width: int, height: int) -> Picture:
 
 
 def fitted(picture: Picture, width: int, height: int) -> Picture:
-    """A picture scaled in proportion into a frame (pixels) with black bars."""
+    """A picture scaled in proportion into a frame (pixels), the rest of which is black."""
     own_height, own_width = picture.shape[:2]
     if (own_width, own_height) == (width, height):
         return picture
@@ -209,10 +209,10 @@ def fitted(picture: Picture, width: int, height: int) -> Picture:
 
 
 def encoded(picture: Picture, file_type: str, quality: int = 0) -> bytes:
-    """Encode a picture as file content.
+    """The content of a file with a picture.
 
     Args:
-        picture: See `Picture`; 16 bits are kept if the type supports them.
+        picture: See `Picture`; 16 bits are kept where the type can.
         file_type: One of PICTURE_TYPES.
         quality: 1..100, of jpg and webp; 0: the default.
     """

@@ -1,4 +1,4 @@
-"""A bounded queue of frames that drops the oldest. No ROS; the caller does the locking."""
+"""A bounded queue of frames, from which the oldest are dropped. No ROS, no locks: the user has one."""
 
 from __future__ import annotations
 
@@ -15,16 +15,20 @@ MOST_BYTES = int(limit("bytes of waiting pictures").highest)
 
 @dataclass(frozen=True)
 class Frame:
+    """A message of a camera."""
+
     message: Any  # sensor_msgs/Image or sensor_msgs/CompressedImage
     stamp: float  # ROS time at which it was taken, s; of its arrival if the message has none
 
 
 def frame_of(message: Any, now: float) -> Frame:
-    """The frame of a message that arrived at ROS time `now`, s."""
+    """The frame of a message that came at a ROS time, in s."""
     return Frame(message, message.header.stamp.to_sec() or now)
 
 
 class FrameQueue:
+    """Frames in the order in which they came."""
+
     def __init__(self) -> None:
         self.dropped = 0
         self._frames: deque[Frame] = deque()
@@ -34,7 +38,7 @@ class FrameQueue:
         return len(self._frames)
 
     def put(self, frame: Frame) -> None:
-        """Add a frame; drop the oldest if the queue is full."""
+        """Add a frame; the oldest are dropped where there are too many."""
         self._frames.append(frame)
         self._bytes += len(frame.message.data)
         while len(self) > MOST_FRAMES or (self._bytes > MOST_BYTES and len(self) > 2):
@@ -47,7 +51,7 @@ class FrameQueue:
             self.dropped += 1
 
     def take(self) -> Frame:
-        """Remove the oldest frame; the queue must not be empty."""
+        """Remove the oldest one; there must be one."""
         frame = self._frames.popleft()
         self._bytes -= len(frame.message.data)
         return frame

@@ -1,4 +1,4 @@
-"""A recording: frames of a topic in a video file, each at its capture time."""
+"""A recording: frames of a topic in a video file, each at the time at which it was taken."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ from .video import VideoFile
 
 @dataclass(frozen=True)
 class VideoSpec:
-    path: Path | None  # None: named by the start time
+    """How a recording is written."""
+
+    path: Path | None  # None: named by the time of the start
     file_type: str  # mp4 or avi
     codec: str  # one of `known_codecs`
     width: int = 0  # pixels, as `wanted_size` takes them
@@ -45,7 +47,7 @@ class VideoRecording(CaptureJob):
         spec: VideoSpec,
         again: bool = False,
     ) -> None:
-        """As CaptureJob; `again`: a node that died had started it, and its file stays."""
+        """Take what CaptureJob takes; again: a node that has died started it before, and its file stays."""
         super().__init__(ident, topic, rate, topics, clock)
         self._files = files
         self._spec = spec
@@ -86,7 +88,7 @@ class VideoRecording(CaptureJob):
         self._video = None
         spec = self._spec
         path = spec.path or self._files.named_by_time(self.ident, spec.file_type)
-        # Only the first start was checked before the chain: a later one must not replace its file.
+        # Only the first start was checked before the chain: a second one must not replace its file.
         self._file = self._files.create(path, spec.overwrite and not again, numbered=again or spec.path is None)
         self._wanted = self._file.path
 
@@ -106,10 +108,10 @@ class VideoRecording(CaptureJob):
             if self._video is not None:
                 self._video.close()
             else:
-                file.discard()  # without a frame it is no video
+                file.discard()  # no frame came: an empty file is no video
         finally:
             if self._video is not None and not self._video.frames:
-                self._video = None  # the disk was full before the first frame was playable
+                self._video = None  # the disk was full before there was anything to be seen
             self._files.done(self._wanted)
 
     def _fill(self, report: VisionThread) -> None:

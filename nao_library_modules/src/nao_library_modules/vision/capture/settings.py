@@ -1,8 +1,8 @@
 """Functions that set the cameras.
 
-ALVideoDevice sets parameters (brightness, exposure, ...) on the robot: they apply to all its users, and need no node.
-Resolution and frame rate belong to the subscription of the node that reads the camera, so only that node can change
-them, by dynamic_reconfigure; any node with parameters of these names will do.
+Parameters of a camera of the robot (brightness, exposure, ...) are set at the robot, by ALVideoDevice: they apply to
+all its users, and need no node. Resolution and frame rate belong to the subscription of the node that reads the camera,
+so that only the node can change them, by dynamic_reconfigure; any node with parameters of these names will do.
 """
 
 from __future__ import annotations
@@ -51,7 +51,13 @@ class SettingFunctions(Part):
     """Settings of the cameras. Parameters are fields of VisionFunction."""
 
     def __init__(self, module: NaoBasic, cameras: Cameras, servers: Mapping[str, str]) -> None:
-        """Keep what the functions need; `servers` maps a camera to the dynamic_reconfigure name of its node."""
+        """Keep what the functions need.
+
+        Args:
+            module: Calls the robot.
+            cameras: The cameras of goals.
+            servers: Camera -> where its node takes dynamic_reconfigure.
+        """
         self._module = module
         self._cameras = cameras
         self._servers = servers
@@ -150,7 +156,7 @@ class SettingFunctions(Part):
     def _configure(self, camera: str, parameter: str, value: float, revert: bool) -> None:
         server = self._servers[self._cameras.name(camera)]
         before = self._configured(camera, parameter)
-        value = type(before)(value)  # dynamic_reconfigure distinguishes int and float
+        value = type(before)(value)  # dynamic_reconfigure takes whole numbers and others for different things
         if revert:
             self._module.after_wait(lambda: self._cameras.topics.set(server, {parameter: before}))
         reached = self._cameras.topics.set(server, {parameter: value}).get(parameter, value)

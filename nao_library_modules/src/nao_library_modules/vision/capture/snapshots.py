@@ -51,7 +51,7 @@ class NoPicture(NaoError):  # noqa: N818  named like the errors of the proxy lay
 
 
 class Frames:
-    """The newest frame of a topic, for one waiting function."""
+    """The newest frame of a topic, for one function that waits for it."""
 
     def __init__(self, topic: str, clock: Any, interrupt: CancellationToken) -> None:
         self._topic = topic
@@ -62,19 +62,20 @@ class Frames:
         self._old = 0
 
     def take(self, message: Any) -> None:
-        """Take a message, in the receiving thread."""
+        """Take a message. Called from the thread that receives it."""
         self._newest = frame_of(message, self._clock.now())
         self._news.trigger()
 
     def next(self, since: float, timeout: float) -> Frame:
-        """The next frame taken after ROS time `since` (s), or the first after OLD_FRAMES older ones.
+        """The next frame that is not older than a time, or comes after OLD_FRAMES older ones.
 
         Args:
-            timeout: s.
+            since: ROS time, s.
+            timeout: s to wait for it.
 
         Raises:
             NoPicture: None came.
-            Preempted: Or another reason of the interrupt.
+            Preempted: Or whatever reason the interrupt has.
         """
         end = self._clock.now() + timeout
         while True:
@@ -191,7 +192,7 @@ class PictureFunctions(Part):
 
 
 def _numbered(path: Path, number: int, count: int) -> Path:
-    """name-001 and so on; the path itself for a single picture."""
+    """Path of one of several pictures: name-001 and so on; the path itself if there is only one picture."""
     if count == 1:
         return path
     return path.with_name(f"{path.stem}-{number:0{max(3, len(str(count)))}d}{path.suffix}")

@@ -1,4 +1,4 @@
-"""A stream: republishes the frames of a topic in another size or rate."""
+"""A stream: frames of one topic on another, in another size or rate."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .queue import Frame
 class Stream(CaptureJob):
     """Passes frames on to a topic.
 
-    Unchanged frames are published as they came; others are converted only while the topic has subscribers. The
-    camera's camera_info, if any, is published beside them in the size of the stream.
+    Frames whose form does not change are published as they came; others are converted only while the topic has
+    subscribers. The camera_info of the camera, if there is one, is published beside them in the size of the stream.
     """
 
     kind = "stream"
@@ -26,7 +26,7 @@ class Stream(CaptureJob):
     def __init__(
         self, ident: str, topic: str, rate: float, topics: Any, clock: Any, topic_out: str, width: int, height: int
     ) -> None:
-        """As CaptureJob, plus the topic to publish (JPEG if it ends in /compressed), and the size for `wanted_size`."""
+        """Take what CaptureJob takes, the topic to publish (as JPEG if it ends in /compressed), and `wanted_size`."""
         super().__init__(ident, topic, rate, topics, clock)
         self.topic_out = topic_out
         self._wanted = (width, height)
@@ -34,7 +34,7 @@ class Stream(CaptureJob):
         self._publisher: Any = None
         self._infos: Any = None
         self._info_subscription: Any = None
-        self._info: Any = None  # the latest one; the receiving thread sets it
+        self._info: Any = None  # the latest one; set by the thread that receives it
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -114,9 +114,9 @@ class Stream(CaptureJob):
 
 
 def info_topic(topic: str) -> str:
-    """Full name of the camera_info topic beside a picture topic, by the convention of ROS's tools.
+    """Topic of the camera_info beside a topic of pictures (full name), where ROS's tools look for it.
 
-    Empty if the last part of the name does not begin with "image": no camera publishes such a topic.
+    Empty for a topic whose last part does not begin with "image": no camera publishes it.
     """
     base = topic[: -len(COMPRESSED)] if topic.endswith(COMPRESSED) else topic
     folder, name = posixpath.split(base)
@@ -124,10 +124,10 @@ def info_topic(topic: str) -> str:
 
 
 def scaled_info(info: Any, header: Any, width: int, height: int) -> CameraInfo:
-    """The sensor_msgs/CameraInfo scaled to another picture size (pixels), with the header of the picture."""
+    """The sensor_msgs/CameraInfo of a camera for pictures of another size (pixels), with the header of the picture."""
     across, down = width / info.width if info.width else 1.0, height / info.height if info.height else 1.0
     k, p, region = list(info.K), list(info.P), info.roi
-    # In both matrices the first row is in columns of the picture, the second in rows.
+    # Of both matrices the first row counts columns of the picture, the second one rows.
     k = [value * (across, down, 1.0)[index // 3] for index, value in enumerate(k)]
     p = [value * (across, down, 1.0)[index // 4] for index, value in enumerate(p)]
     return CameraInfo(

@@ -1,4 +1,4 @@
-"""Functions that start and stop streams and recordings, which outlive their goals."""
+"""Functions that begin and end streams and recordings, which outlive the goals that began them."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class StreamingFunctions(Part):
         self._cameras = cameras
         self._results = results
 
-    # Checks before a chain; `context["threads"]` holds its planned jobs, `context["files"]` the files that it writes
+    # Checks before a chain; `context["threads"]` holds its plan, `context["files"]` the files that it writes
 
     def _plan(self, context: dict[str, Any]) -> Plan:
         if "threads" not in context:
@@ -79,7 +79,7 @@ class StreamingFunctions(Part):
         plan[name] = (kind, runs)
 
     def _planned(self, ident: str, context: dict[str, Any], kind: str = "") -> str:
-        """The stripped name of a job that the chain will have made by then."""
+        """The name of a job that there will be, without blanks around it."""
         plan = self._plan(context)
         name = ident.strip()
         if name not in plan:
@@ -168,7 +168,7 @@ class StreamingFunctions(Part):
         """Make a stream ready; startThread begins it. Answers its topic."""
         target = self._cameras.topics.resolved(_topic_out(id, topic_out))
         source = self._cameras.source(camera, topic)
-        if source == target:  # the active camera may have changed since the check
+        if source == target:  # the active camera may be another one than at the check
             raise BadGoal("topic_out", topic_out, "another topic", problem="frames come from there")
         self.jobs.add(Stream(id.strip(), source, rate, self._cameras.topics, self._module.clock, target, width, height))
         self._keep()
@@ -266,10 +266,10 @@ class StreamingFunctions(Part):
         if isinstance(job, VideoRecording):
             self._results.recordings.append(job.video)
 
-    # After the node died
+    # After the death of the node
 
     def make_again(self) -> None:
-        """Restore the jobs of a node that died; those that ran continue, recordings in a further file."""
+        """Make the jobs again that the node had before it died; those that ran go on, recordings in a further file."""
         for former in self._module.kept.load() or ():
             try:
                 job = self._job(**former["settings"])
@@ -305,12 +305,12 @@ class StreamingFunctions(Part):
 
 
 def _topic_out(ident: str, topic_out: str) -> str:
-    """Topic of a stream: as given, or after its id."""
+    """Topic of a stream: as named, or after its id."""
     return topic_out.strip() or f"NaoVision/{re.sub(r'[^A-Za-z0-9_]', '_', ident.strip())}/image_raw"
 
 
 def _require_codec(codec: str, file_type: str) -> None:
-    """Check that this computer has the codec, and that the file type can hold it."""
+    """A codec that this computer has, and that the type of file can hold."""
     name = codec_name(codec, file_type)
     here = known_codecs(file_type)
     if name in CODECS and name not in here:

@@ -1,4 +1,4 @@
-"""Frame rate limit and measurement, and frame times in a video. Pure."""
+"""Limit and measurement of frame rates, and the times of frames in a video. Numbers only."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ SLACK = 0.1
 
 
 class RateLimit:
-    """Selects at most `rate` frames a second; rate 0: all."""
+    """Selects frames so that they are at most so many a second; rate 0: all."""
 
     def __init__(self, rate: float) -> None:
         self._period = 1.0 / rate if rate > 0.0 else 0.0
         self._due: float | None = None
 
     def passes(self, stamp: float) -> bool:
-        """Whether to pass on the frame of this stamp (s)."""
+        """Whether a frame of a time (s) is passed on."""
         if not self._period:
             return True
         due = self._due
@@ -32,17 +32,17 @@ class RateLimit:
 
 
 class VideoTimes:
-    """Frame times in a video: camera stamps from 0, strictly increasing."""
+    """Times of frames in a video: as the camera stamps them, from 0, and always growing."""
 
     def __init__(self, step: float) -> None:
-        """Begin with the next frame; `step` is the time resolution of the video, s."""
+        """Begin with the next frame; the step is the resolution of times in the video, s."""
         self._step = step
         self._shift: float | None = None
         self._last = 0.0
         self._period = 0.0
 
     def place(self, stamp: float) -> float | None:
-        """Video time of a frame stamp (s); None if it is less than a step after the last one."""
+        """Time in the video of a frame of a time (s); None if it is less than a step after the last one."""
         if self._shift is None:
             self._shift = stamp
             return 0.0

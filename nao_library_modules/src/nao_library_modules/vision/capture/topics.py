@@ -1,4 +1,4 @@
-"""ROS topics of pictures, and the settings of the nodes that publish them."""
+"""Pictures on ROS topics, and the settings of the nodes that publish them: the module's side to ROS."""
 
 from __future__ import annotations
 
@@ -25,10 +25,12 @@ QUEUE = 2
 
 
 class SettingsTrouble(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A camera's node rejects settings or is missing."""
+    """A camera's node cannot be set."""
 
 
 class Publisher:
+    """A publisher of pictures or camera_info."""
+
     def __init__(self, publisher: rospy.Publisher) -> None:
         self._publisher = publisher
 
@@ -44,12 +46,12 @@ class Publisher:
 
 
 class TopicSubscription:
-    """Receives messages of a topic until it is closed; closing twice is harmless."""
+    """Takes messages from a topic until it is closed; may be closed twice."""
 
     def __init__(self, topic: str, kind: type, take: Callable[[Any], None]) -> None:
-        """Subscribe; `take` runs in the receiving thread and must be quick."""
+        """Subscribe; `take` is called from the thread that receives: it must not take long."""
         self._lock = threading.Lock()
-        # rospy shares one connection among all subscriptions to a topic.
+        # rospy makes one connection for all subscriptions to a topic.
         self._subscriber: rospy.Subscriber | None = rospy.Subscriber(topic, kind, take, buff_size=BUFFER)
 
     def close(self) -> None:
@@ -60,25 +62,25 @@ class TopicSubscription:
 
 
 class VisionTopics:
-    """Topics and settings of cameras. Needs `rospy.init_node` before. Thread-safe."""
+    """Topics and settings of cameras. Needs `rospy.init_node` before; any thread may use it."""
 
     def subscribe(self, topic: str, take: Callable[[Any], None]) -> TopicSubscription:
-        """Receive pictures from a topic, which may not exist yet.
+        """Take pictures from a topic, which need not be there yet.
 
         Raises:
-            BadGoal: It is no topic of pictures.
+            BadGoal: If what it holds are no pictures.
         """
         return TopicSubscription(topic, self._kind(topic), take)
 
     def subscribe_info(self, topic: str, take: Callable[[Any], None]) -> TopicSubscription:
-        """Receive sensor_msgs/CameraInfo from a topic, which may not exist."""
+        """Take sensor_msgs/CameraInfo from a topic, which need not be there."""
         return TopicSubscription(topic, CameraInfo, take)
 
     def publisher(self, topic: str, kind: type) -> Publisher:
         return Publisher(rospy.Publisher(topic, kind, queue_size=QUEUE))
 
     def images_of(self, nodes: frozenset[str]) -> list[str]:
-        """Image topics that the nodes publish now, those named image_raw first."""
+        """Topics of images that some nodes publish now, those named image_raw first."""
         master = rosgraph.Master(rospy.get_name())
         types = dict(master.getTopicTypes())
         published = [name for name, publishers in master.getSystemState()[0] if not nodes.isdisjoint(publishers)]
@@ -89,7 +91,7 @@ class VisionTopics:
         return rospy.resolve_name(topic)
 
     def settings(self, server: str) -> dict[str, Any]:
-        """dynamic_reconfigure settings of a node: name -> value.
+        """The settings of a node that takes dynamic_reconfigure: name -> value.
 
         Raises:
             SettingsTrouble: There is no such node.
@@ -97,7 +99,7 @@ class VisionTopics:
         return self._configured(server, {})
 
     def set(self, server: str, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Change some settings; return all of them.
+        """Change some settings; answers all afterwards.
 
         Raises:
             SettingsTrouble: There is no such node, or it refuses.
@@ -106,7 +108,7 @@ class VisionTopics:
 
     @staticmethod
     def _configured(server: str, values: Mapping[str, Any]) -> dict[str, Any]:
-        # Only the service: dynamic_reconfigure's client also subscribes to two topics, and waits for them.
+        # The service alone, for dynamic_reconfigure's client subscribes to two topics, and waits for them.
         from dynamic_reconfigure.encoding import decode_config, encode_config
         from dynamic_reconfigure.srv import Reconfigure
 
@@ -123,12 +125,12 @@ class VisionTopics:
         return {key: value for key, value in decoded.items() if key != "groups"}
 
     def _kind(self, topic: str) -> type:
-        """Message type of a picture topic; guessed from its name before anyone publishes."""
+        """Message type of a topic of pictures; by its name where nobody publishes yet."""
         full = rospy.resolve_name(topic)
         try:
             types = dict(rosgraph.Master(rospy.get_name()).getTopicTypes())
         except (OSError, rosgraph.MasterException):
-            types = {}  # the subscription also waits for the master
+            types = {}  # the subscription waits for the master as well
         there = types.get(full, "*")
         if there in PICTURE_TYPES:
             return PICTURE_TYPES[there]

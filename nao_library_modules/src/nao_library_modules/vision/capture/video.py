@@ -1,4 +1,4 @@
-"""A video file that keeps the capture time of every frame. PyAV; no ROS."""
+"""A video file in which every frame stands at the time at which the camera took it. PyAV; no ROS."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .pictures import fitted
 from .times import VideoTimes
 
 av = Later("av")
-# Keep encoder statistics out of the node's log.
+# The encoders' reports on themselves do not belong into the node's log.
 logging.getLogger("libav").setLevel(logging.ERROR)
 
 VIDEO_TYPES = ("mp4", "avi")
@@ -26,14 +26,16 @@ VIDEO_TYPES = ("mp4", "avi")
 
 @dataclass(frozen=True)
 class Codec:
+    """A way to compress a video."""
+
     encoder: str  # name in FFmpeg
     pixels: str  # format of the pixels
-    bits: float  # per pixel and frame, roughly; 0: the encoder's own default
+    bits: float  # per pixel and frame, roughly; 0: the encoder has a measure of its own
     options: dict[str, str]
     file_types: tuple[str, ...]
 
 
-# An AVI file has a fixed time grid; H.264 cannot skip positions in it.
+# An AVI file has a grid of times; H.264 cannot leave places of it empty.
 CODECS = {
     "h264": Codec("libx264", "yuv420p", 0.0, {"preset": "ultrafast", "tune": "zerolatency", "crf": "20"}, ("mp4",)),
     "mpeg4": Codec("mpeg4", "yuv420p", 0.35, {}, ("mp4", "avi")),
@@ -47,7 +49,7 @@ SYNONYMS = {
 PREFERRED = {"mp4": ("h264", "mpeg4"), "avi": ("mjpeg",)}
 TICKS = {"mp4": 60000, "avi": 120}
 """Times a second at which a frame can stand."""
-# Each fragment of an mp4 file is complete, so that the file of a killed process can be played.
+# Each part of an mp4 file is complete in itself, so that what a lost process wrote can be played.
 CONTAINER_OPTIONS = {
     "mp4": {"movflags": "frag_keyframe+empty_moov+default_base_moof", "flush_packets": "1"},
     "avi": {"flush_packets": "1"},
@@ -66,7 +68,7 @@ def known_codecs(file_type: str) -> list[str]:
 
 
 def codec_name(text: str, file_type: str) -> str:
-    """Canonical name of a codec, even of an unknown one; for an empty text the preferred available codec."""
+    """Usual name of a codec, also of an unknown one; of an empty text the preferred codec that this computer has."""
     bare = text.strip().lower()
     if bare:
         return SYNONYMS.get(bare, bare)
@@ -88,20 +90,21 @@ class VideoFile:
     Attributes:
         width: Pixels; even, as codecs need it.
         height: Pixels, likewise.
+        frames: Number of frames in it.
         dropped: Frames that came too early after the one before, or twice.
         began: Stamp of the first frame, s.
         duration: s from the first frame to the end of the last one.
     """
 
     def __init__(self, file: WholeFile, file_type: str, codec: str, width: int, height: int) -> None:
-        """Open the video; `close` also closes the file.
+        """Open the video; the file is closed with it.
 
         Args:
             file: Open for writing.
             file_type: One of VIDEO_TYPES.
             codec: One of `known_codecs`.
-            width: Of the first picture, pixels; an odd last column is left out.
-            height: Likewise.
+            width: Pixels of the first picture; an odd one is left out.
+            height: Pixels, likewise.
 
         Raises:
             VideoTrouble: FFmpeg cannot make such a video.
@@ -109,13 +112,13 @@ class VideoFile:
         self.width, self.height = max(2, width - width % 2), max(2, height - height % 2)
         self.frames = self.dropped = 0
         self.began = 0.0
-        self._places = array("d")  # frame times, s after the first
+        self._places = array("d")  # of the frames, s after the first
         self._ticks = TICKS[file_type]
         self._times = VideoTimes(1.0 / self._ticks)
         self._kind = file_type
         self._file = file
-        self._muxed = self._whole = 0  # frames muxed, and those that can be played
-        self._held: Any = None  # the latest packet: its duration is known when the next one comes
+        self._muxed = self._whole = 0  # frames that were passed on, and those that can be played
+        self._held: Any = None  # the latest packet: only the next one tells how long its frame lasts
         kind = CODECS[codec]
         try:
             self._container = av.open(file, "w", format=file_type, options=CONTAINER_OPTIONS[file_type])
@@ -124,7 +127,7 @@ class VideoFile:
             stream.width, stream.height, stream.pix_fmt = self.width, self.height, kind.pixels
             context = stream.codec_context
             context.time_base = Fraction(1, self._ticks)
-            context.thread_count = 1  # other recordings and perhaps a simulator share the computer
+            context.thread_count = 1  # there are other recordings, and a robot to simulate
             context.gop_size = KEY_FRAMES
             if kind.bits:
                 context.bit_rate = max(400_000, int(kind.bits * 30 * self.width * self.height))
@@ -145,11 +148,11 @@ class VideoFile:
         """Add a frame.
 
         Args:
-            picture: (height, width, 3) uint8, BGR. One of another size than the first is made to fit.
-            stamp: Capture time, s.
+            picture: (height, width, 3) uint8, blue, green, red. One of another size than the first is made to fit.
+            stamp: When it was taken, s.
 
         Returns:
-            False if the frame was dropped.
+            Whether it has a place in the video.
 
         Raises:
             VideoTrouble: It cannot be compressed.
@@ -174,7 +177,7 @@ class VideoFile:
         return True
 
     def close(self) -> None:
-        """End the video and the file; after a failed write the playable part is kept.
+        """End the video and the file; of one that could not be written to its end the playable part is kept.
 
         Raises:
             VideoTrouble: The end cannot be compressed.
@@ -209,11 +212,11 @@ class VideoFile:
             raise _trouble(error) from error
 
     def _mux(self, packet: Any) -> None:
-        """Mux a packet; this writes any fragment that it completes."""
+        """Pass a packet on; the part of the file that it completes is written."""
         self._container.mux(packet)
         self._muxed += 1
         if self._file.flush():
-            # An mp4 fragment ends when the next one begins.
+            # A part of an mp4 file ends when the next one begins.
             self._whole = self._muxed - (self._kind == "mp4")
 
 

@@ -1,4 +1,4 @@
-"""The robot's vision extractors: run them on a camera, and locate what they detect."""
+"""The robot's extractors that detect something: having them work through a camera, and placing what they detect."""
 
 from __future__ import annotations
 
@@ -55,6 +55,8 @@ BASE = "base_footprint"
 
 @dataclass(frozen=True)
 class Detector:
+    """One of the robot's extractors."""
+
     module: str
     event: str
     read: Callable[[Any], DetectionArray] | None = None
@@ -77,7 +79,7 @@ class WantedDetection:
     Attributes:
         kind: ball, face, landmark, code or movement.
         name: Only the thing of this name; empty for all.
-        confidence: Threshold, 0..1; a face below it is unknown, anything else below it is ignored.
+        confidence: Least confidence, 0..1; a face with less is unknown, anything else does not count.
         size: Real size, m; 0 for the usual one.
         camera: Index of the camera; None for the active one.
     """
@@ -89,7 +91,7 @@ class WantedDetection:
     camera: int | None = None
 
     def picks(self, detection: Detection) -> Detection | None:
-        """The detection, a face perhaps without its name; None if it does not match."""
+        """A detection as it counts; None if it does not."""
         if detection.kind == FACE and detection.confidence < self.confidence:
             detection = replace(detection, name="")
         elif detection.confidence < self.confidence:
@@ -98,20 +100,21 @@ class WantedDetection:
 
 
 class InUse(NaoError):
-    """An extractor has other subscribers that the function would disturb."""
+    """An extractor works for others, and what a function needs would disturb them."""
 
     def __init__(self, module: str, others: Sequence[str], how: str) -> None:
         """Compose the text.
 
         Args:
-            others: The extractor's other subscribers.
-            how: The setting of theirs that would have to change.
+            module: NAOqi module.
+            others: Its other subscribers.
+            how: What it does for them that would have to change.
         """
         super().__init__(f"{module} {how} for {', '.join(others)}: it cannot be changed while they need it")
 
 
 class Watch:
-    """A running extractor, for as long as a function needs it."""
+    """An extractor that works for a function, as long as that needs it."""
 
     def __init__(self, detectors: Detectors, wanted: WantedDetection, events: Events, camera: int) -> None:
         self._detectors = detectors
@@ -120,11 +123,11 @@ class Watch:
         self._camera = camera  # index
 
     def until(self, end: float) -> Iterator[list[LocalizedDetection]]:
-        """Matching detections until ROS time `end` (s): a list for each picture that has one.
+        """The detections that count, as they come: a list for each picture that has one, until a ROS time (s).
 
         Raises:
-            Preempted: Or another reason of the interrupt.
-            NaoError: The robot cannot be asked.
+            Preempted: Or whatever reason the interrupt has.
+            NaoError: If the robot cannot be asked.
         """
         module = self._detectors.module
         for event in self._events.until(end):
@@ -136,7 +139,7 @@ class Watch:
 
 
 class Detectors(ExtractorUse):
-    """The robot's extractors for the functions of NaoVision, and the robot's cameras that they use."""
+    """The robot's extractors for the functions of NaoVision, and the robot's cameras that they look through."""
 
     def __init__(
         self, module: NaoBasic, cameras: Cameras, results: ChainResults, subscriber: str, frame_prefix: str
@@ -144,8 +147,10 @@ class Detectors(ExtractorUse):
         """Take what a module offers.
 
         Args:
-            results: Collects the detections.
-            subscriber: Prefix of subscription names, unique among the robot's clients.
+            module: Calls the robot.
+            cameras: Has the active camera.
+            results: Gets what is seen.
+            subscriber: Begin of the names of subscriptions: of each robot's clients no two have the same.
             frame_prefix: Prefix of the robot's frames, with its slash; may be empty.
         """
         super().__init__(module, subscriber)
@@ -157,27 +162,29 @@ class Detectors(ExtractorUse):
 
     @contextmanager
     def watching(self, wanted: WantedDetection) -> Iterator[Watch]:
-        """Run an extractor during a block."""
+        """Have an extractor work during a block."""
         detector = DETECTORS[wanted.kind]
         with self.looking_through(detector.module, wanted.camera) as camera, self.events_of(detector.event) as events:
             with self.subscribed(detector.module, wanted.kind):
                 yield Watch(self, wanted, events, camera)
 
     def note(self, detections: Sequence[LocalizedDetection]) -> list[str]:
-        """Add detections to the result; return their labels."""
+        """Put detections into the result; answers their labels."""
         self._results.objects += seen_messages(detections, self._prefix)
         return [detection.label for detection in detections]
 
     def publish_seen(self, status: str, detections: Sequence[LocalizedDetection] = ()) -> None:
-        """Publish feedback with the status and the detections of the current picture."""
+        """Publish as feedback what is seen now, or was in the picture of these detections."""
         stamp = detections[0].time if detections else None
         self.module.publish_feedback(stamp=stamp, status=status, objects=seen_messages(detections, self._prefix))
 
     def placed(self, wanted: WantedDetection, camera: int, event: Event) -> list[LocalizedDetection]:
-        """The matching detections of an event, with positions.
+        """The detections of an event that count, and where they are.
 
         Args:
-            camera: Index of the camera that the extractor uses; detections of others are ignored.
+            wanted: What counts.
+            camera: Index of the camera that the extractor looks through; detections of others do not count.
+            event: Of the extractor.
         """
         try:
             array = self._read(wanted.kind, camera, event.value)
@@ -187,7 +194,7 @@ class Detectors(ExtractorUse):
         if array.camera != camera or array.in_robot is None or array.in_torso is None:
             return []
         lens = self._lens(camera)
-        # An event without a picture time has the time at which it was raised.
+        # An event without the time of its picture counts from when it was raised.
         time = self.event_time(event) if array.time is None else self.robot_clock.ros_time(self.call, array.time)
         size = wanted.size or DEFAULT_SIZES.get(wanted.kind, 0.0)
         found = []
@@ -197,7 +204,7 @@ class Detectors(ExtractorUse):
         return found
 
     def end_leftovers(self) -> bool:
-        """End subscriptions that a killed server of this name has left; False if the robot was not asked."""
+        """End subscriptions that a killed server of this name has left; whether the robot was asked."""
         for detector in DETECTORS.values():
             try:
                 proxy = self.robot.proxy(detector.module)
@@ -224,15 +231,15 @@ class Detectors(ExtractorUse):
 
     @contextmanager
     def looking_through(self, module: str, wanted: int | None) -> Iterator[int]:
-        """Let an extractor use a camera during a block; restore its former camera afterwards.
+        """Have an extractor look through a camera during a block; its former camera comes back afterwards.
 
         Raises:
-            InUse: It uses another camera for other subscribers.
+            InUse: It looks through another camera for other subscribers.
         """
         owner = module
         try:
             now = int(self.call(self.robot.proxy(module), "getActiveCamera"))
-        except UnknownMethod:  # it uses the robot's active camera
+        except UnknownMethod:  # it looks through the robot's active camera
             owner = VIDEO
             now = int(self.call(self.robot.proxy(VIDEO), "getActiveCamera"))
         camera = CAMERAS[self._cameras.active] if wanted is None else wanted
@@ -262,7 +269,7 @@ class Detectors(ExtractorUse):
         return x, y, z, wx, wy, wz
 
     def _lens(self, camera: int) -> Lens:
-        key = (self.robot.connection.generation, camera)  # a new connection may lead to another robot
+        key = (self.robot.connection.generation, camera)  # behind a new connection is another robot perhaps
         if key not in self._lenses:
             proxy = self.robot.proxy(VIDEO)
             methods = ("getHorizontalFOV", "getVerticalFOV")
@@ -270,7 +277,7 @@ class Detectors(ExtractorUse):
         return self._lenses[key]
 
     def _region(self, camera: int, detection: Detection) -> Region:
-        """Picture region of a detection, from the robot: some detections have angles that are not purely geometric."""
+        """Where a detection is in the picture, from the robot: angles of some detections are not all geometry's."""
         angles = [detection.alpha, detection.beta, detection.size_x, detection.size_y]
         numbers = self.call(self.robot.proxy(VIDEO), "getImageInfoFromAngularInfo", camera, angles)
         return Region(*map(float, numbers))
@@ -284,7 +291,7 @@ def _size(resolution: int) -> tuple[int, int]:
 
 
 def seen_messages(detections: Sequence[LocalizedDetection], prefix: str) -> list[SeenObject]:
-    """Detections as messages; `prefix` of the robot's frames with its slash, or empty."""
+    """Detections as messages; the prefix is that of the robot's frames, with its slash, or empty."""
     return [_seen_message(detection, prefix) for detection in detections]
 
 

@@ -36,7 +36,7 @@ class Region(NamedTuple):
 
 @dataclass(frozen=True)
 class Detection:
-    """Something in a picture; angles in rad."""
+    """Something in a picture; rad."""
 
     kind: str  # ball, face, landmark, code or movement
     name: str  # person, number of the landmark, text of the code; empty: none, or unknown
@@ -71,7 +71,7 @@ def ball_detections(value: Any) -> DetectionArray:
         value: [[s, us], [alpha, beta, radius, radius], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
 
     Raises:
-        ValueError: The value has another form.
+        ValueError: The value is something else.
     """
     return _read(value, "red ball", _ball)
 
@@ -84,7 +84,7 @@ def landmark_detections(value: Any) -> DetectionArray:
             FRAME_ROBOT, camera]; rad.
 
     Raises:
-        ValueError: The value has another form.
+        ValueError: The value is something else.
     """
     return _read(value, "landmarks", _landmarks)
 
@@ -92,14 +92,14 @@ def landmark_detections(value: Any) -> DetectionArray:
 def face_detections(value: Any) -> DetectionArray:
     """A picture with faces, from FaceDetected.
 
-    A single unnamed face gets the name of the only person in the time-filtered recognition, if there is exactly one.
+    The only face of a picture, if it has no name, gets that of the only person who was recognised for some time.
 
     Args:
-        value: [[s, us], [[[0, alpha, beta, width, height], [id, score, name, ...]], ..., time-filtered recognition],
+        value: [[s, us], [[[0, alpha, beta, width, height], [id, score, name, ...]], ..., recognised for some time],
             camera in the torso, camera in FRAME_ROBOT, camera]; rad.
 
     Raises:
-        ValueError: The value has another form.
+        ValueError: The value is something else.
     """
     return _read(value, "faces", _faces)
 
@@ -112,7 +112,7 @@ def movement_detections(value: Any) -> DetectionArray:
             region's], ...], ...], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
 
     Raises:
-        ValueError: The value has another form.
+        ValueError: The value is something else.
     """
     return _read(value, "movements", _movements)
 
@@ -124,9 +124,10 @@ def code_detections(value: Any, width: int, height: int, lens: Lens) -> tuple[De
         value: [[text, [[x, y], [x, y], [x, y], [x, y]]], ...]: corners in pixels, around the code from its upper left.
         width: Of the picture, pixels.
         height: Of the picture, pixels.
+        lens: Field of view of the camera.
 
     Raises:
-        ValueError: The value has another form.
+        ValueError: The value is something else.
     """
     try:
         return tuple(
@@ -203,7 +204,7 @@ def _faces(content: Any) -> list[Detection]:
 
 
 def _recognised(entry: Any) -> list[str]:
-    """Names in TimeFilteredRecoInfo: [2, [name]] or [3, [name, ...]]; none in [] and [4]."""
+    """Names in TimeFilteredRecoInfo: [2, [name]] or [3, [name, ...]]; there are none in [] and [4]."""
     if len(entry) == 2 and entry[0] in (2, 3):
         return [str(name) for name in entry[1]]
     return []

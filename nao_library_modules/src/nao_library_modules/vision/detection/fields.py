@@ -1,4 +1,4 @@
-"""Fields of a VisionFunction for detection and tracking."""
+"""Fields of a VisionFunction for functions that detect and follow something."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SEARCH_TIMEOUT = 20.0
 
 
 def camera_index(camera: str) -> int | None:
-    """Index of a named camera; None for the active one."""
+    """Index of a camera that a message names; None for the active one."""
     return CAMERAS[camera_name(camera, "top")] if camera.strip() else None
 
 
@@ -40,7 +40,7 @@ def require_mark(number: str) -> str:
 
 
 def require_name(name: str) -> str:
-    """The name of a person, stripped."""
+    """The name of a person, without blanks around it."""
     bare = require_text("str_param", name, "the name of a person")
     if len(bare) > LONGEST_NAME:
         problem = f"{bare[:20]!r}... is too long"
@@ -51,7 +51,7 @@ def require_name(name: str) -> str:
 
 
 def wanted_thing(text: str) -> tuple[str, str]:
-    """Kind and name (may be empty) of a thing for lookFor."""
+    """Kind and name (or nothing) of what lookFor looks for."""
     kind, _, name = text.strip().partition(" ")
     name = name.strip()
     if kind not in LOOKED_FOR:

@@ -1,4 +1,4 @@
-"""Positions of detections from their place in the picture, the camera's pose, and the real size. Pure.
+"""Positions of detections in space from the place in the picture, the camera's pose, and the real size. Pure.
 
 Camera frames are NAOqi's here: X along the axis, Y left, Z up. Optical frames have X right, Y down, Z along the axis.
 """
@@ -38,6 +38,7 @@ class LocalizedDetection:
 
     @property
     def label(self) -> str:
+        """Its name, else its kind."""
         return self.detection.name or self.detection.kind
 
     @property
@@ -57,13 +58,15 @@ def located(
     in_torso: Pose,
     in_robot: Pose,
 ) -> LocalizedDetection:
-    """Compute the position of a detection.
+    """Place a detection in space.
 
     Args:
+        detection: From a picture.
         camera: Index of the camera.
         time: ROS time of the picture, s.
         region: Of the detection in the picture.
-        size: Real size, m: a ball's radius, else its width; 0 if unknown.
+        lens: Of the camera.
+        size: Real size, m: a ball's radius, else its width; 0 if it is not known.
         in_torso: The camera's pose in the torso frame.
         in_robot: The camera's pose in FRAME_ROBOT.
     """
@@ -91,25 +94,26 @@ def _distance(detection: Detection, size: float, ray: Vector, width: float, heig
     """Distance of a detection, m.
 
     Args:
+        detection: From a picture.
         size: Real size, m.
         ray: To its centre, 1 along the axis.
         width: In the picture, in units of the focal length.
         height: Likewise.
     """
     stretch = math.hypot(*ray)
-    if detection.kind == BALL:  # its size is the angle that it subtends, wherever in the picture
+    if detection.kind == BALL:  # its size is the angle in which it is seen, wherever in the picture
         return size / math.sin((detection.size_x + detection.size_y) / 4.0)
-    if detection.kind == CODE:  # a rotated code has a larger bounding box
+    if detection.kind == CODE:  # it may be turned in the picture, and is larger then
         return stretch * size / (2.0 * math.tan(detection.size_x / 2.0))
-    # Off the axis, perspective projection magnifies more than the subtended angle.
+    # Away from the axis everything is drawn larger than the angle in which it is seen.
     across = width * math.hypot(1.0, ray[2]) / stretch**2
-    if detection.kind == LANDMARK:  # an oblique disc is foreshortened in one direction only
+    if detection.kind == LANDMARK:  # a disc that is seen from the side is narrower one way only
         return size / max(across, height * math.hypot(1.0, ray[1]) / stretch**2)
     return size / across
 
 
 def moved(point: Vector, pose: Pose) -> Vector:
-    """Transform a point (m) from the frame of `pose` to its parent frame."""
+    """A point (m) of a frame in the frame that the pose of the former refers to."""
     x, y, z = turned(point, pose[3:])
     return x + pose[0], y + pose[1], z + pose[2]
 
@@ -121,9 +125,9 @@ Group = List[Tuple[int, LocalizedDetection]]
 
 
 def merged(pictures: Sequence[Sequence[LocalizedDetection]]) -> list[LocalizedDetection]:
-    """Merge the detections of several pictures (oldest first) to one a thing: median positions, most frequent name.
+    """Merge the detections of several pictures (oldest first), each thing once: the medians, the most frequent name.
 
-    Named things come first, then those in most pictures, then the oldest; the time is that of the last picture.
+    Those with a name come first, then those of most pictures, then the oldest; the time is that of the last picture.
     """
     things: dict[tuple[str, str], Group] = {}
     for number, picture in enumerate(pictures):

@@ -1,4 +1,4 @@
-"""Functions that track with the head: it turns to a ball or a face, and searches for what is out of view."""
+"""Functions that follow something with the head: it turns to a ball or a face, and searches what is out of view."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ WAY_BACK = 0.3
 
 
 class Neck:
-    """Turns the head for one function, in the goal thread."""
+    """Turns the head for one function. Used from the thread that executes goals."""
 
     def __init__(self, motion: Callable[..., Any], speed: float) -> None:
         """Read the limits of the head.
@@ -70,19 +70,19 @@ class Neck:
         self.ranges = [JointLimits(float(lower), float(upper), float(top)) for lower, upper, top, *_ in limits]
 
     def angles(self, measured: bool) -> Angles:
-        """Head angles, measured or commanded."""
+        """Where the head is measured, or commanded to be."""
         yaw, pitch = map(float, self._motion("getAngles", list(HEAD), measured))
         return yaw, pitch
 
     def turn(self, angles: Angles, speed: float) -> None:
-        """Start turning the head, without waiting."""
+        """Begin to turn the head; it goes on by itself."""
         self._motion("setAngles", list(HEAD), list(angles), speed)
 
     def follow(self, detection: LocalizedDetection) -> bool:
-        """Turn towards a detection; return True if that is beyond the head's limits.
+        """Turn towards a detection; whether that is beyond what the head can turn.
 
-        The target is the position of the thing, not its angle off the axis: the position does not change while the head
-        moves, so an old picture does no harm.
+        The aim is the place of the thing, not its angle off the axis: it stays the same while the head is on its way,
+        so that an old picture does no harm.
         """
         try:
             wanted = aim(detection)
@@ -96,14 +96,14 @@ class Neck:
         return (yaw, pitch) != wanted
 
     def search(self, place: Angles) -> float:
-        """Turn to angles of the search; return the travel time, s."""
+        """Turn to a place of the search; how long that takes, s."""
         way = travel_time(self.angles(True), place, self.ranges, self.speed)
         self.turn(place, self.speed)
         return way
 
 
 class TrackingFunctions(Part):
-    """Tracking with the head. Parameters are fields of VisionFunction.
+    """Following with the head. Parameters are fields of VisionFunction.
 
     Status of the feedback: looking (nothing seen yet), following, lost, searching.
     """
@@ -185,18 +185,18 @@ class TrackingFunctions(Part):
                     last, now = detection, self._module.clock.now()
                     in_view += now - before if now - before <= LOST else 0.0
                     before = now
-        finally:  # a preempted goal also gets the last place in its result
+        finally:  # also a goal that is preempted has the last place in its result
             if last is not None:
                 self._detectors.note([last])
         return [in_view]
 
     @contextmanager
     def _head(self, speed: float, revert: bool) -> Iterator[Neck]:
-        """Own the head during a block, with stiffness on; it stops at the end.
+        """Have the head during a block; it is stiff, and stops at the end.
 
         Args:
             speed: Greatest fraction of its top speed, 0..1; 0 for a moderate one.
-            revert: Return to the former angles after the function's `time`.
+            revert: Whether it goes back to where it was after the function's `time`.
         """
         module = self._module
         proxy = module.robot.proxy(MOTION)
@@ -232,7 +232,7 @@ class TrackingFunctions(Part):
 
 
 class Chase:
-    """Repeatedly detects something and turns the head towards it; `search`: looks for it out of view."""
+    """Detects something again and again, and turns the head after it; `search`: also to find it."""
 
     def __init__(self, detectors: Detectors, neck: Neck, watch: Watch, kind: str, search: bool) -> None:
         self._detectors = detectors
@@ -242,10 +242,10 @@ class Chase:
         self._last: LocalizedDetection | None = None
 
     def detections(self, end: float, patience: float) -> Iterator[tuple[LocalizedDetection, bool]]:
-        """Each detection, and whether the head is at its limit.
+        """Each detection, and whether the head is as far as it can turn.
 
         Args:
-            end: ROS time, s.
+            end: ROS time of the end, s.
             patience: s without a detection after which it ends as well.
         """
         clock = self._detectors.clock

@@ -31,50 +31,50 @@ MIDDLE = math.radians(3.0)
 
 
 def aim(detection: LocalizedDetection) -> Angles:
-    """Head angles that centre a detection in the picture, also beyond the head's limits.
+    """Head angles that bring a detection into the middle of the picture, also beyond the head's limits.
 
     Raises:
-        ValueError: The detection is inside the head.
+        ValueError: If it is in the head.
     """
     head = load_head()
     return look_at(head, head.cameras[CAMERA_NAMES[detection.camera]], detection.in_torso)
 
 
 def within(joint: JointLimits, angle: float) -> float:
-    """Clamp an angle (rad) to the limits of a joint."""
+    """An angle (rad) within the limits of a joint."""
     return min(max(angle, joint.lower), joint.upper)
 
 
 def off_axis(detection: LocalizedDetection) -> float:
-    """Angle between a detection and the camera's axis, rad."""
+    """Angle of a detection off the camera's axis, rad."""
     x, y, z = detection.in_camera
     return math.atan2(math.hypot(y, z), x)
 
 
 def fraction(angle: float, ranges: Sequence[JointLimits], most: float) -> float:
-    """Fraction of the head's top speed for a turn: proportional to the angle (rad), at most `most`."""
+    """Fraction of the head's top speed for a turn: the smaller the angle (rad), the slower; at most `most`."""
     top = min(joint.max_speed for joint in ranges)
     return min(max(angle / REACTION / top, LEAST_FRACTION), most)
 
 
 def travel_time(start: Angles, end: Angles, ranges: Sequence[JointLimits], speed: float) -> float:
-    """Duration of a head turn at a fraction (0..1) of the top speeds, s."""
+    """Duration of a turn of the head at a fraction (0..1) of the top speeds, s."""
     return max(abs(b - a) / (joint.max_speed * speed) for a, b, joint in zip(start, end, ranges))
 
 
 def search_angles(kind: str, ranges: Sequence[JointLimits]) -> Iterator[Angles]:
-    """Endless head angles of a search for a kind of thing: ahead first, then left, then right."""
+    """Head angles of a search for a kind of thing, without end: ahead first, then to the left, then to the right."""
     rows = PITCHES.get(kind, USUAL_PITCHES)
     places = []
     for column, yaw in enumerate(YAWS):
-        # Alternate columns downwards and upwards: shorter head movements.
+        # Down one column and up the next: shorter ways for the head.
         for pitch in rows if column % 2 == 0 else rows[::-1]:
             places.append((within(ranges[0], yaw), within(ranges[1], pitch)))
     return cycle(places)
 
 
 def the_one(detections: Sequence[LocalizedDetection], last: LocalizedDetection | None) -> LocalizedDetection:
-    """The detection to follow: the same thing as `last`, else the nearest to it; at first the largest."""
+    """The detection to follow: of the same thing as the last one, else the nearest to it; at first the largest."""
     if last is None:
         return max(detections, key=lambda s: s.region.width * s.region.height)
     same = [s for s in detections if s.detection.key == last.detection.key]
