@@ -70,11 +70,9 @@ class NaoAudioInput(NaoBasic):
             robot_home: Folder of this computer that is the home of the robot's user, as the `record_dir` of a simulated
                 robot is; "~" stands for the home of this computer's user. Empty: it is on the robot alone.
         """
-        # The connection's listener, which `super().__init__` adds, may be called before the rest of the constructor.
-        self._taking_up = threading.Lock()
-        self._unrestored: dict[str, Any] | None = None  # what goals had left going, which is not taken up yet
-        self._took_over = False
         super().__init__(ip, port, autostart, launchpath, **options)
+        self._taking_up = threading.Lock()
+        self._took_over = False
         home = Path(robot_home).expanduser().absolute() if robot_home else None
         delays = [self._node.seconds(name, 0.0) for name in ("speech_onset_delay", "speech_end_delay")]
         self.hearing = Hearing(self, str(self._node.namespace))
@@ -88,7 +86,7 @@ class NaoAudioInput(NaoBasic):
         sounds = SoundFunctions(self, self.hearing, self._node.frame_prefix())
         self.add_parts(self.hearing, self.left, self.recogniser, self.card)
         self.add_parts(self.recordings, self.recognition, contexts, sounds, self.energies)
-        self._unrestored = self.kept.load()
+        self._unrestored: dict[str, Any] | None = self.kept.load()  # what goals had left going, not taken up yet
         self.serve("nao_audio_in", NaoAudioInAction)
         if self._unrestored:
             self.robot.connection.in_background(self._take_up)
@@ -172,9 +170,7 @@ class NaoAudioInput(NaoBasic):
                     log.warning("%s of the server that died does not go on: %s", name, error)
             self.left.keep()
 
-    def _connection_changed(self, *args: Any) -> None:
-        super()._connection_changed(*args)
+    def connected(self, again: bool) -> None:
         self._take_up()
-        connection = self.robot.connection
-        if self.server is not None and connection.state == "connected" and connection.generation > 1:
+        if again:
             self.recognition.renew()

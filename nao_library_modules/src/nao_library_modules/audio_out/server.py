@@ -95,8 +95,6 @@ class NaoAudioOutput(NaoBasic):
         """As NaoBasic has them; and nothing sounds any more that goals have left in the background."""
         return [*super().shutdown_steps(), self.words.close, self.with_robot(self.sounds.silence)]
 
-    def _connection_changed(self, *args: Any) -> None:
-        super()._connection_changed(*args)
-        connection = self.robot.connection
-        if self.server is not None and connection.state == "connected" and connection.generation > 1:
+    def connected(self, again: bool) -> None:
+        if again:
             self.words.renew()

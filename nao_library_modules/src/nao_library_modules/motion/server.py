@@ -188,9 +188,8 @@ class NaoMotion(NaoBasic):
         if self.walks.left_walking:
             self.walks.stop_walk()
 
-    def _connection_changed(self, *args: Any) -> None:
-        super()._connection_changed(*args)
-        if self.robot.connection.state == "connected" and self.robot.connection.generation > 1:
+    def connected(self, again: bool) -> None:
+        if again:
             self._mishaps.renew()
 
     def _told(self, event: str, value: Any) -> None:

@@ -164,7 +164,7 @@ class NaoBasic(FunctionRunner):
         self._launch: Supervisor | None = None
         self._launched: LaunchPath | None = None
         self._diagnostics: Any = None
-        self.robot.connection.add_listener(self._connection_changed)
+        self.robot.connection.add_listener(self._on_connection)
         node.on_shutdown(self.shut_down)
         if autostart:
             self.start_launch()
@@ -272,7 +272,7 @@ class NaoBasic(FunctionRunner):
         return guarded
 
     def _stop_listening(self) -> None:
-        self.robot.connection.remove_listener(self._connection_changed)
+        self.robot.connection.remove_listener(self._on_connection)
 
     def end_function(self) -> None:
         """Interrupt the running function, and let it clean up."""
@@ -530,14 +530,25 @@ class NaoBasic(FunctionRunner):
 
     # The connection
 
-    def _connection_changed(self, *_: Any) -> None:
-        """Called from the thread that the connection has for its listeners; they may call the robot."""
+    def connected(self, again: bool) -> None:
+        """Called when the robot is there; not before the module has its server, and so is complete.
+
+        In the thread that the connection has for its listeners; they may call the robot.
+
+        Args:
+            again: The connection was lost before: what was set up in the robot is gone.
+        """
+
+    def _on_connection(self, *_: Any) -> None:
         connection = self.robot.connection
         if connection.state == "connected":
-            if connection.generation > 1:
+            again = connection.generation > 1
+            if again:
                 self.events.renew()
             else:
                 self._tell_ready()
+            if self.server is not None:
+                self.connected(again)
         elif connection.state == "lost":
             # A function that only waits would otherwise not notice.
             self.interrupt.trigger(RobotLost(self.robot.address, connection.last_error or "no answer"))

@@ -58,8 +58,6 @@ class NaoTactile(NaoBasic):
             from .runner import BehaviorClient
 
             runner = BehaviorClient()
-        # The connection's listener, which `super().__init__` adds, may be called before the rest of the constructor.
-        self.links: LinkFunctions | None = None
         super().__init__(ip, port, autostart, launchpath, **options)
         self.senses = Senses(self, str(self._node.namespace))
         event_time = lambda event: self.robot_clock.event_time(self.call_now, *event)  # noqa: E731
@@ -86,12 +84,9 @@ class NaoTactile(NaoBasic):
         """As NaoBasic has them; touches start nothing any more, and the sonars are let go."""
         return [*super().shutdown_steps(), self.links.bindings.close, self.with_robot(self.senses.drop_sonar)]
 
-    def _connection_changed(self, *args: Any) -> None:
-        super()._connection_changed(*args)
-        if self.links is None:
-            return
+    def connected(self, again: bool) -> None:
         self.links.restore()
-        if self.robot.connection.state == "connected" and self.robot.connection.generation > 1:
+        if again:
             self.links.bindings.renew()
             try:
                 self.senses.renew_sonar()
