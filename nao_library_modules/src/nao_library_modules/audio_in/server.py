@@ -124,7 +124,7 @@ class NaoAudioInput(NaoBasic):
         self.hearing.heard = Heard()
         self._take_up()
         if not self._took_over:
-            self._took_over = self._end_leftovers()
+            self._took_over = self.hearing.end_leftovers(SENSES.values())
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         super().fill_result(result, outcomes)
@@ -135,18 +135,6 @@ class NaoAudioInput(NaoBasic):
         left = (self.recordings.drop, self.recognition.drop, self.energies.drop)
         return [*super().shutdown_steps(), *map(self.with_robot, left)]
 
-    def _end_leftovers(self) -> bool:
-        """End what a server of this name could not end, for it was killed; returns whether the robot was asked."""
-        for module in SENSES.values():
-            try:
-                proxy = self.robot.proxy(module)
-                for name, *_ in self.call_now(proxy, "getSubscribersInfo"):
-                    if name.startswith(self.hearing.subscriber_for("")):
-                        self.call_now(proxy, "unsubscribe", name)
-            except NaoError as error:
-                log.debug("%s may work for nobody: %s", module, error)
-        return self.robot.connection.state == "connected"
-
     # After the death of the node
 
     def _take_up(self) -> None:
@@ -155,7 +143,7 @@ class NaoAudioInput(NaoBasic):
             if not self._unrestored or self.robot.connection.state != "connected":
                 return
             left, self._unrestored = self._unrestored, None
-            self._took_over = self._end_leftovers()
+            self._took_over = self.hearing.end_leftovers(SENSES.values())
             self.left.vocabulary_is_set = bool(left.get("vocabulary_is_set"))
             for name, take_up in (
                 ("recording", lambda kept: self.recordings.renew(Recording(**kept))),

@@ -6,7 +6,7 @@ import logging
 import re
 import socket
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
@@ -159,6 +159,18 @@ class ExtractorUse(Part):
     def stop_extractor(self, module: str, purpose: str) -> None:
         """End a subscription; preemption does not interrupt this."""
         self.call_now(self.robot.proxy(module), "unsubscribe", self.subscriber_for(purpose))
+
+    def end_leftovers(self, modules: Iterable[str]) -> bool:
+        """End subscriptions that a killed server of this name has left in modules; whether the robot was asked."""
+        for module in modules:
+            try:
+                proxy = self.robot.proxy(module)
+                for name, *_ in self.call_now(proxy, "getSubscribersInfo"):
+                    if name.startswith(self.subscriber_for("")):
+                        self.call_now(proxy, "unsubscribe", name)
+            except NaoError as error:
+                log.debug("%s may work for nobody: %s", module, error)
+        return self.robot.connection.state == "connected"
 
     def subscriber_for(self, purpose: str) -> str:
         """Name of a subscription: two of one server must not end each other."""

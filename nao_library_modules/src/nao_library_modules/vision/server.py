@@ -18,7 +18,7 @@ from .capture.jobs import CaptureJobs
 from .capture.settings import SettingFunctions
 from .capture.snapshots import PictureFunctions
 from .capture.streaming import StreamingFunctions
-from .detection.detectors import Detectors
+from .detection.detectors import DETECTORS, Detectors
 from .detection.faces import FaceFunctions
 from .detection.things import DetectionFunctions
 from .detection.track import TrackingFunctions
@@ -130,7 +130,7 @@ class NaoVision(NaoBasic):
         """Forget what the last chain has seen and taken."""
         self._results.clear()
         if not self._took_over and self.robot.connection.state == "connected":
-            self._took_over = self.detectors.end_leftovers()
+            self._took_over = self.detectors.end_leftovers(each.module for each in DETECTORS.values())
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Add what the chain has seen and taken."""

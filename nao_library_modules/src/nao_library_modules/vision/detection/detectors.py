@@ -203,18 +203,6 @@ class Detectors(ExtractorUse):
             found.append(located(detection, camera, time, region, lens, size, array.in_torso, array.in_robot))
         return found
 
-    def end_leftovers(self) -> bool:
-        """End subscriptions that a killed server of this name has left; whether the robot was asked."""
-        for detector in DETECTORS.values():
-            try:
-                proxy = self.robot.proxy(detector.module)
-                for name, *_ in self.call_now(proxy, "getSubscribersInfo"):
-                    if name.startswith(self.subscriber_for("")):
-                        self.call_now(proxy, "unsubscribe", name)
-            except NaoError as error:
-                log.debug("%s may work for nobody: %s", detector.module, error)
-        return self.robot.connection.state == "connected"
-
     def _read(self, kind: str, camera: int, value: Any) -> DetectionArray:
         read = DETECTORS[kind].read
         if read is not None:
