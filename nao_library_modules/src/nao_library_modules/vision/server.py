@@ -115,6 +115,7 @@ class NaoVision(NaoBasic):
         detections = DetectionFunctions(self.detectors)
         self.add_parts(
             self.cameras,
+            self.detectors,
             self._results,
             streaming,
             PictureFunctions(self, self.cameras, self.files, self._results),

@@ -94,7 +94,7 @@ class Cameras(Part):
             if self.topics.resolved(topic) in published:
                 return topic
             # A later image stands behind the earlier ones: a camera keeps its topic.
-            self._images += [image for image in published if image not in self._images]
+            self._images = [*self._images, *(image for image in published if image not in self._images)]
             if len(self._images) > place:
                 return self._images[place]
             if published or time.monotonic() > give_up:
