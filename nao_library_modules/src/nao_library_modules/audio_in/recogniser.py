@@ -8,6 +8,7 @@ from typing import Any
 
 from naoqi.errors import RobotError, UnknownMethod
 
+from ..base.once_per_connection import OncePerConnection
 from ..functions.memory_functions import MEMORY
 from ..functions.parts import Part
 from ..server.extractor_use import Event
@@ -36,15 +37,8 @@ class Recogniser(Part):
         self._hearing = hearing
         self._delays = (onset_delay, end_delay)
         self._times_key = SimulatedKey(module.robot, TIMES)
-        self._languages: list[str] | None = None
-        self._languages_of = 0  # generation of the connection
-
-    def languages(self) -> Sequence[str]:
-        """Languages that the robot recognises, asked once a connection."""
-        generation = self._module.robot.connection.generation
-        if self._languages is None or self._languages_of != generation:
-            self._languages, self._languages_of = list(self.call("getAvailableLanguages")), generation
-        return self._languages
+        self.languages = OncePerConnection(module.robot, lambda: list(self.call("getAvailableLanguages")))
+        """Languages that the robot recognises."""
 
     def word_times(self) -> WordTimes:
         """Times of words, for one function that listens."""

@@ -55,7 +55,7 @@ class PlayerFunctions(Part):
     def __init__(self, module: NaoBasic, sounds: Sounds) -> None:
         self._module = module
         self._sounds = sounds
-        self.loaded = LoadedSounds(module.robot.connection)
+        self.loaded = LoadedSounds(module.robot)
 
     # Files
 

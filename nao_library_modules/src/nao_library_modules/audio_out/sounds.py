@@ -12,6 +12,7 @@ from naoqi.errors import CallCanceled, NaoError
 
 from ..base.cancellation import CancellationToken
 from ..base.errors import BadGoal
+from ..base.once_per_connection import OncePerConnection
 from ..functions.parts import Part
 from ..robot.robot import QUICK_ANSWER
 from ..robot.robot_task import end_call, wait_for_call
@@ -186,30 +187,24 @@ class LoadedSounds:
     A new connection may lead to a robot that has loaded nothing.
     """
 
-    def __init__(self, connection: Any) -> None:
-        self._connection = connection
-        self._generation: int | None = None
-        self._ids: dict[str, int] = {}
+    def __init__(self, robot: Any) -> None:
+        self._ids: OncePerConnection[dict[str, int]] = OncePerConnection(robot, dict)
 
     @property
     def names(self) -> list[str]:
         """Names of the loaded files, the last one loaded last."""
-        if self._generation != self._connection.generation:
-            self._ids.clear()
-            self._generation = self._connection.generation
-        return list(self._ids)
+        return list(self._ids())
 
     def add(self, name: str, number: int) -> None:
         """Add a file; of a name that was loaded before, the new id counts."""
         self.remove(name)
-        self._ids[name] = number
+        self._ids()[name] = number
 
     def remove(self, name: str) -> None:
-        if name in self.names:
-            del self._ids[name]
+        self._ids().pop(name, None)
 
     def clear(self) -> None:
-        self._ids.clear()
+        self._ids().clear()
 
     def number(self, name: str) -> int:
         """Id of a loaded file; of the one loaded last without a name.
@@ -221,11 +216,11 @@ class LoadedSounds:
         if not names or (name and name not in names):
             problem = f"{name!r} is not loaded any more" if name else "no sound is loaded any more"
             raise BadGoal("str_param", name, "loadFile comes first", problem=problem)
-        return self._ids[name or names[-1]]
+        return self._ids()[name or names[-1]]
 
     def name(self, number: int) -> str:
         """Name of the loaded file of an id; the id as text if others have loaded it."""
-        return next((name for name in self.names if self._ids[name] == number), str(number))
+        return next((name for name, each in self._ids().items() if each == number), str(number))
 
 
 def _log_failure(call: Any) -> None:

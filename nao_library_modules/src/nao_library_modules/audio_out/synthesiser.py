@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..base.field_checks import require_known
+from ..base.once_per_connection import OncePerConnection
 from ..functions.parts import Part
 from ..server.nao_basic import NaoBasic
 
@@ -25,8 +26,7 @@ class Synthesiser(Part):
 
     def prepare_for_checks(self) -> None:
         """Know no voices and no languages yet."""
-        self._known: dict[str, list[str]] = {}
-        self._generation: int | None = None
+        self._known: OncePerConnection[dict[str, list[str]]] = OncePerConnection(self._module.robot, dict)
 
     def call(self, method: str, *args: Any) -> Any:
         """Call ALTextToSpeech; preemption ends the call."""
@@ -42,14 +42,11 @@ class Synthesiser(Part):
 
     def _require(self, field: str, name: str, method: str, kind: str) -> str:
         if name.strip() not in self._names(method):
-            self._known.pop(method)  # it may have been installed meanwhile
+            self._known().pop(method, None)  # it may have been installed meanwhile
         return require_known(field, name, self._names(method), kind)
 
     def _names(self, method: str) -> list[str]:
-        generation = self._module.robot.connection.generation
-        if generation != self._generation:  # the robot behind a new connection may be another one
-            self._known.clear()
-            self._generation = generation
-        if method not in self._known:
-            self._known[method] = [str(name) for name in self.call(method)]
-        return self._known[method]
+        known = self._known()
+        if method not in known:
+            known[method] = [str(name) for name in self.call(method)]
+        return known[method]

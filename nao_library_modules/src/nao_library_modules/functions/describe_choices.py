@@ -9,6 +9,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..base.once_per_connection import OncePerConnection
 from ..nao.light_names import plain_words
 from .fields import Question
 
@@ -38,8 +39,8 @@ class Choices:
         self._own = own
         self._robot = robot
         self._lock = threading.Lock()
-        self._known: dict[str, tuple[str, ...]] = {}  # answers by the question's text: arguments may be lists
-        self._generation: int | None = None
+        # Answers by the question's text: arguments may be lists.
+        self._known: OncePerConnection[dict[str, tuple[str, ...]]] = OncePerConnection(robot, dict)
 
     def of(self, function: str, field: str, asked: Sequence[Question]) -> tuple[str, ...]:
         """Words that a field of a function may hold; none where nobody has a say or the robot cannot be asked.
@@ -60,17 +61,13 @@ class Choices:
 
     def _answer(self, question: Question) -> tuple[str, ...]:
         with self._lock:
-            generation = self._robot.connection.generation
-            if generation != self._generation:  # the robot behind a new connection may be another one
-                self._known.clear()
-                self._generation = generation
-            key = repr(question)
-            if key not in self._known:
+            known, key = self._known(), repr(question)
+            if key not in known:
                 module, method, *arguments = question
                 try:
                     answer = self._robot.proxy(module).call_async(method, *arguments).result(timeout=LIMIT)
                 except NaoError as error:
                     log.debug("%s.%s cannot be asked: %s", module, method, error)
                     return ()
-                self._known[key] = tuple(map(str, answer))
-            return self._known[key]
+                known[key] = tuple(map(str, answer))
+            return known[key]

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 from naoqi.errors import NaoError
 
 from ..base.errors import MotionStopped
+from ..base.once_per_connection import OncePerConnection
 from ..functions.parts import Part
 from ..nao.joint_names import JointNames
-from .facts import ARMS, BODY, MOTION, JointLimits, JointState, MotionFacts, OncePerConnection
+from .facts import ARMS, BODY, MOTION, JointLimits, JointState, MotionFacts
 from .health import read_health
 from .plan import MotionPlan
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, Tuple, TypeVar
 
 from ..base.errors import BadGoal
 from ..functions.joint_trajectory import expand_names
@@ -13,26 +12,6 @@ from ..nao.joint_names import MOTION as MOTION
 BODY = "Body"
 LEGS = ("LLeg", "RLeg")
 ARMS = ("LArm", "RArm")
-Answer = TypeVar("Answer")
-
-
-class OncePerConnection(Generic[Answer]):
-    """An answer of the robot, asked for when it is first needed and again after each reconnection.
-
-    Any thread may ask; at worst two ask the robot at the same time.
-    """
-
-    def __init__(self, robot: Any, read: Callable[[], Answer]) -> None:
-        self._connection = robot.connection
-        self._read = read
-        self._known: Tuple[int, Answer] | None = None
-
-    def __call__(self) -> Answer:
-        generation = self._connection.generation
-        known = self._known
-        if known is None or known[0] != generation:
-            known = self._known = (generation, self._read())
-        return known[1]
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,11 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ..base.errors import BadGoal
+from ..base.once_per_connection import OncePerConnection
 from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
 from .body import POSTURES, BodyPart, RobotBody
-from .facts import BODY, OncePerConnection
+from .facts import BODY
 from .fields import POSTURE_SPEED, Posture, PostureSpeed, Stiffness, Tries
 from .plan import POSTURE_TIME
 

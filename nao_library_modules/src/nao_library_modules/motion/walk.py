@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 from naoqi.errors import NaoError
 
 from ..base.errors import BadGoal, WalkStopped
+from ..base.once_per_connection import OncePerConnection
 from ..base.places import Place
 from ..functions.chain import checked_by
 from ..robot.robot_task import wait_for_call
 from .body import NEWS_TIME, BodyPart, RobotBody
-from .facts import MOTION, OncePerConnection
+from .facts import MOTION
 from .gait import (
     GaitPairs,
     places,

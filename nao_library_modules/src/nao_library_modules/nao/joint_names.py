@@ -7,6 +7,8 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotError
 
+from ..base.once_per_connection import OncePerConnection
+
 MOTION = "ALMotion"
 CHAINS = (
     "Body",
@@ -33,7 +35,7 @@ class JointNames:
 
     def __init__(self, robot: Any) -> None:
         self._robot = robot
-        self._known: tuple[int, Mapping[str, tuple[str, ...]]] | None = None
+        self._chains = OncePerConnection(robot, self._ask)
 
     @property
     def chains(self) -> Mapping[str, tuple[str, ...]]:
@@ -42,10 +44,7 @@ class JointNames:
         Raises:
             NaoError: If the robot cannot be asked.
         """
-        generation = self._robot.connection.generation
-        if self._known is None or self._known[0] != generation:
-            self._known = (generation, self._ask())
-        return self._known[1]
+        return self._chains()
 
     @property
     def body(self) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from std_msgs.msg import Header
 from nao_library_msgs.msg import SeenObject
 from naoqi.errors import NaoError, UnknownMethod
 
+from ...base.once_per_connection import OncePerConnection
 from ...functions.memory_functions import MEMORY
 from ...motion.facts import MOTION
 from ...nao.camera_facts import CAMERA_NAMES, RESOLUTIONS
@@ -158,7 +159,7 @@ class Detectors(ExtractorUse):
         self._cameras = cameras
         self._results = results
         self._prefix = frame_prefix
-        self._lenses: dict[tuple[int, int], Lens] = {}
+        self._lenses: OncePerConnection[dict[int, Lens]] = OncePerConnection(self.robot, dict)  # by camera
 
     @contextmanager
     def watching(self, wanted: WantedDetection) -> Iterator[Watch]:
@@ -257,12 +258,12 @@ class Detectors(ExtractorUse):
         return x, y, z, wx, wy, wz
 
     def _lens(self, camera: int) -> Lens:
-        key = (self.robot.connection.generation, camera)  # behind a new connection is another robot perhaps
-        if key not in self._lenses:
+        lenses = self._lenses()
+        if camera not in lenses:
             proxy = self.robot.proxy(VIDEO)
             methods = ("getHorizontalFOV", "getVerticalFOV")
-            self._lenses[key] = Lens(*(float(self.call(proxy, method, camera)) for method in methods))
-        return self._lenses[key]
+            lenses[camera] = Lens(*(float(self.call(proxy, method, camera)) for method in methods))
+        return lenses[camera]
 
     def _region(self, camera: int, detection: Detection) -> Region:
         """Where a detection is in the picture, from the robot: angles of some detections are not all geometry's."""
