@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from .chain import FunctionTable
@@ -43,9 +44,11 @@ def _declared(name: str) -> OfflineServer:
     kind, action = server.module, server.action
     table = FunctionTable(kind.declared_functions(), MemoryFunctions.functions)
 
+    module = lru_cache(maxsize=None)(lambda: offline_module(kind))
+
     def describe() -> Description:
         description = Description(table, kind, action)
-        description.choices = lambda function, field, _: offline_module(kind).argument_choices(function, field)
+        description.choices = lambda function, field, _: module().argument_choices(function, field)
         return description
 
     return OfflineServer(name, action, kind, table, DescribeService(describe, None, lambda: ((), 0)))
