@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable, List, Sequence
 
-from nao_library_modules.base.whole_file import write_whole
+from .record_file import load_record, save_record
 
 FORMAT = "nao_library dialogue 1"
 ROBOT, PERSON = "robot", "person"
 SAYS, HEARS, DOES = "says", "hears", "does"
-
-
-class DialogueRecordError(ValueError):
-    """A file that is no record of a dialogue."""
 
 
 @dataclass(frozen=True)
@@ -90,26 +85,12 @@ class Notes:
 
 
 def save(turns: Sequence[Turn], path: Path) -> None:
-    content = {"format": FORMAT, "units": "s", "turns": [asdict(turn) for turn in turns]}
-    write_whole(path, json.dumps(content, indent=1) + "\n")
+    save_record(path, FORMAT, "s", "turn", turns)
 
 
 def load(path: Path) -> List[Turn]:
-    """Read a record.
-
-    Raises:
-        DialogueRecordError: The file cannot be read or is none.
-    """
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise DialogueRecordError(f"{path}: cannot be read: {error}") from error
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise DialogueRecordError(f"{path}: is no record of a dialogue: format is not {FORMAT!r}")
-    try:
-        return [_turn(entry) for entry in content["turns"]]
-    except (KeyError, TypeError, ValueError) as error:
-        raise DialogueRecordError(f"{path}: has a turn that is wrong: {error}") from error
+    """Read a record; RecordError if it is none."""
+    return load_record(path, FORMAT, "turn", _turn)
 
 
 def _turn(entry: Any) -> Turn:

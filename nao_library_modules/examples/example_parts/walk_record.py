@@ -5,14 +5,12 @@ Every place is in the robot's odometry (FRAME_WORLD of NAOqi), in m and rad.
 
 from __future__ import annotations
 
-import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, List, Optional, Sequence, Tuple
 
-from nao_library_modules.base.whole_file import write_whole
-from naoqi.errors import NaoError
+from .record_file import load_record, save_record
 
 Point = Tuple[float, float]
 # x, y in m, heading in rad.
@@ -25,10 +23,6 @@ CARRIES = 0.3
 # A foot that is further from where it carried before, m or rad, has made a step.
 STEP_LENGTH, STEP_TURN = 0.01, 0.07
 FORMAT = "nao_walk_record"
-
-
-class WalkRecordError(NaoError):
-    """A file is no record of a walk."""
 
 
 @dataclass(frozen=True)
@@ -108,26 +102,12 @@ def footprints(samples: Sequence[Sample]) -> List[Footprint]:
 
 
 def save(samples: Sequence[Sample], path: Path) -> None:
-    content = {"format": FORMAT, "units": "m, rad, kg", "samples": [asdict(sample) for sample in samples]}
-    write_whole(path, json.dumps(content))
+    save_record(path, FORMAT, "m, rad, kg", "sample", samples)
 
 
 def load(path: Path) -> List[Sample]:
-    """Read a record.
-
-    Raises:
-        WalkRecordError: The file cannot be read or is none.
-    """
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise WalkRecordError(f"{path}: cannot be read: {error}") from error
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise WalkRecordError(f"{path}: is no record of a walk: format is not {FORMAT!r}")
-    try:
-        return [_sample(entry) for entry in content["samples"]]
-    except (KeyError, TypeError, ValueError) as error:
-        raise WalkRecordError(f"{path}: has a sample that is wrong: {error!r}") from error
+    """Read a record; RecordError if it is none."""
+    return load_record(path, FORMAT, "sample", _sample)
 
 
 def _stepped(before: Place, now: Place) -> bool:

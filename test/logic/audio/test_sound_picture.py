@@ -13,11 +13,11 @@ from example_parts.dialogue_record import (
     PERSON,
     ROBOT,
     SAYS,
-    DialogueRecordError,
     Turn,
     load,
     save,
 )
+from example_parts.record_file import RecordError
 from example_parts.sound_picture import spectrogram
 
 RATE = 16000
@@ -58,9 +58,9 @@ def test_a_record_comes_back_as_it_was_and_one_that_is_wrong_is_refused(tmp_path
     for change, told in [({"who": "cat"}, "'cat' 'says'"), ({"ended": 0.0}, "from 0.5 s to 0.0 s")]:
         first, *rest = good["turns"]
         path.write_text(json.dumps({**good, "turns": [{**first, **change}, *rest]}))
-        with pytest.raises(DialogueRecordError, match=f"a.json: has a turn that is wrong: .*{told}"):
+        with pytest.raises(RecordError, match=f"a.json: has a turn that is wrong: .*{told}"):
             load(path)
     for text, told in [("{", "cannot be read"), ("[]", "is no record"), ('{"format": "x"}', "is no")]:
         path.write_text(text)
-        with pytest.raises(DialogueRecordError, match=f"a.json: {told}"):
+        with pytest.raises(RecordError, match=f"a.json: {told}"):
             load(path)
