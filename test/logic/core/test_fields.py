@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import partial
-from types import SimpleNamespace
 from typing import List
 
 import pytest
@@ -107,17 +106,19 @@ def test_what_a_function_declares_counts_before_what_its_check_does():
 
 
 def test_a_duration_is_checked_in_seconds():
-    def glow(self, time_on: Times):
+    seen = []
+
+    class Message:
+        __slots__ = ("hold",)
+
+    def glow(hold):
         pass
 
-    message = SimpleNamespace(function="glow", time=0.0, on_error="")
-    kind = type("Message", (), {"__slots__": ["function", "time_on"], "_type": ""})
-    told = []
-    glow.__annotations__["time_on"] = Annotated[float, Field("", check=lambda name, value: told.append(value))]
-    binding = BoundFunction(glow.__get__(object()), kind)
-    message.time_on = Duration(1.5)
-    binding.check_fields(message)
-    assert told == [1.5]
+    glow.__annotations__["hold"] = Annotated[float, Field("", check=lambda _, value: seen.append(value))]
+    message = Message()
+    message.hold = Duration(1.5)
+    BoundFunction(glow, Message).check_fields(message)
+    assert seen == [1.5]
 
 
 def test_a_derived_field_differs_in_what_was_changed():
