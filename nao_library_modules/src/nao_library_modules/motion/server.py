@@ -93,14 +93,12 @@ class NaoMotion(NaoBasic):
         by_driver: bool = True,
         **options: Any,
     ) -> None:
-        """Start the server.
+        """Start the server; arguments as NaoBasic takes them, but for these.
 
         Args:
-            ip, port, autostart: As NaoBasic takes them.
             launchpath: As NaoBasic takes it; None stands for the driver.
             motion_dir: Folder of recorded motions and pose libraries.
             by_driver: Whether calls that nao_robot has words for go through its driver, where there is one.
-            options: As NaoBasic takes them.
         """
         super().__init__(ip, port, autostart, launchpath or DRIVER, **options)
         driver = self._node.driver() if by_driver else None

@@ -81,12 +81,9 @@ class NaoVision(NaoBasic):
         topics: Any = None,
         **options: Any,
     ) -> None:
-        """Start the server.
+        """Start the server; arguments as NaoBasic takes them, but for these.
 
         Args:
-            ip: Address of the robot.
-            port: Port of its NAOqi.
-            autostart: As NaoBasic takes it.
             launchpath: As NaoBasic takes it, None stands for the robot's cameras. The images of any other
                 launch file are the camera top, and those of a second topic the camera bottom.
             record_dir: Folder for pictures and videos; "~" stands for the home of the user.
@@ -95,7 +92,6 @@ class NaoVision(NaoBasic):
             camera_top_node: Where the node of the camera top takes dynamic_reconfigure.
             camera_bottom_node: Where the node of the camera bottom takes it.
             topics: Topics and settings of cameras, where not those of this process's node.
-            options: As NaoBasic takes them.
         """
         if topics is None:
             from .capture.topics import VisionTopics
