@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -61,7 +62,11 @@ def test_a_simulator_that_was_killed_comes_back_and_one_that_was_switched_off_do
 
 
 def test_a_simulator_that_cannot_start_ends_its_launch_file(tmp_path):
-    for arguments, told in (({"world": "lob"}, "did you mean 'lab'"), ({"robots": "20"}, "1 to 8")):
-        stack = OwnStack(tmp_path / "stack.txt", {"driver": "false", "record_dir": str(tmp_path), **arguments})
-        wait_until(lambda stack=stack: not stack.alive(), LIMIT, "the end of the launch file")
-        assert told in stack.log.read_text()
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = {"nao_port": str(taken.getsockname()[1])}
+        cases = ({"world": "lob"}, "did you mean 'lab'"), ({"robots": "20"}, "1 to 8"), (port, "listens there")
+        for arguments, told in cases:
+            stack = OwnStack(tmp_path / "stack.txt", {"driver": "false", "record_dir": str(tmp_path), **arguments})
+            wait_until(lambda stack=stack: not stack.alive(), LIMIT, "the end of the launch file")
+            log = stack.log.read_text()
+            assert told in log and "escalating to" not in log

@@ -15,6 +15,7 @@ import socket
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 from xmlrpc.client import ServerProxy
 
@@ -97,9 +98,10 @@ def pid_of(node):
     if name != SIMULATOR:
         return pid
     for task in Path(f"/proc/{pid}/task").iterdir():
-        for child in (task / "children").read_text().split():
-            if node.encode() in Path(f"/proc/{child}/cmdline").read_bytes().split(b"\0"):
-                return int(child)
+        with suppress(OSError):  # a thread or a child that has just ended
+            for child in (task / "children").read_text().split():
+                if node.encode() in Path(f"/proc/{child}/cmdline").read_bytes().split(b"\0"):
+                    return int(child)
     raise LookupError(f"the simulator has no process that runs {node}")
 
 

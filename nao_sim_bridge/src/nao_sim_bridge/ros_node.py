@@ -101,6 +101,8 @@ def _make_way(running: str) -> NoReturn:
 
 def _end_launch(reason: str) -> NoReturn:
     print(f"this launch file ends: {reason}", file=sys.stderr, flush=True)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: os._exit(REFUSED))
     os.kill(os.getppid(), signal.SIGINT)
     while True:
         signal.pause()  # until roslaunch ends this process

@@ -62,13 +62,13 @@ def test_a_report_that_fails_is_told_of_and_the_others_are_published_all_the_sam
     publisher.close()
 
 
-@pytest.mark.parametrize("ended", [True, False])
-def test_the_status_of_goals_that_comes_when_the_topics_are_closed_is_no_error(monkeypatch, ended):
+@pytest.mark.parametrize("ends", [True, False])
+def test_the_status_of_goals_that_comes_when_the_topics_are_closed_is_no_error(monkeypatch, ends):
     def publish():
         raise rospy.ROSException("publish() to a closed topic")
 
-    monkeypatch.setattr(rospy, "is_shutdown", lambda: ended)
-    with nullcontext() if ended else pytest.raises(rospy.ROSException):
+    monkeypatch.setattr(rospy.core, "is_shutdown_requested", lambda: ends)
+    with nullcontext() if ends else pytest.raises(rospy.ROSException):
         publish_status(publish)
 
 

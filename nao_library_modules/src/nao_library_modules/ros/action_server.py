@@ -40,7 +40,7 @@ def publish_status(publish: Callable[[], None]) -> None:
     try:
         publish()
     except rospy.ROSException:
-        if not rospy.is_shutdown():
+        if not rospy.core.is_shutdown_requested():
             raise
 
 
