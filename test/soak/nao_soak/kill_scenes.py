@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -222,6 +223,11 @@ def behaviour() -> Goal:
     return chain("NaoBehavior", behavior("runBehavior", text=text))
 
 
+def new_sentences(count: int = 3) -> str:
+    """Sentences whose sound the simulator does not have yet."""
+    return " ".join(f"Sentence {next(NUMBERS)}." for _ in range(count))
+
+
 def say(text: str) -> Goal:
     """Speech by the driver."""
     return Goal("speech_action", SpeechWithFeedbackAction, SpeechWithFeedbackGoal(say=text))
@@ -300,7 +306,7 @@ DOES: dict[str, Callable[[], bool]] = {
     "nao_audio": lambda: _call("nao_audio/get_master_volume", GetAudioMasterVolume),
     "nao_alife": lambda: _call("basic_awareness/is_enabled", Trigger),
     "nao_vision": lambda: _call("nao_vision/movement_detection_sensitivity", VisionMotionSensitivity),
-    SPEECH_WORKER: lambda: _succeeds(chain("nao_audio_out", audio_out("say", "one"))),
+    SPEECH_WORKER: lambda: _succeeds(chain("nao_audio_out", audio_out("say", new_sentences(1)))),
 }
 """What else a node or process does quickly; beside it what goes on again in the scene."""
 
@@ -342,7 +348,7 @@ def _sends(node: str, topic: str) -> Scene:
 
 
 TEXT = "one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen"
-SENTENCES = "One two three. Four five six. Seven eight nine."
+NUMBERS = itertools.count(1)
 WALK = {"values": [1.5, 0.0, 0.0]}
 TURN = {"names": ["HeadYaw"], "angles": [1.0], "times": [9.0]}
 EYES = {"lights": ["FaceLeds"], "i_values": [1.0]}
@@ -365,7 +371,7 @@ SCENES = [
         lambda: chain("NaoMotion", motion("moveToward", 9.0, values=[1.0, 0.0, 0.0])),
         unwatched=True,
     ),
-    Scene(SPEECH_WORKER, "say", lambda: chain("nao_audio_out", audio_out("say", SENTENCES)), moves=""),
+    Scene(SPEECH_WORKER, "say", lambda: chain("nao_audio_out", audio_out("say", new_sentences())), moves=""),
     Scene("nao_memory", "a key that is watched", watched, moves=""),
     _sends("nao_camera", "nao_robot/camera/top/image_raw"),
     Scene("nao_leds", "blink", blinks, moves=""),
