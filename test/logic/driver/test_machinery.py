@@ -11,6 +11,7 @@ from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import BadGoal, Preempted, RobotLost
 from nao_library_modules.driver.base import reconfigure
+from nao_library_modules.driver.base.lazy_topic import LazyTopic
 from nao_library_modules.driver.base.rate import Rate
 from nao_library_modules.driver.base.reconfigure import ReconfigureField
 from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, GoalOutcome
@@ -183,3 +184,37 @@ def test_what_a_parameter_cannot_be_is_told_when_the_node_begins(monkeypatch):
         node = MagicMock(param=lambda key, default, given=given: given.get(key, default))
         with pytest.raises(NaoError, match=f"~{name} is {value!r}: {allowed}"):
             reconfigure.serve(node, FIELDS, lambda before, after: after)
+
+
+# Topics that cost nothing
+
+
+class ListenedTopic:
+    """A publisher, and rospy's side of it."""
+
+    def __init__(self):
+        self.impl, self.nodes, self._hears = self, [], None
+
+    def add_subscriber_listener(self, listener):
+        self._hears = listener
+
+    def get_stats_info(self):
+        return [(1, node, "o", "TCPROS", "/topic", True, "") for node in self.nodes]
+
+    def have(self, *nodes):
+        self.nodes = nodes
+        self._hears.peer_subscribe("/topic", None, None)
+
+
+def test_work_is_done_while_one_of_some_topics_has_a_listener_that_counts():
+    told, (first, second) = [], (ListenedTopic(), ListenedTopic())
+    LazyTopic(told.append, first, second, but=["/makes_frames"])
+    for topic, nodes, listened in (
+        (first, ("/makes_frames",), []),
+        (second, ("/rviz",), [True]),
+        (first, ("/makes_frames", "/plot"), [True]),
+        (second, (), [True]),
+        (first, ("/makes_frames",), [True, False]),
+    ):
+        topic.have(*nodes)
+        assert told == listened, nodes

@@ -63,7 +63,7 @@ class NaoAudioServices:
         node.if_it_fails(self._directions.close)
         name = "nao_audio/audio_source_localization"
         self._topic = node.publisher(name, AudioSourceLocalization, queue_size=10)
-        self._lazy = LazyTopic(self._topic, self._directions.want)
+        self._lazy = LazyTopic(self._directions.want, self._topic)
         node.offer("nao_audio/play_file", AudioPlayback, self._play)
         node.offer("nao_audio/record", AudioRecorder, self._record)
         node.offer("nao_audio/master_volume", SetAudioMasterVolume, self._set_volume)

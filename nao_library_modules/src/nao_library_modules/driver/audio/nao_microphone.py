@@ -48,7 +48,7 @@ class NaoMicrophone:
         )
         self._server = serve(node, fields, self._changed)
         self._audio = node.publisher("~audio_raw", AudioBuffer, queue_size=QUEUE)
-        self._lazy = LazyTopic(self._audio, self._microphone.want)
+        self._lazy = LazyTopic(self._microphone.want, self._audio)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {"microphones": self._microphone.report}

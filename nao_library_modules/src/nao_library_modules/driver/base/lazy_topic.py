@@ -1,28 +1,31 @@
-"""A topic whose work is done only while somebody listens."""
+"""Topics whose work is done only while somebody listens."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import rospy
 
 
 class LazyTopic(rospy.SubscribeListener):
-    """Calls a function, which must not wait, when the first listener comes, and when the last one leaves.
+    """Calls a function, which must not wait, when some topics get their first listener, and when the last one leaves.
 
     Callbacks come from threads of rospy, sometimes out of order: so each counts the listeners, under a lock.
     """
 
-    def __init__(self, publisher: rospy.Publisher, report: Callable[[bool], None]) -> None:
+    def __init__(self, report: Callable[[bool], None], *publishers: rospy.Publisher, but: Collection[str] = ()) -> None:
+        """`but` has the full names of nodes whose listening does not count."""
         super().__init__()
-        self._publisher = publisher
         self._report = report
+        self._publishers = publishers
+        self._but = but
         self._lock = threading.Lock()
         self._listened = False
         # Not in the constructor of the publisher: the first listener would find none.
-        publisher.impl.add_subscriber_listener(self)
+        for publisher in publishers:
+            publisher.impl.add_subscriber_listener(self)
         self._look()
 
     @property
@@ -38,7 +41,12 @@ class LazyTopic(rospy.SubscribeListener):
 
     def _look(self) -> None:
         with self._lock:
-            listens = self._publisher.get_num_connections() > 0
+            listens = any(node not in self._but for publisher in self._publishers for node in listeners(publisher))
             if listens != self._listened:
                 self._listened = listens
                 self._report(listens)
+
+
+def listeners(publisher: rospy.Publisher) -> list[str]:
+    """Full names of the nodes that listen to a topic."""
+    return [node for _, node, *_ in publisher.impl.get_stats_info()]

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping
-from functools import partial
 from typing import Any
 
 import rospkg
@@ -73,8 +71,6 @@ class CameraTopics:
         self._compression: Mapping[str, Any] = {}
         self._url = ""
         self._shown: dict[str, int] = {}  # parameters of the picture as the robot has them, as far as that is known
-        self._lock = threading.Lock()
-        self._listens: dict[str, bool] = {}
         prefix = f"~{part}/" if part else "~"
         # The defaults are those of the camera. A node that was started again finds all parameters set: these too.
         given = {name: node.param(prefix + name, tuning.field.default) for name, tuning in TUNINGS.items()}
@@ -94,8 +90,7 @@ class CameraTopics:
         self._image = node.publisher(f"{folder}image_raw", Image, queue_size=QUEUE)
         self._info = node.publisher(f"{folder}camera_info", CameraInfo, queue_size=QUEUE)
         self._compressed = node.publisher(compressed, CompressedImage, queue_size=QUEUE)
-        publishers = {"image": self._image, "info": self._info, "compressed": self._compressed}
-        self._lazys = [LazyTopic(each, partial(self._on_listeners, name)) for name, each in publishers.items()]
+        self._lazy = LazyTopic(self._stream.want, self._image, self._info, self._compressed)
         node.service(f"{folder}set_camera_info", SetCameraInfo, self._set_camera_info)
 
     @property
@@ -109,11 +104,6 @@ class CameraTopics:
 
     def close(self) -> None:
         self._stream.close()
-
-    def _on_listeners(self, name: str, listens: bool) -> None:
-        with self._lock:
-            self._listens[name] = listens
-            self._stream.want(any(self._listens.values()))
 
     # --- pictures -------------------------------------------------------------------------------------------------
 

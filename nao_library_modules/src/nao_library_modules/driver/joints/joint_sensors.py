@@ -75,32 +75,40 @@ class JointSensors:
         Raises NaoError if it cannot be asked, or does not know its joints.
         """
         values = self._robot.proxy(MEMORY).call_async("getListData", self._keys)
-        torso = None
-        if self._use_odometry:
-            torso = self._robot.proxy(MOTION).call_async("getPosition", "Torso", FRAME_WORLD, True)
-        return self._reading(values.result(timeout=LIMIT), None if torso is None else torso.result(timeout=LIMIT))
+        torso = self._ask_torso() if self._use_odometry else None
+        return self._reading(values.result(timeout=LIMIT), None if torso is None else _six(torso.result(timeout=LIMIT)))
+
+    def read_torso(self) -> tuple[float, ...]:
+        """Its x, y, z (m), roll, pitch, yaw (rad) in the robot's odometry. Raises NaoError if it cannot be asked."""
+        return _six(self._ask_torso().result(timeout=LIMIT))
 
     def read_stiffnesses(self) -> tuple[float, ...]:
         """Stiffness of each joint, 0 to 1; NaN where the robot gives none. Raises NaoError if it cannot be asked."""
         values = self._robot.proxy(MEMORY).call_async("getListData", self._stiffness_keys).result(timeout=LIMIT)
         return tuple(_number(value) for value in values)
 
-    def _reading(self, values: Sequence[Any], torso: Sequence[float] | None) -> Reading:
+    def _ask_torso(self) -> Any:
+        return self._robot.proxy(MOTION).call_async("getPosition", "Torso", FRAME_WORLD, True)
+
+    def _reading(self, values: Sequence[Any], torso: tuple[float, ...] | None) -> Reading:
         count = len(self.joints)
         measured, commanded, currents = (values[i * count : (i + 1) * count] for i in range(3))
         positions = measured if self._use_sensors else commanded
         for joint, position in zip(self.joints, positions):
             if not isinstance(position, (int, float)):
                 raise NaoError(f"the robot's memory holds {position!r} as the angle of {joint}")
-        if torso is not None and (len(torso) != 6 or not all(math.isfinite(value) for value in torso)):
-            raise NaoError(f"the robot says that its torso is at {torso}: six numbers are a place")
         efforts = tuple(
             _number(current) * torque * math.copysign(1.0, _number(command) - _number(position))
             for current, torque, command, position in zip(currents, self._torque, commanded, measured)
         )
         roll, pitch, *rest = (_number(value, 0.0) for value in values[3 * count :])
-        place = None if torso is None else tuple(torso)
-        return Reading(tuple(positions), efforts, roll, pitch, tuple(rest[:3]), tuple(rest[3:6]), place)
+        return Reading(tuple(positions), efforts, roll, pitch, tuple(rest[:3]), tuple(rest[3:6]), torso)
+
+
+def _six(torso: Sequence[float]) -> tuple[float, ...]:
+    if len(torso) != 6 or not all(math.isfinite(value) for value in torso):
+        raise NaoError(f"the robot says that its torso is at {torso}: six numbers are a place")
+    return tuple(torso)
 
 
 def _number(value: Any, missing: float = math.nan) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from functools import lru_cache
 from typing import Any
 
@@ -31,7 +32,7 @@ OLDEST = 2.0
 
 @lru_cache(maxsize=None)
 def _frames_of_tf() -> tf2_ros.Buffer:
-    """The transforms of /tf: a busy topic, to which a process listens once."""
+    """The transforms of /tf: a busy topic, to which a process listens once, and not before somebody asks."""
     buffer = tf2_ros.Buffer(debug=False)
     buffer.listener = tf2_ros.TransformListener(buffer)
     return buffer
@@ -41,9 +42,13 @@ class PlanarFrames:
     """Looks frames up, in /tf or in the given buffer. Any thread may ask."""
 
     def __init__(self, buffer: Any = None) -> None:
-        self._buffer = _frames_of_tf() if buffer is None else buffer
+        self._given = buffer
         self._wall = WallClock()
         self._seen: dict[tuple[str, str], tuple[rospy.Time, float]] = {}
+
+    @property
+    def _buffer(self) -> Any:
+        return self._given or _frames_of_tf()
 
     def locate(self, child: str, frame: str, patience: float = PATIENCE) -> Place:
         """Where `child` is in `frame`, by the latest transform, for which it waits up to `patience` s.
@@ -65,10 +70,11 @@ class PlanarFrames:
         Raises NaoError if the frames are not connected.
         """
         origin = pose.header.frame_id.lstrip("/")
-        try:
-            transform = self._look_up(frame, origin, pose.header.stamp, patience)
-        except NaoError:
-            transform = self._look_up(frame, origin, rospy.Time(), patience)
+        transform = self._look_up(frame, origin, rospy.Time(), patience)
+        stamp = pose.header.stamp
+        with suppress(NaoError):  # older than what is known
+            ahead = stamp > self._buffer.get_latest_common_time(frame, origin)
+            transform = self._look_up(frame, origin, stamp, patience if ahead else 0.0)
         move, turn = transform.transform.translation, transform.transform.rotation
         frame_turn = (turn.x, turn.y, turn.z, turn.w)
         point, own = pose.pose.position, pose.pose.orientation

@@ -172,7 +172,7 @@ class MemoryTopic(LazyTopic):
         self._kind = MESSAGES[kind]
         self._last: Any = None
         self._topic = rospy.Publisher(node.resolve(f"~{name}"), self._kind, queue_size=QUEUE)
-        super().__init__(self._topic, tell)
+        super().__init__(tell, self._topic)
 
     def publish(self, value: Any) -> None:
         """Publish a value of the topic's kind, with the present time."""

@@ -46,7 +46,7 @@ class WalkTopics:
         self._topic = "cmd_vel" if use_velocities else "cmd_pose"
         kind = Twist if use_velocities else Pose2D
         self._commands = node.publisher(self._topic, kind, tcp_nodelay=True, queue_size=1)
-        LazyTopic(self._commands, lambda listened: self._heard.set() if listened else None)
+        LazyTopic(lambda listened: self._heard.set() if listened else None, self._commands)
         self._stop = node.caller(STOP, Empty)
         self._inhibit = node.caller(INHIBIT, Empty)
         self._failed_before: list = []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -35,19 +34,14 @@ class NaoSonar:
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._prefix = tf_prefix()
-        self._lock = threading.Lock()  # guards the set
-        self._wanted: set[str] = set()
         rate = rate_parameter(node, "~sonar_rate", DEFAULT_RATE)
         self._sonars = Sonars(robot, name_for_robot(node.name), rate, RosClock(), self._publish)
-        self._topics = {
-            name: (side, node.publisher(name, Range, queue_size=QUEUE))
+        self._topics = [
+            (side, node.publisher(name, Range, queue_size=QUEUE))
             for side in SONARS
             for name in (f"nao_robot/sonar/{side}", f"nao_robot/sonar/{side}/sonar")
-        }
-        self._lazys = [
-            LazyTopic(topic, lambda wanted, name=name: self._want(name, wanted))
-            for name, (_, topic) in self._topics.items()
         ]
+        self._lazy = LazyTopic(self._sonars.want, *(topic for _, topic in self._topics))
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {"sonars": self._sonars.report}
@@ -55,17 +49,11 @@ class NaoSonar:
     def close(self) -> None:
         self._sonars.close()
 
-    def _want(self, name: str, wanted: bool) -> None:
-        with self._lock:
-            self._wanted.add(name) if wanted else self._wanted.discard(name)
-            self._sonars.want(bool(self._wanted))
-
     def _publish(self, ranges: Mapping[str, float]) -> None:
         stamp = rospy.Time.now()
-        with self._lock:
-            names = list(self._wanted)
-        for name in names:
-            side, topic = self._topics[name]
+        for side, topic in self._topics:
+            if not topic.get_num_connections():
+                continue
             message = Range(radiation_type=Range.ULTRASOUND, field_of_view=CONE, range=ranges[side])
             message.min_range, message.max_range = NEAREST, FARTHEST
             message.header.stamp, message.header.frame_id = stamp, f"{self._prefix}{side[0].upper()}Sonar_frame"

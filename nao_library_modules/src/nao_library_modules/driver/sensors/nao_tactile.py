@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from typing import Any
 
@@ -50,15 +49,11 @@ class NaoTactileNode:
         self._chest = node.publisher("chest_button", ChestButton, queue_size=QUEUE)
         self._contact = node.publisher("foot_contact", Bool, queue_size=1, latch=True)
         self._prefix = tf_prefix()
-        self._lock = threading.Lock()  # guards what both feet's listeners come to
-        self._listeners = dict.fromkeys(SIDES, False)
         self._pressure = Polling(
             robot, "foot pressure", rate_parameter(node, "~fsr_rate", DEFAULT_RATE), RosClock(), self._read
         )
         self._feet = {side: node.publisher(f"nao_robot/fsr/{side}", Fsr, queue_size=QUEUE) for side in SIDES}
-        self._lazys = [
-            LazyTopic(topic, lambda wanted, side=side: self._want(side, wanted)) for side, topic in self._feet.items()
-        ]
+        self._lazy = LazyTopic(self._pressure.want, *self._feet.values())
         self._sensors = TouchSensors(robot, self._on_touch, self._on_clicks)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
@@ -89,15 +84,10 @@ class NaoTactileNode:
 
     # --- feet -----------------------------------------------------------------------------------------------------
 
-    def _want(self, side: str, wanted: bool) -> None:
-        with self._lock:
-            self._listeners[side] = wanted
-            self._pressure.want(any(self._listeners.values()))
-
     def _read(self) -> None:
         stamp = rospy.Time.now()
         for side, foot in read_feet(self._robot).items():
-            if self._listeners[side]:
+            if self._feet[side].get_num_connections():
                 publish(self._feet[side], self._message(side, foot, stamp))
 
     def _message(self, side: str, foot: FootPressure, stamp: rospy.Time) -> Fsr:
