@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from . import msg
+from typing import Any
 
-for _name in [name for name in dir(msg) if name.startswith("Nao")]:
-    setattr(msg, _name[len("Nao") :], getattr(msg, _name))
+from nao_library_msgs import load_when_asked
+
+msg = load_when_asked(__name__, "msg")
+_LONG = {name[len("Nao") :]: name for name in dir(msg) if name.startswith("Nao")}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LONG:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(msg, _LONG[name])
+
+
+def __dir__() -> list[str]:
+    return ["msg", *_LONG]

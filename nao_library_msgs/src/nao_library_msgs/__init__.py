@@ -1,0 +1,39 @@
+"""Messages and services. Each is loaded when it is asked for."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+
+def load_when_asked(package: str, kind: str) -> ModuleType:
+    """The module `package.kind` that genpy has generated; what it has is loaded name by name.
+
+    genpy's own `__init__` loads all, which costs a node 9 MB and 50 ms: it needs a few of them.
+
+    Args:
+        package: Its name; it is just being imported.
+        kind: "msg" or "srv".
+    """
+    spec = importlib.util.find_spec(f"{package}.{kind}")
+    module = importlib.util.module_from_spec(spec)
+    files = [file.stem[1:] for folder in spec.submodule_search_locations for file in Path(folder).glob("_[A-Za-z]*.py")]
+    ends = ("", "Request", "Response") if kind == "srv" else ("",)
+    where = {file + end: file for file in sorted(files) for end in ends}
+
+    def load(name: str) -> Any:
+        if name not in where:
+            raise AttributeError(f"module {spec.name!r} has no attribute {name!r}")
+        found = getattr(importlib.import_module(f"{spec.name}._{where[name]}"), name)
+        setattr(module, name, found)
+        return found
+
+    module.__getattr__, module.__dir__, module.__all__ = load, lambda: sorted(where), sorted(where)
+    sys.modules[spec.name] = module
+    return module
+
+
+msg, srv = (load_when_asked(__name__, kind) for kind in ("msg", "srv"))
