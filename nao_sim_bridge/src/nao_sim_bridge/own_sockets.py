@@ -25,7 +25,8 @@ ACKNOWLEDGED = struct.Struct("@120xQ")
 # A client that takes nothing for this time, s, though more waits than its system and ours can hold, is cut off: libqi
 # would keep all that comes meanwhile. libqi itself gives such a connection up after 30 s.
 STUCK = load_sizes().clients.stuck_s
-LOOK_PERIOD = 0.5
+LOOK_PERIOD, IDLE_PERIOD = 0.5, 2.0
+"""s between two looks, while a client takes nothing and else: the kernel takes its time for the table of sockets."""
 FOLDER = "/proc/self/fd"
 
 
@@ -74,7 +75,7 @@ class StuckClients:
         self._over.set()
 
     def _run(self) -> None:
-        while not self._over.wait(LOOK_PERIOD):
+        while not self._over.wait(LOOK_PERIOD if self._since else IDLE_PERIOD):
             self._look(time.monotonic())
 
     def _look(self, now: float) -> None:
@@ -101,7 +102,10 @@ def _rows(port: int, state: str) -> list[_Row]:
             lines = Path(table).read_text(encoding="ascii").splitlines()[1:]
         except OSError:
             continue  # a kernel without this family
-        for _, local, other, now, _, timer, _, _, _, inode in (line.split()[:10] for line in lines):
+        for line in lines:
+            if f":{port:04X} " not in line:
+                continue
+            _, local, other, now, _, timer, _, _, _, inode = line.split()[:10]
             if now == state and _port(local) == port:
                 found.append(_Row(f"socket:[{inode}]", port, now, timer[:2], f"port {_port(other)}"))
     return found

@@ -67,12 +67,17 @@ class RosRobot:
         self._health = RosHealth(server, private)
         self._hand = RosHand(server, private, self._stamp)
 
+    @property
+    def listened(self) -> bool:
+        """Whether somebody wants what `tick` publishes."""
+        return self._truth.get_num_connections() > 0
+
     def tick(self) -> None:
         """Publish what is due."""
         snapshot, now = self._server.now
         if now >= self._next_truth:
             self._next_truth = now + TRUTH_PERIOD
-            if self._truth.get_num_connections():
+            if self.listened:
                 self._truth.publish(self._odometry(snapshot, now))
 
     def on_picture(self, request: TakePictureRequest) -> TakePictureResponse:

@@ -29,6 +29,8 @@ from nao_sim_bridge.server import SimulatorServer
 
 # The clock is published at most this often, in s of wall time: every message wakes every node.
 CLOCK_WALL_PERIOD = 0.002
+LOOK_PERIOD = 0.1
+"""s of wall time between two looks whether somebody listens, while nobody does."""
 
 
 class RosSide:
@@ -82,12 +84,16 @@ class RosSide:
     def _publish(self) -> None:
         last = -1
         while not self._closing.is_set():
+            call = self._server.simulation.shared.guard.call  # that of the present simulation
+            call(self._diagnostics.tick)
+            if self._clock is None and not any(robot.listened for robot in self._robots):
+                self._closing.wait(LOOK_PERIOD)
+                continue
             runner = self._server.runner
             passed = runner.wait_for_tick(last, timeout=0.5) is not None
             last = runner.ticks
-            call = self._server.simulation.shared.guard.call  # that of the present simulation
-            call(self._diagnostics.tick)
-            call(self._tell_time)  # also while time stands still: a node that has just started wants to know it
+            if self._clock is not None:  # also while time stands still: a node that has just started wants to know it
+                call(self._tell_time)
             if not passed:
                 continue
             for robot in self._robots:
@@ -95,8 +101,7 @@ class RosSide:
             self._closing.wait(CLOCK_WALL_PERIOD)
 
     def _tell_time(self) -> None:
-        if self._clock is not None:
-            self._clock.publish(rospy.Time.from_sec(self._server.now[1]))
+        self._clock.publish(rospy.Time.from_sec(self._server.now[1]))
 
     def _on_advance(self, request: AdvanceTimeRequest) -> AdvanceTimeResponse:
         snapshot = self._server.runner.advance(checked(request).time.to_sec()).result()

@@ -248,6 +248,7 @@ class SimulationRunner:
         """Wait for a command or a tick that is due and do it. Returns False when it is time to stop."""
         with self._wake:
             delay = self._delay()
+            late = delay <= 0.0
             while not (self._stopping or self._commands or delay <= 0.0):
                 self._wake.wait(None if delay == math.inf else min(delay, LONGEST_WAIT))
                 delay = self._delay()
@@ -259,6 +260,8 @@ class SimulationRunner:
             due = self._delay() <= 0.0
         if due:
             self._tick()
+        if late:
+            time.sleep(0.0)  # time that passes without a wait would keep every other thread from the interpreter
         return True
 
     def _run_command(self, task: Task, command: Callable[[], Any]) -> None:
@@ -273,8 +276,6 @@ class SimulationRunner:
         snapshot = self._simulation.tick()
         with self._ticked:
             self._ticked.notify_all()
-        # Time that passes without a wait would keep every other thread from the interpreter.
-        time.sleep(0.0)
         if self._advances:
             self._count_down(snapshot)
 
