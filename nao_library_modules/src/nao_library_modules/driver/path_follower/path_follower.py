@@ -160,7 +160,8 @@ class NaoPathFollower:
 
     def _stays(self, frame: str) -> bool:
         """Whether a goal in this frame is fixed in that of odometry at the beginning."""
-        self._frames.locate(self._base, frame)  # waits until it is known
+        # Waits until it is known; tf2 takes any frame for known that is looked for in itself.
+        self._frames.locate(self._base, self._odom if frame == self._base else frame)
         return self._frames.inside(frame, self._odom)
 
     def _stop(self) -> None:
