@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import Any
 
 
-def load_when_asked(package: str, kind: str) -> ModuleType:
+def load_when_asked(package: str, kind: str, prefix: str = "") -> ModuleType:
     """The module `package.kind` that genpy has generated; what it has is loaded name by name.
 
     genpy's own `__init__` loads all, which costs a node 9 MB and 50 ms: it needs a few of them.
@@ -17,17 +17,20 @@ def load_when_asked(package: str, kind: str) -> ModuleType:
     Args:
         package: Its name; it is just being imported.
         kind: "msg" or "srv".
+        prefix: What names have that are known without it as well.
     """
     spec = importlib.util.find_spec(f"{package}.{kind}")
     module = importlib.util.module_from_spec(spec)
     files = [file.stem[1:] for folder in spec.submodule_search_locations for file in Path(folder).glob("_[A-Za-z]*.py")]
     ends = ("", "Request", "Response") if kind == "srv" else ("",)
-    where = {file + end: file for file in sorted(files) for end in ends}
+    where = {file + end: (file, file + end) for file in files for end in ends}
+    where.update({n[len(prefix) :]: place for n, place in where.items() if prefix and n.startswith(prefix)})
 
     def load(name: str) -> Any:
         if name not in where:
             raise AttributeError(f"module {spec.name!r} has no attribute {name!r}")
-        found = getattr(importlib.import_module(f"{spec.name}._{where[name]}"), name)
+        file, full_name = where[name]
+        found = getattr(importlib.import_module(f"{spec.name}._{file}"), full_name)
         setattr(module, name, found)
         return found
 
