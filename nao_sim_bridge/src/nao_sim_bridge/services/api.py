@@ -81,6 +81,11 @@ def qi_type(name: str) -> str:
     raise ConfigError(FILE, f"unknown type {name!r}")
 
 
+@lru_cache(maxsize=1)
+def _tables() -> Mapping[str, Any]:
+    return read_json(config_file(FILE))
+
+
 @lru_cache(maxsize=None)
 def module_methods(module: str) -> Mapping[str, Method]:
     """Methods of a module by name, those included that it shares with others: "_inherits" names their tables.
@@ -88,7 +93,7 @@ def module_methods(module: str) -> Mapping[str, Method]:
     Raises:
         ConfigError: The module is not in the table.
     """
-    tables = read_json(config_file(FILE))
+    tables = _tables()
     if module not in tables:
         raise ConfigError(FILE, f"no module {module!r}")
     methods: dict[str, Method] = {}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 from pathlib import Path
 
-import av
 import numpy as np
 
 from nao_sim_bridge.sim.whole_file import WholeFile
@@ -37,6 +36,8 @@ class Film:
     """
 
     def __init__(self, path: Path, kind: str, width: int, height: int, rate: float) -> None:
+        import av  # takes a moment, and few robots film
+
         codec, pixels, letters = FORMATS[kind]
         self.frames = 0
         self._file = WholeFile(path)
@@ -61,6 +62,8 @@ class Film:
         Raises:
             FileTrouble: It cannot be written; the film ends with the frame before.
         """
+        import av
+
         grey = picture.ndim == 2
         frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="gray" if grey else "bgr24")
         frame.pts, frame.time_base = self.frames, self._step

@@ -30,7 +30,6 @@ class InstalledBehaviors:
     def __init__(self, gestures: AnimationLibrary) -> None:
         self._lock = threading.Lock()
         self._gestures = gestures
-        self._system = dict(shipped_behaviors())
         self._user: dict[str, Behavior] = {}
 
     @property
@@ -39,7 +38,7 @@ class InstalledBehaviors:
         gestures = list(self._gestures.animations.values())
         return {
             **{a.name: Behavior(a.name, Gesture(a.name), "a gesture", tags=a.tags) for a in gestures},
-            **self._system,
+            **shipped_behaviors(),
         }
 
     @property
