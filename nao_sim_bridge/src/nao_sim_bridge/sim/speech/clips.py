@@ -18,8 +18,8 @@ from nao_sim_bridge.sim.speech.speech import Engine, Speech, Utterance, Word, si
 from nao_sim_bridge.sim.speech.tags import Bookmark, Cue, Pause, Spoken
 from nao_sim_bridge.sim.speech.voices import Voice
 
-# Sounds of repeated texts are kept, up to this length in all, s.
-CACHE_SECONDS = 300.0
+# Sounds of repeated texts are kept, up to this length in all, s: 0.2 MB each second, and 12 ms to make it anew.
+CACHE_SECONDS = 30.0
 # Of the engine's pause before speech, which would be a late answer, and at joints this much is left, s.
 JOINT = 0.03
 # What is louder is no pause: share of the loudest, and of full scale.
