@@ -21,6 +21,17 @@ from .failures import PlanError
 Listener = Callable[[], None]
 
 
+def _operator(function: Callable[[Any, Any], Any], text: str) -> Callable[[AnyFluent, Any], AnyFluent]:
+    """The method for an operator whose left side is a fluent; `text` has its name."""
+    return lambda left, right: fl_funcall(function, left, right, name=text.format(_name(left), _name(right)))
+
+
+def _operators(function: Callable[[Any, Any], Any], text: str) -> tuple[Callable[[AnyFluent, Any], AnyFluent], ...]:
+    """The methods for an operator, for fluents on its left and on its right side."""
+    direct = _operator(function, text)
+    return direct, lambda right, left: direct(left, right)
+
+
 class AnyFluent(ABC):
     """A value and listeners: the base of plain fluents, pulses and networks.
 
@@ -53,41 +64,12 @@ class AnyFluent(ABC):
         """True while the values are equal."""
         return fl_funcall(operator.eq, self, other, name=f"{self.name} == {_name(other)}")
 
-    def __lt__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.lt, self, other, name=f"{self.name} < {_name(other)}")
-
-    def __le__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.le, self, other, name=f"{self.name} <= {_name(other)}")
-
-    def __gt__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.gt, self, other, name=f"{self.name} > {_name(other)}")
-
-    def __ge__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.ge, self, other, name=f"{self.name} >= {_name(other)}")
-
-    def __add__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.add, self, other, name=f"({self.name} + {_name(other)})")
-
-    def __radd__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.add, other, self, name=f"({_name(other)} + {self.name})")
-
-    def __sub__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.sub, self, other, name=f"({self.name} - {_name(other)})")
-
-    def __rsub__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.sub, other, self, name=f"({_name(other)} - {self.name})")
-
-    def __mul__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.mul, self, other, name=f"{self.name} * {_name(other)}")
-
-    def __rmul__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.mul, other, self, name=f"{_name(other)} * {self.name}")
-
-    def __truediv__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.truediv, self, other, name=f"{self.name} / {_name(other)}")
-
-    def __rtruediv__(self, other: Any) -> AnyFluent:
-        return fl_funcall(operator.truediv, other, self, name=f"{_name(other)} / {self.name}")
+    __lt__, __le__ = _operator(operator.lt, "{} < {}"), _operator(operator.le, "{} <= {}")
+    __gt__, __ge__ = _operator(operator.gt, "{} > {}"), _operator(operator.ge, "{} >= {}")
+    __add__, __radd__ = _operators(operator.add, "({} + {})")
+    __sub__, __rsub__ = _operators(operator.sub, "({} - {})")
+    __mul__, __rmul__ = _operators(operator.mul, "{} * {}")
+    __truediv__, __rtruediv__ = _operators(operator.truediv, "{} / {}")
 
     def __and__(self, other: Any) -> AnyFluent:
         return fl_and(self, other)
