@@ -26,8 +26,9 @@ START_LIMIT = 120.0
 RECOVERY_LIMIT = 60.0
 SAMPLE_PERIOD = 2.0
 LOGS, SCREEN = "logs of the nodes", "what the nodes print"
-LOG_RATES = {LOGS: 8.0, SCREEN: 8.0}
-"""kB a second that they may grow together: each goal that is refused leaves a line, and there are dozens a second."""
+LOG_RATES = {LOGS: 16.0, SCREEN: 8.0}
+"""kB a second that they may grow together: each goal that is refused leaves a line, and there are dozens a second; each
+message that is none leaves twenty lines of rospy's."""
 GARBAGE = Path(__file__).with_name("garbage.py")
 TOPICS = {"joint_states": JointState, "odom": Odometry, "nao_robot/camera/top/image_raw": Image}
 """What the driver publishes when all is well."""
