@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Callable, Iterable, Sequence
 from numbers import Real
-from typing import ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from almath.errors import AlmathError
 
@@ -60,9 +61,9 @@ def require(value: object, kind: type, where: str) -> None:
 class Components:
     """A mutable value made of named numbers.
 
-    A subclass lists the names in `_names`, in the order of `toVector`, and the values of a fresh object in
-    `_defaults`. It can be made from nothing, from all its numbers, from one sequence of them (list, tuple,
-    array) or from another object of its class, which is copied.
+    The names are those that a subclass annotates, in the order of `toVector`; `_defaults` has the values of a fresh
+    object, zeros if it is not given. It can be made from nothing, from all its numbers, from one sequence of them
+    (list, tuple, array) or from another object of its class, which is copied.
     """
 
     # numpy would otherwise take `numpy.float64(2) * pose` apart before our __rmul__ is asked.
@@ -72,8 +73,13 @@ class Components:
     _defaults: ClassVar[tuple[float, ...]] = ()
     _one_number_fills_all: ClassVar[bool] = False
 
+    def __init_subclass__(cls) -> None:
+        named = tuple(cls.__dict__.get("__annotations__", ()))
+        if named:
+            cls._names = named
+            cls._defaults = cls.__dict__.get("_defaults", (0.0,) * len(named))
+
     def __init__(self, *numbers: object) -> None:
-        """Read the numbers; see the class for what is accepted."""
         self._assign(self._read(numbers))
 
     @classmethod
@@ -116,6 +122,11 @@ class Components:
         """List the components in the order of `_names`."""
         return [getattr(self, name) for name in self._names]
 
+    def _require_same(self, other: object, method: str) -> None:
+        if not self._same_kind(other):
+            name = type(self).__name__
+            raise AlmathError(f"{name}.{method} takes a {name}, got {other!r}")
+
     def _same_kind(self, other: object) -> bool:
         return isinstance(other, type(self)) or (isinstance(other, Components) and isinstance(self, type(other)))
 
@@ -126,7 +137,6 @@ class Components:
         super().__setattr__(name, value)
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether all components are exactly equal."""
         if not self._same_kind(other):
             return NotImplemented
         return self._values() == other._values()
@@ -144,24 +154,17 @@ class Components:
 
     def isNear(self: _Value, other: _Value, epsilon: float = 0.0001) -> bool:
         """Tell whether no component differs by more than `epsilon`."""
-        require(other, Components, f"{type(self).__name__}.isNear")
-        if not self._same_kind(other):
-            raise AlmathError(f"{type(self).__name__}.isNear takes a {type(self).__name__}, got {other!r}")
+        self._require_same(other, "isNear")
         return all(abs(mine - theirs) <= epsilon for mine, theirs in zip(self._values(), other._values()))
 
     def toVector(self, out: list[float] | None = None) -> list[float] | None:
-        """List the components.
-
-        Args:
-            out: A list to fill instead of returning a new one.
-        """
+        """List the components, or write them to `out`."""
         if out is None:
             return self._values()
         out[:] = self._values()
         return None
 
     def __repr__(self) -> str:
-        """Name the class and each component, with six significant digits."""
         pairs = (f"{name}={value:g}" for name, value in zip(self._names, self._values()))
         return f"{type(self).__name__}({', '.join(pairs)})"
 
@@ -176,11 +179,9 @@ class Scalable(Components):
         return self._make(value * factor for value in self._values())
 
     def __rmul__(self: _Vector, factor: float) -> _Vector:
-        """Multiply each component by a number."""
         return Scalable.__mul__(self, factor)
 
     def __truediv__(self: _Vector, divisor: float) -> _Vector:
-        """Divide each component by a number other than zero."""
         if not isinstance(divisor, Real):
             return NotImplemented
         if divisor == 0.0:
@@ -188,43 +189,66 @@ class Scalable(Components):
         return self._make(value / divisor for value in self._values())
 
     def __itruediv__(self: _Vector, divisor: float) -> _Vector:
-        """Divide in place by a number other than zero."""
         self._assign((self / divisor)._values())
         return self
 
 
 class Linear(Scalable):
-    """Components that can also be added to and subtracted from each other."""
+    """Components that can also be added to and subtracted from each other; one number fills them all."""
+
+    _one_number_fills_all = True
 
     def __add__(self: _Vector, other: _Vector) -> _Vector:
-        """Add component by component."""
         if not self._same_kind(other):
             return NotImplemented
         return self._make(mine + theirs for mine, theirs in zip(self._values(), other._values()))
 
     def __sub__(self: _Vector, other: _Vector) -> _Vector:
-        """Subtract component by component."""
         if not self._same_kind(other):
             return NotImplemented
         return self._make(mine - theirs for mine, theirs in zip(self._values(), other._values()))
 
     def __iadd__(self: _Vector, other: _Vector) -> _Vector:
-        """Add in place, component by component."""
         self._assign((self + other)._values())
         return self
 
     def __isub__(self: _Vector, other: _Vector) -> _Vector:
-        """Subtract in place, component by component."""
         self._assign((self - other)._values())
         return self
 
     def __neg__(self: _Vector) -> _Vector:
-        """Negate each component."""
         return self._make(-value for value in self._values())
 
     def __pos__(self: _Vector) -> _Vector:
-        """Copy."""
         return self._make(self._values())
+
+
+class Vector(Scalable):
+    """Components with a length and a direction."""
+
+    def norm(self) -> float:
+        """Root of the sum of the squares of all numbers, whatever their units."""
+        return math.sqrt(sum(value * value for value in self._values()))
+
+    def normalize(self: _Vector) -> _Vector:
+        """Divide all numbers by the norm; AlmathError where it is zero."""
+        return unit(self, self.norm())
+
+
+class Placed(Components):
+    """Components of which some, or all, are a point."""
+
+    def _point(self) -> Sequence[float]:
+        return self._values()
+
+    def distanceSquared(self: _Value, other: _Value) -> float:
+        """Square of the distance between the two points, in m^2; angles do not count."""
+        self._require_same(other, "distanceSquared")
+        return sum((mine - theirs) ** 2 for mine, theirs in zip(self._point(), other._point()))
+
+    def distance(self: _Value, other: _Value) -> float:
+        """Distance between the two points, in m; angles do not count."""
+        return math.sqrt(self.distanceSquared(other))
 
 
 def fill(out: _Value, value: _Value, where: str) -> None:
@@ -237,6 +261,41 @@ def fill(out: _Value, value: _Value, where: str) -> None:
     """
     require(out, type(value), where)
     out._assign(value._values())
+
+
+def asking(method: str, kinds: tuple[type, ...], text: str, name: str = "") -> Callable[..., Any]:
+    """A function that has a method of its first argument answer, which has to be of one of some classes.
+
+    Args:
+        method: Name of the method.
+        kinds: The classes.
+        text: Docstring of the function.
+        name: Its name, if that is another one.
+    """
+    name = name or method
+
+    def ask(value: Any, *arguments: Any) -> Any:
+        if not isinstance(value, kinds):
+            raise AlmathError(f"{name} takes one of {', '.join(kind.__name__ for kind in kinds)}, got {value!r}")
+        return getattr(value, method)(*arguments)
+
+    ask.__name__ = ask.__qualname__ = name
+    ask.__doc__ = text
+    return ask
+
+
+def in_place(function: Callable[..., Components]) -> Callable[..., None]:
+    """The form of a function, under its name with InPlace, that writes its result over a last argument."""
+    name = f"{function.__name__}InPlace"
+
+    def write(*arguments: object) -> None:
+        if not arguments:
+            raise AlmathError(f"{name} takes what to overwrite as its last argument, got nothing")
+        fill(arguments[-1], function(*arguments[:-1]), name)
+
+    write.__name__ = write.__qualname__ = name
+    write.__doc__ = f"Write to the last argument what `{function.__name__}` makes of the ones before it."
+    return write
 
 
 def answer(value: _Value, out: _Value | None, where: str) -> _Value | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from almath import _matrix
-from almath._components import answer, as_number, fill, require
+from almath._components import answer, as_number, fill, in_place, require
 from almath.constants import AXIS_MASK_X, AXIS_MASK_Y, AXIS_MASK_Z
 from almath.errors import AlmathError
 from almath.positions import Position3D
@@ -30,7 +30,7 @@ def axisRotationProjection(axis: Position3D, rotated: Rotation | Transform) -> R
         raise AlmathError(f"axisRotationProjection takes a Rotation or a Transform, got {rotated!r}")
     rows = _projected(tuple(axis.normalize()._values()), rotated._rows())
     if isinstance(rotated, Transform):
-        return Transform._from_parts(rows, rotated._position())
+        return Transform._from_parts(rows, rotated._point())
     return Rotation._from_rows(rows)
 
 
@@ -66,7 +66,7 @@ def orthogonalSpace(axis: Position3D, out: Transform | None = None) -> Transform
     position = (0.0, 0.0, 0.0)
     if out is not None:
         require(out, Transform, "orthogonalSpace")
-        position = out._position()
+        position = out._point()
     return answer(Transform._from_parts(_matrix.transposed(columns), position), out, "orthogonalSpace")
 
 
@@ -91,8 +91,4 @@ def transformFromRotVec(*arguments: int | float | Position3D) -> Transform:
     return Transform._from_parts(_ABOUT[turn[0]](as_number(turn[1], "transformFromRotVec angle")), point._values())
 
 
-def transformFromRotVecInPlace(*arguments: int | float | Position3D | Transform) -> None:
-    """Write to the last argument what `transformFromRotVec` makes of the ones before it."""
-    if not arguments:
-        raise AlmathError("transformFromRotVecInPlace takes a Transform to overwrite as its last argument, got nothing")
-    fill(arguments[-1], transformFromRotVec(*arguments[:-1]), "transformFromRotVecInPlace")
+transformFromRotVecInPlace = in_place(transformFromRotVec)

@@ -7,7 +7,7 @@ at the end, or an optional last argument.
 from __future__ import annotations
 
 from almath import _matrix
-from almath._components import answer, as_number, fill, require
+from almath._components import answer, as_number, fill, in_place, require
 from almath.displacement import Displacement
 from almath.errors import AlmathError
 from almath.pose2d import Pose2D
@@ -26,9 +26,7 @@ def position2DFromPose2D(pose: Pose2D) -> Position2D:
     return Position2D(pose.x, pose.y)
 
 
-def position2DFromPose2DInPlace(pose: Pose2D, out: Position2D) -> None:
-    """Write the point of a pose to `out`."""
-    fill(out, position2DFromPose2D(pose), "position2DFromPose2DInPlace")
+position2DFromPose2DInPlace = in_place(position2DFromPose2D)
 
 
 def position2DFromTransform(transform: Transform) -> Position2D:
@@ -37,9 +35,7 @@ def position2DFromTransform(transform: Transform) -> Position2D:
     return Position2D(transform.r1_c4, transform.r2_c4)
 
 
-def position2DFromTransformInPlace(transform: Transform, out: Position2D) -> None:
-    """Write the origin of a transform, seen from above, to `out`."""
-    fill(out, position2DFromTransform(transform), "position2DFromTransformInPlace")
+position2DFromTransformInPlace = in_place(position2DFromTransform)
 
 
 def position3DFromPosition6D(position: Position6D) -> Position3D:
@@ -51,12 +47,10 @@ def position3DFromPosition6D(position: Position6D) -> Position3D:
 def position3DFromTransform(transform: Transform) -> Position3D:
     """Origin of a transform."""
     require(transform, Transform, "position3DFromTransform")
-    return Position3D(*transform._position())
+    return Position3D(*transform._point())
 
 
-def position3DFromTransformInPlace(transform: Transform, out: Position3D) -> None:
-    """Write the origin of a transform to `out`."""
-    fill(out, position3DFromTransform(transform), "position3DFromTransformInPlace")
+position3DFromTransformInPlace = in_place(position3DFromTransform)
 
 
 def position6DFromPose2D(pose: Pose2D) -> Position6D:
@@ -65,9 +59,7 @@ def position6DFromPose2D(pose: Pose2D) -> Position6D:
     return Position6D(pose.x, pose.y, 0.0, 0.0, 0.0, pose.theta)
 
 
-def position6DFromPose2DInPlace(pose: Pose2D, out: Position6D) -> None:
-    """Write a pose on the floor to `out`."""
-    fill(out, position6DFromPose2D(pose), "position6DFromPose2DInPlace")
+position6DFromPose2DInPlace = in_place(position6DFromPose2D)
 
 
 def position6DFromPosition3D(point: Position3D) -> Position6D:
@@ -76,9 +68,7 @@ def position6DFromPosition3D(point: Position3D) -> Position6D:
     return Position6D(point.x, point.y, point.z, 0.0, 0.0, 0.0)
 
 
-def position6DFromPosition3DInPlace(point: Position3D, out: Position6D) -> None:
-    """Write a point with angles of zero to `out`."""
-    fill(out, position6DFromPosition3D(point), "position6DFromPosition3DInPlace")
+position6DFromPosition3DInPlace = in_place(position6DFromPosition3D)
 
 
 def position6DFromVelocity6D(velocity: Velocity6D) -> Position6D:
@@ -90,12 +80,10 @@ def position6DFromVelocity6D(velocity: Velocity6D) -> Position6D:
 def position6DFromTransform(transform: Transform) -> Position6D:
     """Origin and angles of a transform, R = Rz(wz) Ry(wy) Rx(wx)."""
     require(transform, Transform, "position6DFromTransform")
-    return Position6D(*transform._position(), *_matrix.to_angles(transform._rows()))
+    return Position6D(*transform._point(), *_matrix.to_angles(transform._rows()))
 
 
-def position6DFromTransformInPlace(transform: Transform, out: Position6D) -> None:
-    """Write the origin and angles of a transform to `out`."""
-    fill(out, position6DFromTransform(transform), "position6DFromTransformInPlace")
+position6DFromTransformInPlace = in_place(position6DFromTransform)
 
 
 def pose2DFromPosition2D(point: Position2D, theta: float = 0.0) -> Pose2D:
@@ -104,9 +92,7 @@ def pose2DFromPosition2D(point: Position2D, theta: float = 0.0) -> Pose2D:
     return Pose2D(point.x, point.y, theta)
 
 
-def pose2DFromPosition2DInPlace(point: Position2D, theta: float, out: Pose2D) -> None:
-    """Write a point and a heading in rad to `out`."""
-    fill(out, pose2DFromPosition2D(point, theta), "pose2DFromPosition2DInPlace")
+pose2DFromPosition2DInPlace = in_place(pose2DFromPosition2D)
 
 
 def pose2DFromPosition6D(position: Position6D) -> Pose2D:
@@ -115,9 +101,7 @@ def pose2DFromPosition6D(position: Position6D) -> Pose2D:
     return Pose2D(position.x, position.y, position.wz)
 
 
-def pose2DFromPosition6DInPlace(position: Position6D, out: Pose2D) -> None:
-    """Write x, y and wz of a position to `out`."""
-    fill(out, pose2DFromPosition6D(position), "pose2DFromPosition6DInPlace")
+pose2DFromPosition6DInPlace = in_place(pose2DFromPosition6D)
 
 
 def pose2DFromTransform(transform: Transform) -> Pose2D:
@@ -126,9 +110,7 @@ def pose2DFromTransform(transform: Transform) -> Pose2D:
     return Pose2D(transform.r1_c4, transform.r2_c4, _matrix.to_angles(transform._rows())[2])
 
 
-def pose2DFromTransformInPlace(transform: Transform, out: Pose2D) -> None:
-    """Write x, y and yaw of a transform to `out`."""
-    fill(out, pose2DFromTransform(transform), "pose2DFromTransformInPlace")
+pose2DFromTransformInPlace = in_place(pose2DFromTransform)
 
 
 # --- to rotations
@@ -140,9 +122,7 @@ def rotationFromTransform(transform: Transform) -> Rotation:
     return Rotation._from_rows(transform._rows())
 
 
-def rotationFromTransformInPlace(transform: Transform, out: Rotation) -> None:
-    """Write the rotation of a transform to `out`."""
-    fill(out, rotationFromTransform(transform), "rotationFromTransformInPlace")
+rotationFromTransformInPlace = in_place(rotationFromTransform)
 
 
 def rotationFromQuaternion(*arguments: Quaternion | Rotation | float) -> Rotation | None:
@@ -208,9 +188,7 @@ def transformFromPose2D(pose: Pose2D) -> Transform:
     return Transform.fromPosition(pose.x, pose.y, 0.0, 0.0, 0.0, pose.theta)
 
 
-def transformFromPose2DInPlace(pose: Pose2D, out: Transform) -> None:
-    """Write the transform of a pose on the floor to `out`."""
-    fill(out, transformFromPose2D(pose), "transformFromPose2DInPlace")
+transformFromPose2DInPlace = in_place(transformFromPose2D)
 
 
 def transformFromPosition3D(point: Position3D) -> Transform:
@@ -242,7 +220,7 @@ def transformFromRotationInPlace(rotation: Rotation, out: Transform) -> None:
     """Give `out` a rotation; its origin stays."""
     require(rotation, Rotation, "transformFromRotationInPlace")
     require(out, Transform, "transformFromRotationInPlace")
-    fill(out, Transform._from_parts(rotation._rows(), out._position()), "transformFromRotationInPlace")
+    fill(out, Transform._from_parts(rotation._rows(), out._point()), "transformFromRotationInPlace")
 
 
 def transformFromRotation3D(angles: Rotation3D) -> Transform:

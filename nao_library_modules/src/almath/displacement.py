@@ -40,7 +40,6 @@ class Displacement:
         return self.P.isNear(other.P, epsilon) and self.Q.isNear(other.Q, epsilon)
 
     def __repr__(self) -> str:
-        """Name both parts."""
         return f"Displacement(P={self.P!r}, Q={self.Q!r})"
 
 
@@ -63,5 +62,4 @@ class TransformAndVelocity6D:
         return self.T.isNear(other.T, epsilon) and self.V.isNear(other.V, epsilon)
 
     def __repr__(self) -> str:
-        """Name both parts."""
         return f"TransformAndVelocity6D(T={self.T!r}, V={self.V!r})"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from almath._components import Linear, answer, require
+from almath._components import Linear, Placed, answer, asking, require
 from almath.errors import AlmathError
 from almath.positions import Position2D
 
@@ -12,25 +12,16 @@ from almath.positions import Position2D
 _SHORTEST = 0.0001
 
 
-class Pose2D(Linear):
+class Pose2D(Linear, Placed):
     """A point in the plane and a heading; also the motion that leads there from the origin.
 
     `a * b` is `b`, seen from `a`, in the frame of `a`; `a * 2` multiplies the three numbers; `a * point`
     places a Position2D.
-
-    Attributes:
-        x: In m.
-        y: In m.
-        theta: In rad, positive to the left, not wrapped.
     """
 
-    x: float
-    y: float
-    theta: float
-
-    _names = ("x", "y", "theta")
-    _defaults = (0.0, 0.0, 0.0)
-    _one_number_fills_all = True
+    x: float  # m
+    y: float  # m
+    theta: float  # rad, positive to the left, not wrapped
 
     @staticmethod
     def fromPolarCoordinates(radius: float, angle: float) -> Pose2D:
@@ -60,14 +51,8 @@ class Pose2D(Linear):
         require(other, Pose2D, "Pose2D.diff")
         return self.inverse() * other
 
-    def distanceSquared(self, other: Pose2D) -> float:
-        """Square of the distance between the two points, in m^2; headings do not count."""
-        require(other, Pose2D, "Pose2D.distanceSquared")
-        return (self.x - other.x) ** 2 + (self.y - other.y) ** 2
-
-    def distance(self, other: Pose2D) -> float:
-        """Distance between the two points, in m; headings do not count."""
-        return math.sqrt(self.distanceSquared(other))
+    def _point(self) -> list[float]:
+        return [self.x, self.y]
 
     def norm(self) -> float:
         """Distance of the point from the origin, in m."""
@@ -86,12 +71,7 @@ class Pose2D(Linear):
 
 
 def pose2DInverse(pose: Pose2D, out: Pose2D | None = None) -> Pose2D | None:
-    """Invert a pose.
-
-    Args:
-        pose: What to invert.
-        out: A pose to overwrite instead of returning a new one.
-    """
+    """Inverse of a pose; written to `out` if that is given."""
     require(pose, Pose2D, "pose2DInverse")
     return answer(pose.inverse(), out, "pose2DInverse")
 
@@ -101,7 +81,4 @@ def pose2dInvertInPlace(pose: Pose2D) -> None:
     pose2DInverse(pose, pose)
 
 
-def pose2dDiff(start: Pose2D, end: Pose2D) -> Pose2D:
-    """Motion that leads from `start` to `end`, in the frame of `start`."""
-    require(start, Pose2D, "pose2dDiff")
-    return start.diff(end)
+pose2dDiff = asking("diff", (Pose2D,), Pose2D.diff.__doc__, "pose2dDiff")

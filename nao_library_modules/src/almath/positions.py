@@ -4,45 +4,19 @@ from __future__ import annotations
 
 import math
 
-from almath._components import Linear, require, unit
+from almath._components import Linear, Placed, Vector, require
 
 
-class Position2D(Linear):
-    """A point or vector in the plane.
+class Position2D(Linear, Vector, Placed):
+    """A point or vector in the plane."""
 
-    Attributes:
-        x: In m.
-        y: In m.
-    """
-
-    x: float
-    y: float
-
-    _names = ("x", "y")
-    _defaults = (0.0, 0.0)
-    _one_number_fills_all = True
+    x: float  # m
+    y: float  # m
 
     @staticmethod
     def fromPolarCoordinates(radius: float, angle: float) -> Position2D:
         """Point at `radius` m from the origin, in the direction `angle` rad from the X axis."""
         return Position2D(radius * math.cos(angle), radius * math.sin(angle))
-
-    def norm(self) -> float:
-        """Distance from the origin, in m."""
-        return math.hypot(self.x, self.y)
-
-    def normalize(self) -> Position2D:
-        """Vector of length 1 in the same direction."""
-        return unit(self, self.norm())
-
-    def distanceSquared(self, other: Position2D) -> float:
-        """Square of the distance to another point, in m^2."""
-        require(other, Position2D, "Position2D.distanceSquared")
-        return (self.x - other.x) ** 2 + (self.y - other.y) ** 2
-
-    def distance(self, other: Position2D) -> float:
-        """Distance to another point, in m."""
-        return math.sqrt(self.distanceSquared(other))
 
     def dotProduct(self, other: Position2D) -> float:
         """Inner product, in m^2."""
@@ -59,39 +33,12 @@ class Position2D(Linear):
         return math.atan2(self.y, self.x)
 
 
-class Position3D(Linear):
-    """A point or vector in space.
+class Position3D(Linear, Vector, Placed):
+    """A point or vector in space."""
 
-    Attributes:
-        x: In m.
-        y: In m.
-        z: In m.
-    """
-
-    x: float
-    y: float
-    z: float
-
-    _names = ("x", "y", "z")
-    _defaults = (0.0, 0.0, 0.0)
-    _one_number_fills_all = True
-
-    def norm(self) -> float:
-        """Distance from the origin, in m."""
-        return math.sqrt(self.dotProduct(self))
-
-    def normalize(self) -> Position3D:
-        """Vector of length 1 in the same direction."""
-        return unit(self, self.norm())
-
-    def distanceSquared(self, other: Position3D) -> float:
-        """Square of the distance to another point, in m^2."""
-        require(other, Position3D, "Position3D.distanceSquared")
-        return (self.x - other.x) ** 2 + (self.y - other.y) ** 2 + (self.z - other.z) ** 2
-
-    def distance(self, other: Position3D) -> float:
-        """Distance to another point, in m."""
-        return math.sqrt(self.distanceSquared(other))
+    x: float  # m
+    y: float  # m
+    z: float  # m
 
     def dotProduct(self, other: Position3D) -> float:
         """Inner product, in m^2."""
@@ -116,42 +63,15 @@ class Position3D(Linear):
         return abs(self.dotProduct(other)) <= epsilon
 
 
-class Position6D(Linear):
-    """A point in space and three angles: R = Rz(wz) Ry(wy) Rx(wx).
+class Position6D(Linear, Vector, Placed):
+    """A point in space and three angles: R = Rz(wz) Ry(wy) Rx(wx)."""
 
-    Attributes:
-        x: In m.
-        y: In m.
-        z: In m.
-        wx: In rad.
-        wy: In rad.
-        wz: In rad.
-    """
+    x: float  # m
+    y: float  # m
+    z: float  # m
+    wx: float  # rad
+    wy: float  # rad
+    wz: float  # rad
 
-    x: float
-    y: float
-    z: float
-    wx: float
-    wy: float
-    wz: float
-
-    _names = ("x", "y", "z", "wx", "wy", "wz")
-    _defaults = (0.0,) * 6
-    _one_number_fills_all = True
-
-    def norm(self) -> float:
-        """Root of the sum of the squares of all six numbers, metres and radians alike."""
-        return math.sqrt(sum(value * value for value in self._values()))
-
-    def normalize(self) -> Position6D:
-        """Divide all six numbers by the norm."""
-        return unit(self, self.norm())
-
-    def distanceSquared(self, other: Position6D) -> float:
-        """Square of the distance between the two points, in m^2; the angles do not count."""
-        require(other, Position6D, "Position6D.distanceSquared")
-        return (self.x - other.x) ** 2 + (self.y - other.y) ** 2 + (self.z - other.z) ** 2
-
-    def distance(self, other: Position6D) -> float:
-        """Distance between the two points, in m; the angles do not count."""
-        return math.sqrt(self.distanceSquared(other))
+    def _point(self) -> list[float]:
+        return self._values()[:3]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from almath import _matrix
-from almath._components import Scalable, answer, require, unit
+from almath._components import Vector, answer, require
 from almath.errors import AlmathError
 from almath.positions import Position3D
 
@@ -13,7 +13,7 @@ from almath.positions import Position3D
 _SMALLEST_SINE = 1e-9
 
 
-class Quaternion(Scalable):
+class Quaternion(Vector):
     """The quaternion w + xi + yj + zk; of length 1 it is a rotation. Made from nothing it is the identity."""
 
     w: float
@@ -21,7 +21,6 @@ class Quaternion(Scalable):
     y: float
     z: float
 
-    _names = ("w", "x", "y", "z")
     _defaults = (1.0, 0.0, 0.0, 0.0)
 
     def __mul__(self, other: Quaternion | Position3D | float) -> Quaternion | Position3D:
@@ -43,14 +42,6 @@ class Quaternion(Scalable):
         require(other, Quaternion, "Quaternion.isNear")
         return super().isNear(other, epsilon) or super().isNear(other * -1.0, epsilon)
 
-    def norm(self) -> float:
-        """Length."""
-        return math.sqrt(sum(value * value for value in self._values()))
-
-    def normalize(self) -> Quaternion:
-        """Quaternion of length 1 in the same direction."""
-        return unit(self, self.norm())
-
     def inverse(self) -> Quaternion:
         """Conjugate, which is the inverse rotation of a quaternion of length 1."""
         return self._make((self.w, -self.x, -self.y, -self.z))
@@ -62,18 +53,11 @@ class Quaternion(Scalable):
         return Quaternion(math.cos(angle / 2.0), axis.x, axis.y, axis.z)
 
 
-def quaternionFromAngleAndAxisRotation(angle: float, axis_x: float, axis_y: float, axis_z: float) -> Quaternion:
-    """Rotation by `angle` rad about an axis of any length but zero."""
-    return Quaternion.fromAngleAndAxisRotation(angle, axis_x, axis_y, axis_z)
+quaternionFromAngleAndAxisRotation = Quaternion.fromAngleAndAxisRotation
 
 
 def quaternionInverse(quaternion: Quaternion, out: Quaternion | None = None) -> Quaternion | None:
-    """Conjugate a quaternion.
-
-    Args:
-        quaternion: What to invert, of length 1.
-        out: A quaternion to overwrite instead of returning a new one.
-    """
+    """Inverse of a quaternion of length 1; written to `out` if that is given."""
     require(quaternion, Quaternion, "quaternionInverse")
     return answer(quaternion.inverse(), out, "quaternionInverse")
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from almath import _matrix
-from almath._components import Components, Linear, as_number, as_numbers, require
+from almath._components import Components, Linear, as_number, as_numbers, asking, require
 from almath.errors import AlmathError
 from almath.positions import Position3D
 from almath.velocities import Velocity3D
@@ -143,7 +143,6 @@ class Rotation(Components):
         return "[" + "\n ".join(rows) + "]"
 
     def __repr__(self) -> str:
-        """Write the matrix as the sequence it could be made from."""
         rows = (", ".join(f"{number:g}" for number in row) for row in self._rows())
         return f"{type(self).__name__}([" + ",\n          ".join(rows) + "])"
 
@@ -152,44 +151,19 @@ class Rotation3D(Linear):
     """Three angles that stand for R = Rz(wz) Ry(wy) Rx(wx).
 
     Sums and multiples are those of the numbers, not of the rotations.
-
-    Attributes:
-        wx: In rad.
-        wy: In rad.
-        wz: In rad.
     """
 
-    wx: float
-    wy: float
-    wz: float
-
-    _names = ("wx", "wy", "wz")
-    _defaults = (0.0, 0.0, 0.0)
-    _one_number_fills_all = True
+    wx: float  # rad
+    wy: float  # rad
+    wz: float  # rad
 
     def norm(self) -> float:
         """Root of the sum of the squares, in rad; not the angle of the rotation."""
         return math.sqrt(sum(value * value for value in self._values()))
 
 
-def rotationFromRotX(angle: float) -> Rotation:
-    """Rotation about X by `angle`, in rad."""
-    return Rotation.fromRotX(angle)
-
-
-def rotationFromRotY(angle: float) -> Rotation:
-    """Rotation about Y by `angle`, in rad."""
-    return Rotation.fromRotY(angle)
-
-
-def rotationFromRotZ(angle: float) -> Rotation:
-    """Rotation about Z by `angle`, in rad."""
-    return Rotation.fromRotZ(angle)
-
-
-def rotationFrom3DRotation(wx: float, wy: float, wz: float) -> Rotation:
-    """Rz(wz) Ry(wy) Rx(wx), angles in rad."""
-    return Rotation.from3DRotation(wx, wy, wz)
+rotationFromRotX, rotationFromRotY, rotationFromRotZ = Rotation.fromRotX, Rotation.fromRotY, Rotation.fromRotZ
+rotationFrom3DRotation = Rotation.from3DRotation
 
 
 def rotationFromAngleDirection(angle: float, *axis: float | Position3D) -> Rotation:
@@ -201,25 +175,13 @@ def rotationFromAngleDirection(angle: float, *axis: float | Position3D) -> Rotat
     return Rotation.fromAngleDirection(angle, *axis)
 
 
-def normalizeRotation(rotation: Rotation) -> None:
-    """Make a matrix a rotation again, in place; its third column keeps its direction."""
-    require(rotation, Rotation, "normalizeRotation")
-    rotation.normalizeRotation()
+normalizeRotation = asking("normalizeRotation", (Rotation,), Rotation.normalizeRotation.__doc__)
 
 
 def applyRotation(rotation: Rotation, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Turn a point.
+    """Turn a point; the coordinates of the turned one.
 
-    In C++ this overwrites three numbers, which Python cannot do; they are returned.
-
-    Args:
-        rotation: How to turn.
-        x: First coordinate of the point.
-        y: Second coordinate of the point.
-        z: Third coordinate of the point.
-
-    Returns:
-        The coordinates of the turned point.
+    In C++ this overwrites three numbers, which Python cannot do.
     """
     require(rotation, Rotation, "applyRotation")
     point = tuple(as_number(value, f"applyRotation {name}") for name, value in zip("xyz", (x, y, z)))

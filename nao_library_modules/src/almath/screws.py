@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from almath import _matrix
-from almath._components import as_number, fill, require
+from almath._components import as_number, in_place, require
 from almath.errors import AlmathError
 from almath.positions import Position6D
 from almath.transform import Transform
@@ -35,9 +35,7 @@ def velocityExponential(velocity: Velocity6D) -> Transform:
     return Transform._from_parts(rows, _bent(linear, angular, across, along))
 
 
-def velocityExponentialInPlace(velocity: Velocity6D, out: Transform) -> None:
-    """Write the transform that a body velocity leads to within one second to `out`."""
-    fill(out, velocityExponential(velocity), "velocityExponentialInPlace")
+velocityExponentialInPlace = in_place(velocityExponential)
 
 
 def transformLogarithm(transform: Transform) -> Velocity6D:
@@ -55,12 +53,10 @@ def transformLogarithm(transform: Transform) -> Velocity6D:
     else:
         angular = _matrix.scaled(vector, angle / sine)
         along = (1.0 - 0.5 * angle * w / sine) / angle**2
-    return Velocity6D(*_bent(transform._position(), angular, -0.5, along), *angular)
+    return Velocity6D(*_bent(transform._point(), angular, -0.5, along), *angular)
 
 
-def transformLogarithmInPlace(transform: Transform, out: Velocity6D) -> None:
-    """Write the body velocity that leads to `transform` within one second to `out`."""
-    fill(out, transformLogarithm(transform), "transformLogarithmInPlace")
+transformLogarithmInPlace = in_place(transformLogarithm)
 
 
 def _bent(v: _matrix.Triple, angular: _matrix.Triple, across: float, along: float) -> _matrix.Triple:
@@ -88,9 +84,7 @@ def transformMean(start: Transform, end: Transform, share: float = 0.5) -> Trans
     return start * velocityExponential(transformLogarithm(start.diff(end)) * share)
 
 
-def transformMeanInPlace(start: Transform, end: Transform, share: float, out: Transform) -> None:
-    """Write the transform on the screw motion between two to `out`; `share` as for `transformMean`."""
-    fill(out, transformMean(start, end, share), "transformMeanInPlace")
+transformMeanInPlace = in_place(transformMean)
 
 
 def position6DFromTransformDiff(current: Transform, target: Transform) -> Position6D:
@@ -105,12 +99,10 @@ def position6DFromTransformDiff(current: Transform, target: Transform) -> Positi
     """
     require(current, Transform, "position6DFromTransformDiff")
     require(target, Transform, "position6DFromTransformDiff")
-    moved = (b - a for a, b in zip(current._position(), target._position()))
+    moved = (b - a for a, b in zip(current._point(), target._point()))
     columns = zip(_matrix.transposed(current._rows()), _matrix.transposed(target._rows()))
     turned = (0.5 * sum(parts) for parts in zip(*(_matrix.cross(a, b) for a, b in columns)))
     return Position6D(*moved, *turned)
 
 
-def position6DFromTransformDiffInPlace(current: Transform, target: Transform, out: Position6D) -> None:
-    """Write the difference of two transforms to `out`, as `position6DFromTransformDiff` returns it."""
-    fill(out, position6DFromTransformDiff(current, target), "position6DFromTransformDiffInPlace")
+position6DFromTransformDiffInPlace = in_place(position6DFromTransformDiff)

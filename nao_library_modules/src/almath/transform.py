@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from numbers import Real
 
 from almath import _matrix
-from almath._components import Components, answer, as_number, as_numbers, fill, require
+from almath._components import Placed, answer, as_number, as_numbers, asking, fill, require
 from almath.errors import AlmathError
 from almath.positions import Position2D, Position3D
 
 _LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 
 
-class Transform(Components):
+class Transform(Placed):
     """Rotation and translation of one frame in another; `r2_c3` is row 2, column 3, and column 4 is in m.
 
     Made from nothing it is the identity, from three numbers a translation. A sequence of 12 or 16 numbers is
@@ -52,17 +52,17 @@ class Transform(Components):
         numbers = self._values()
         return (tuple(numbers[0:3]), tuple(numbers[4:7]), tuple(numbers[8:11]))
 
-    def _position(self) -> _matrix.Triple:
+    def _point(self) -> _matrix.Triple:
         return (self.r1_c4, self.r2_c4, self.r3_c4)
 
     def _placed(self, point: _matrix.Triple) -> _matrix.Triple:
-        return tuple(a + b for a, b in zip(_matrix.applied(self._rows(), point), self._position()))
+        return tuple(a + b for a, b in zip(_matrix.applied(self._rows(), point), self._point()))
 
     def __mul__(self, other: Transform | Position3D | Position2D) -> Transform | Position3D:
         """Chain two transforms, or place a point; one of the plane is taken at z = 0."""
         if isinstance(other, Transform):
             rows = _matrix.product(self._rows(), other._rows())
-            return self._from_parts(rows, self._placed(other._position()))
+            return self._from_parts(rows, self._placed(other._point()))
         if isinstance(other, Position3D):
             return Position3D(*self._placed((other.x, other.y, other.z)))
         if isinstance(other, Position2D):
@@ -82,11 +82,11 @@ class Transform(Components):
         rows = _matrix.orthonormalised(self._rows())
         if rows is None:
             raise AlmathError(f"no rotation near {self!r}: its second and third column do not span a plane")
-        self._assign(self._from_parts(rows, self._position())._values())
+        self._assign(self._from_parts(rows, self._point())._values())
 
     def norm(self) -> float:
         """Length of the translation, in m."""
-        return math.sqrt(_matrix.dot(self._position(), self._position()))
+        return math.sqrt(_matrix.dot(self._point(), self._point()))
 
     def determinant(self) -> float:
         """Determinant of the rotation: 1."""
@@ -95,28 +95,15 @@ class Transform(Components):
     def inverse(self) -> Transform:
         """Transform that undoes this one."""
         rows = _matrix.transposed(self._rows())
-        return self._from_parts(rows, _matrix.scaled(_matrix.applied(rows, self._position()), -1.0))
+        return self._from_parts(rows, _matrix.scaled(_matrix.applied(rows, self._point()), -1.0))
 
     def diff(self, other: Transform) -> Transform:
         """Transform that leads from here to `other`, in this frame."""
         require(other, Transform, "Transform.diff")
         return self.inverse() * other
 
-    def distanceSquared(self, other: Transform) -> float:
-        """Square of the distance between the two origins, in m^2."""
-        require(other, Transform, "Transform.distanceSquared")
-        return sum((a - b) ** 2 for a, b in zip(self._position(), other._position()))
-
-    def distance(self, other: Transform) -> float:
-        """Distance between the two origins, in m."""
-        return math.sqrt(self.distanceSquared(other))
-
     def toVector(self, out: list[float] | None = None) -> list[float] | None:
-        """List the 16 numbers of the 4x4 matrix, row by row.
-
-        Args:
-            out: A list to fill instead of returning a new one.
-        """
+        """List the 16 numbers of the 4x4 matrix, row by row, or write them to `out`."""
         numbers = [*self._values(), *_LAST_ROW]
         if out is None:
             return numbers
@@ -153,7 +140,6 @@ class Transform(Components):
         return "[" + "\n ".join(f"[{row}]" for row in self._lines()) + "]"
 
     def __repr__(self) -> str:
-        """Write the upper three rows as the sequence it could be made from."""
         return f"{type(self).__name__}([" + ",\n           ".join(self._lines()) + "])"
 
     def _lines(self) -> list[str]:
@@ -161,38 +147,12 @@ class Transform(Components):
         return [", ".join(f"{number:g}" for number in numbers[start : start + 4]) for start in (0, 4, 8)]
 
 
-def transformFromRotX(angle: float) -> Transform:
-    """Rotation about X by `angle`, in rad."""
-    return Transform.fromRotX(angle)
-
-
-def transformFromRotY(angle: float) -> Transform:
-    """Rotation about Y by `angle`, in rad."""
-    return Transform.fromRotY(angle)
-
-
-def transformFromRotZ(angle: float) -> Transform:
-    """Rotation about Z by `angle`, in rad."""
-    return Transform.fromRotZ(angle)
-
-
-def transformFrom3DRotation(wx: float, wy: float, wz: float) -> Transform:
-    """Rz(wz) Ry(wy) Rx(wx), angles in rad, without translation."""
-    return Transform.from3DRotation(wx, wy, wz)
-
-
-def transformFromPosition(x: float, y: float, z: float, wx: float = 0.0, wy: float = 0.0, wz: float = 0.0) -> Transform:
-    """Translation in m and, if given, rotation Rz(wz) Ry(wy) Rx(wx) in rad."""
-    return Transform.fromPosition(x, y, z, wx, wy, wz)
+transformFromRotX, transformFromRotY, transformFromRotZ = Transform.fromRotX, Transform.fromRotY, Transform.fromRotZ
+transformFrom3DRotation, transformFromPosition = Transform.from3DRotation, Transform.fromPosition
 
 
 def transformInverse(transform: Transform, out: Transform | None = None) -> Transform | None:
-    """Invert a transform.
-
-    Args:
-        transform: What to invert.
-        out: A transform to overwrite instead of returning a new one.
-    """
+    """Inverse of a transform; written to `out` if that is given."""
     require(transform, Transform, "transformInverse")
     return answer(transform.inverse(), out, "transformInverse")
 
@@ -209,37 +169,16 @@ def transformPreMultiply(left: Transform, right: Transform) -> None:
     fill(right, left * right, "transformPreMultiply")
 
 
-def transformDiff(start: Transform, end: Transform) -> Transform:
-    """Transform that leads from `start` to `end`, in the frame of `start`."""
-    require(start, Transform, "transformDiff")
-    return start.diff(end)
-
-
-def transformDistanceSquared(a: Transform, b: Transform) -> float:
-    """Square of the distance between two origins, in m^2."""
-    require(a, Transform, "transformDistanceSquared")
-    return a.distanceSquared(b)
-
-
-def transformDistance(a: Transform, b: Transform) -> float:
-    """Distance between two origins, in m."""
-    require(a, Transform, "transformDistance")
-    return a.distance(b)
-
-
-def normalizeTransform(transform: Transform) -> None:
-    """Make the rotation of a transform orthonormal, in place; its third column keeps its direction."""
-    require(transform, Transform, "normalizeTransform")
-    transform.normalizeTransform()
+transformDiff = asking("diff", (Transform,), Transform.diff.__doc__, "transformDiff")
+transformDistanceSquared = asking(
+    "distanceSquared", (Transform,), "Square of the distance between two origins, in m^2.", "transformDistanceSquared"
+)
+transformDistance = asking("distance", (Transform,), "Distance between two origins, in m.", "transformDistance")
+normalizeTransform = asking("normalizeTransform", (Transform,), Transform.normalizeTransform.__doc__)
 
 
 def transformToFloatVector(transform: Transform, out: list[float] | None = None) -> list[float] | None:
-    """List the upper three rows, 12 numbers. `Transform.toVector` lists all 16.
-
-    Args:
-        transform: What to list.
-        out: A list to fill instead of returning a new one.
-    """
+    """List the upper three rows, 12 numbers, or write them to `out`. `Transform.toVector` lists all 16."""
     require(transform, Transform, "transformToFloatVector")
     if out is None:
         return transform._values()

@@ -58,7 +58,6 @@ class _TypedList(list):
         super().__setitem__(index, self._copies(value) if isinstance(index, slice) else self._copy(value))
 
     def __iter__(self) -> Iterable:
-        """Go through copies of the items."""
         return (self._copy(item) for item in super(_TypedList, self).__iter__())
 
     def append(self, item: object) -> None:
@@ -112,7 +111,6 @@ class _TypedList(list):
         self[:], other[:] = list(other), list(self)
 
     def __repr__(self) -> str:
-        """Name the class and each item."""
         return f"{type(self).__name__}([{', '.join(self._shown(item) for item in self)}])"
 
     @staticmethod

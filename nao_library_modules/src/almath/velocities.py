@@ -2,82 +2,33 @@
 
 from __future__ import annotations
 
-import math
-
-from almath._components import Components, Linear, as_number, unit
+from almath._components import Components, Linear, Vector, as_number
 
 
-class Velocity3D(Linear):
-    """A linear velocity.
+class Velocity3D(Linear, Vector):
+    """A linear velocity."""
 
-    Attributes:
-        xd: In m/s.
-        yd: In m/s.
-        zd: In m/s.
-    """
-
-    xd: float
-    yd: float
-    zd: float
-
-    _names = ("xd", "yd", "zd")
-    _defaults = (0.0, 0.0, 0.0)
-    _one_number_fills_all = True
-
-    def norm(self) -> float:
-        """Speed, in m/s."""
-        return math.sqrt(sum(value * value for value in self._values()))
-
-    def normalize(self) -> Velocity3D:
-        """Vector of length 1 in the same direction."""
-        return unit(self, self.norm())
+    xd: float  # m/s
+    yd: float  # m/s
+    zd: float  # m/s
 
 
-class Velocity6D(Linear):
-    """A linear and an angular velocity.
+class Velocity6D(Linear, Vector):
+    """A linear and an angular velocity."""
 
-    Attributes:
-        xd: In m/s.
-        yd: In m/s.
-        zd: In m/s.
-        wxd: In rad/s.
-        wyd: In rad/s.
-        wzd: In rad/s.
-    """
-
-    xd: float
-    yd: float
-    zd: float
-    wxd: float
-    wyd: float
-    wzd: float
-
-    _names = ("xd", "yd", "zd", "wxd", "wyd", "wzd")
-    _defaults = (0.0,) * 6
-    _one_number_fills_all = True
-
-    def norm(self) -> float:
-        """Root of the sum of the squares of all six numbers, m/s and rad/s alike."""
-        return math.sqrt(sum(value * value for value in self._values()))
-
-    def normalize(self) -> Velocity6D:
-        """Divide all six numbers by the norm."""
-        return unit(self, self.norm())
+    xd: float  # m/s
+    yd: float  # m/s
+    zd: float  # m/s
+    wxd: float  # rad/s
+    wyd: float  # rad/s
+    wzd: float  # rad/s
 
 
 class PositionAndVelocity(Components):
-    """Where one joint is and how fast it moves.
+    """Where one joint is and how fast it moves."""
 
-    Attributes:
-        q: Position, in rad or m.
-        dq: Velocity, in rad/s or m/s.
-    """
-
-    q: float
-    dq: float
-
-    _names = ("q", "dq")
+    q: float  # position, rad or m
+    dq: float  # velocity, rad/s or m/s
 
     def __init__(self, q: float = 0.0, dq: float = 0.0) -> None:
-        """Set position and velocity."""
         self._assign((as_number(q, "PositionAndVelocity.q"), as_number(dq, "PositionAndVelocity.dq")))
