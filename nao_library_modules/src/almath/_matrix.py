@@ -65,8 +65,7 @@ def is_rotation(m: Matrix, epsilon: float) -> bool:
 def orthonormalised(m: Matrix) -> Matrix | None:
     """Nearest right-handed frame that keeps the third column's direction and the second column's half plane.
 
-    Returns:
-        The rotation, or None if the second and third column do not span a plane.
+    Returns the rotation, or None if the second and third column do not span a plane.
     """
     _, second, third = transposed(m)
     z = _unit(third)
@@ -134,11 +133,7 @@ def to_angles(m: Matrix) -> Triple:
 
 
 def from_quaternion(w: float, x: float, y: float, z: float) -> Matrix | None:
-    """Rotation of a quaternion of any length but zero.
-
-    Returns:
-        The rotation, or None for the zero quaternion.
-    """
+    """Rotation of a quaternion of any length but zero. Returns the rotation, or None for the zero quaternion."""
     square = w * w + x * x + y * y + z * z
     if square == 0.0:
         return None

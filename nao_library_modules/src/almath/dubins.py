@@ -29,7 +29,8 @@ class _Path(NamedTuple):
 def getDubinsSolutions(target: Pose2D, radius: float) -> vectorPose2D:
     """Path from the origin, heading along X, to a pose, in arcs of one radius.
 
-    Of the paths that turn left or right at either end, the one with the shortest straight piece is taken.
+    Of the paths that turn left or right at either end, the one with the shortest straight piece is taken. Raises
+    AlmathError if the radius is not above zero or the target is too near.
 
     Args:
         target: Where to arrive, at least four radii away.
@@ -39,9 +40,6 @@ def getDubinsSolutions(target: Pose2D, radius: float) -> vectorPose2D:
         The pose at the start and at the end of the straight piece, and the target. The headings are not
         wrapped: the first has the sign of the first turn, and the last minus the second has the sign of the
         second turn.
-
-    Raises:
-        AlmathError: If the radius is not above zero or the target is too near.
     """
     require(target, Pose2D, "getDubinsSolutions")
     if not as_number(radius, "getDubinsSolutions radius") > 0.0:

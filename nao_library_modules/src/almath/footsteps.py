@@ -41,13 +41,12 @@ def _corners(box: Box, where: str) -> list[Position2D]:
 def clipFootWithEllipse(max_x: float, max_y: float, step: Pose2D) -> bool:
     """Shorten a step that leaves an ellipse around the origin; direction and heading stay.
 
+    Returns True if it had to be shortened.
+
     Args:
         max_x: Half axis of the ellipse along X, in m; its sign does not count.
         max_y: Half axis of the ellipse along Y, in m; its sign does not count.
         step: The step, changed in place.
-
-    Returns:
-        True if it had to be shortened.
     """
     require(step, Pose2D, "clipFootWithEllipse")
     max_x = as_number(max_x, "clipFootWithEllipse max_x")
@@ -138,15 +137,14 @@ def intersectionSegment2D(
 ) -> bool:
     """Find the point that two segments share.
 
+    Returns True if there is exactly one; parallel segments share none or many.
+
     Args:
         a_start: Start of the first segment.
         a_end: End of the first segment.
         b_start: Start of the second segment.
         b_end: End of the second segment.
         out: Overwritten with the shared point, if there is one.
-
-    Returns:
-        True if there is exactly one; parallel segments share none or many.
     """
     for point in (a_start, a_end, b_start, b_end, out):
         require(point, Position2D, "intersectionSegment2D")

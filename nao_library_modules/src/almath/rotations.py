@@ -63,8 +63,7 @@ class Rotation(Components):
     def normalizeRotation(self) -> None:
         """Make the matrix a rotation again; the third column keeps its direction.
 
-        Raises:
-            AlmathError: If the second and third column do not span a plane.
+        Raises AlmathError if the second and third column do not span a plane.
         """
         rows = _matrix.orthonormalised(self._rows())
         if rows is None:
@@ -191,8 +190,7 @@ def applyRotation(rotation: Rotation, x: float, y: float, z: float) -> tuple[flo
 def rotationFromAxesXYZ(x_axis: Position3D, y_axis: Position3D, z_axis: Position3D) -> Rotation:
     """Rotation whose columns are three given unit vectors.
 
-    Raises:
-        AlmathError: If they are not of length 1, at right angles and right-handed.
+    Raises AlmathError if they are not of length 1, at right angles and right-handed.
     """
     for axis in (x_axis, y_axis, z_axis):
         require(axis, Position3D, "rotationFromAxesXYZ")

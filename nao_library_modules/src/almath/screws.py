@@ -90,12 +90,11 @@ transformMeanInPlace = in_place(transformMean)
 def position6DFromTransformDiff(current: Transform, target: Transform) -> Position6D:
     """Difference of two transforms in the frame in which both are given, as a controller takes it.
 
+    Returns the translation in m, and the axis of the rotation times the sine of its angle.
+
     Args:
         current: Where the body is.
         target: Where it should be.
-
-    Returns:
-        The translation in m, and the axis of the rotation times the sine of its angle.
     """
     require(current, Transform, "position6DFromTransformDiff")
     require(target, Transform, "position6DFromTransformDiff")

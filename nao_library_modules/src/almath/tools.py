@@ -28,8 +28,7 @@ def modulo2PI(angle: float) -> float:
 def modulo2PIInPlace(angles: list[float]) -> None:
     """Wrap each angle of a list, in rad, to ]-pi, pi].
 
-    Raises:
-        AlmathError: If it is a number: Python numbers cannot change, use `modulo2PI`.
+    Raises AlmathError if it is a number: Python numbers cannot change, use `modulo2PI`.
     """
     if not isinstance(angles, MutableSequence):
         raise AlmathError(f"modulo2PIInPlace takes a list of angles, got {angles!r}; modulo2PI returns a wrapped angle")
@@ -39,8 +38,7 @@ def modulo2PIInPlace(angles: list[float]) -> None:
 def meanAngle(angles: list[float]) -> float:
     """Direction of the mean of the unit vectors at some angles, in rad in ]-pi, pi].
 
-    Raises:
-        AlmathError: If there are no angles, or their directions cancel out.
+    Raises AlmathError if there are no angles, or their directions cancel out.
     """
     angles = as_numbers(angles, "meanAngle")
     return weightedMeanAngle(angles, [1.0] * len(angles))
@@ -49,15 +47,12 @@ def meanAngle(angles: list[float]) -> float:
 def weightedMeanAngle(angles: list[float], weights: list[float]) -> float:
     """Direction of the weighted mean of the unit vectors at some angles.
 
+    Returns the mean, in rad in ]-pi, pi]. Raises AlmathError if the lengths differ, a weight is not above zero, or the
+    directions cancel out.
+
     Args:
         angles: In rad.
         weights: One for each angle, all above zero.
-
-    Returns:
-        The mean, in rad in ]-pi, pi].
-
-    Raises:
-        AlmathError: If the lengths differ, a weight is not above zero, or the directions cancel out.
     """
     angles = as_numbers(angles, "weightedMeanAngle angles")
     weights = as_numbers(weights, "weightedMeanAngle weights")
@@ -75,17 +70,13 @@ def weightedMeanAngle(angles: list[float], weights: list[float]) -> float:
 def clipData(minimum: float, maximum: float, values: Clippable) -> bool:
     """Clip the numbers of a list, or of a list of lists, in place.
 
+    Returns True if a number had to change. Raises AlmathError if `values` is a number: Python numbers cannot change,
+    use `min(max(value, minimum), maximum)`.
+
     Args:
         minimum: Smallest value allowed.
         maximum: Largest value allowed.
         values: What to clip.
-
-    Returns:
-        True if a number had to change.
-
-    Raises:
-        AlmathError: If `values` is a number: Python numbers cannot change, use `min(max(value, minimum),
-            maximum)`.
     """
     if not isinstance(values, MutableSequence):
         raise AlmathError(f"clipData takes a list to clip in place, got {values!r}")

@@ -76,8 +76,7 @@ class Transform(Placed):
     def normalizeTransform(self) -> None:
         """Make the rotation one again; its third column keeps its direction.
 
-        Raises:
-            AlmathError: If the second and third column do not span a plane.
+        Raises AlmathError if the second and third column do not span a plane.
         """
         rows = _matrix.orthonormalised(self._rows())
         if rows is None:

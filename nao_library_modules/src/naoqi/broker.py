@@ -38,15 +38,13 @@ class ALBroker:
     ) -> None:
         """Connect to the robot and listen.
 
+        Raises RobotUnreachable if the robot is not there, BrokerError if the own port is not free.
+
         Args:
             listen_ip: Own address on which the robot can call back; `""` is the one towards the robot, `0.0.0.0`
                 means all. A robot that runs on this computer is served on the loopback address only.
             listen_port: Own TCP port; 0 takes a free one.
             connect_timeout: Limit of the wait for the robot, in s.
-
-        Raises:
-            RobotUnreachable: If the robot is not there.
-            BrokerError: If the own port is not free.
         """
         self._name = name
         self._listen_port = listen_port
@@ -102,13 +100,11 @@ class ALBroker:
     def serve(self, name: str, served: Any, worker: Worker) -> None:
         """Register a module with the robot.
 
+        Raises BrokerError if the name is taken, or the broker is shut down; RobotUnreachable if there is no connection.
+
         Args:
             served: The object whose methods libqi serves.
             worker: Runs the calls; closed when the broker is shut down.
-
-        Raises:
-            BrokerError: If the name is taken, or the broker is shut down.
-            RobotUnreachable: If there is no connection.
         """
         with self._lock:
             if self._down.is_set():
@@ -130,8 +126,7 @@ class ALBroker:
     def exchange(self, name: str, served: Any) -> None:
         """Replace the object behind a served module; event subscriptions of the module stay.
 
-        Raises:
-            NaoError: As `serve` does; the module is then no longer served.
+        Raises NaoError as `serve` does; the module is then no longer served.
         """
         with self._lock:
             worker = self._remove(name)
@@ -211,11 +206,7 @@ class ALBroker:
 
 
 def current_broker() -> ALBroker:
-    """The newest broker that is not shut down.
-
-    Raises:
-        BrokerError: If there is none.
-    """
+    """The newest broker that is not shut down. Raises BrokerError if there is none."""
     with _open_brokers_lock:
         if _open_brokers:
             return _open_brokers[-1]

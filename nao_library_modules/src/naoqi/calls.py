@@ -44,11 +44,10 @@ class Call:
     def result(self, timeout: Optional[float] = None) -> Any:
         """Wait for the end of the call.
 
+        Returns what the method returned; raw data is `bytes`.
+
         Args:
             timeout: Limit of the wait in s; None waits as long as the connection lives.
-
-        Returns:
-            What the method returned; raw data is `bytes`.
 
         Raises:
             CallTimeout: If the call still runs after the limit. It goes on; `cancel` ends it.

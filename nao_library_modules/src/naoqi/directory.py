@@ -19,11 +19,7 @@ START_LIMIT = 0.5
 
 
 def module_names(connection: Connection, live: Live) -> List[str]:
-    """Names of all modules of the robot.
-
-    Raises:
-        RobotUnreachable: If it does not answer.
-    """
+    """Names of all modules of the robot. Raises RobotUnreachable if it does not answer."""
     future = live.session.services(_async=True)
     if not answered(future, connection.timing.connect_limit) or future.hasError():
         raise connection.unreachable()
@@ -33,10 +29,8 @@ def module_names(connection: Connection, live: Live) -> List[str]:
 def find_module(connection: Connection, live: Live, name: str) -> Any:
     """The remote object of a module.
 
-    Raises:
-        RobotUnreachable: If the connection does not answer.
-        UnknownModule: If the robot has no module of that name.
-        NaoError: If the module exists but cannot be called.
+    Raises RobotUnreachable if the connection does not answer, UnknownModule if the robot has no module of that name,
+    NaoError if the module exists but cannot be called.
     """
     end, delay = time.monotonic() + READY_LIMIT, 0.005
     while True:

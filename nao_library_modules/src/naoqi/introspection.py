@@ -14,10 +14,8 @@ from .signatures import readable_call, readable_parameters, readable_type
 def method_help(module: RemoteModule, method: str) -> List[Any]:
     """Help on a method: `[name, [[parameter, description], ...], return type, return description]`.
 
-    The overload with the most parameters counts. A parameter without a name is named after its type.
-
-    Raises:
-        UnknownMethod: If the module has no such method.
+    The overload with the most parameters counts. A parameter without a name is named after its type. Raises
+    UnknownMethod if the module has no such method.
     """
     description = max(_overloads(module, method), key=lambda each: len(each["parametersSignature"]))
     parameters = [[name, text] for name, text in map(_pair, description["parameters"])]
@@ -35,8 +33,7 @@ def module_help(module: RemoteModule) -> List[Any]:
 def usage(module: RemoteModule, method: str) -> str:
     """Signature and description of a method, one line for each overload.
 
-    Raises:
-        UnknownMethod: If the module has no such method.
+    Raises UnknownMethod if the module has no such method.
     """
     lines = []
     for each in _overloads(module, method):

@@ -31,9 +31,7 @@ class ALModule:
     def __init__(self, name: str) -> None:
         """Register the module with the newest broker.
 
-        Raises:
-            BrokerError: If there is no broker, or if the name is taken.
-            RobotUnreachable: If there is no connection.
+        Raises BrokerError if there is no broker, or if the name is taken; RobotUnreachable if there is no connection.
         """
         self.__name = name
         self.__broker: ALBroker = current_broker()
@@ -60,8 +58,7 @@ class ALModule:
     def BIND_PYTHON(self, module_name: str, method: str, _parameters: int = -1) -> None:
         """Serve a method that is not served by default: one with a leading underscore, or one added later.
 
-        Raises:
-            UnknownMethod: If the module has no such method.
+        Raises UnknownMethod if the module has no such method.
         """
         if not callable(getattr(self, method, None)):
             known = [each for each in dir(self) if not each.startswith("__") and callable(getattr(self, each))]

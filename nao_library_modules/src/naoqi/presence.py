@@ -55,11 +55,10 @@ class Presence:
     def wait_until_empty(self, limit: float) -> bool:
         """Wait until all threads but the calling one have returned and libqi serves no objects any more.
 
+        Returns whether that was reached.
+
         Args:
             limit: Longest wait, in s.
-
-        Returns:
-            Whether that was reached.
         """
         self._awaited = True
         end = time.monotonic() + limit

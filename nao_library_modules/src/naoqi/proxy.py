@@ -37,17 +37,15 @@ class ALProxy:
     ) -> None:
         """Find the module.
 
+        Raises RobotUnreachable if the robot is not there (unless lazy), UnknownModule if it has no such module (unless
+        lazy), BrokerError if no address is given and there is no ALBroker.
+
         Args:
             name: NAOqi's name of the module, such as `ALMotion`.
             ip: Without it, the robot of the newest ALBroker.
             timeout: Limit of each waiting call, in s. None waits as long as the connection lives.
             connect_timeout: Limit of the wait for the robot, in s.
             lazy: Connect in the background; until that succeeds, calls fail at once.
-
-        Raises:
-            RobotUnreachable: If the robot is not there (unless lazy).
-            UnknownModule: If it has no such module (unless lazy).
-            BrokerError: If no address is given and there is no ALBroker.
         """
         if not isinstance(name, str) or not name:
             reason = "the first is the name of a module"
@@ -66,8 +64,7 @@ class ALProxy:
     def __getattr__(self, name: str) -> Any:
         """Find a remote method, signal or property; methods are cached.
 
-        Raises:
-            UnknownMethod: If the module has nothing of that name.
+        Raises UnknownMethod if the module has nothing of that name.
         """
         if name.startswith("__") or name == "_remote":
             raise AttributeError(name)  # a lookup of Python's own protocols, or before __init__ is done
@@ -95,10 +92,8 @@ class ALProxy:
     def call_async(self, method: str, *arguments: Any) -> Call:
         """Call a method by its name without waiting.
 
-        Raises:
-            RobotUnreachable: If there is no connection now.
-            UnknownMethod: If the module does not have it.
-            BadArguments: If an argument cannot be sent.
+        Raises RobotUnreachable if there is no connection now, UnknownMethod if the module does not have it,
+        BadArguments if an argument cannot be sent.
         """
         return self._method(method).start(*arguments)
 
@@ -111,12 +106,11 @@ class ALProxy:
     def wait(self, task: int, timeout_ms: int = 0) -> bool:
         """Wait for the end of a posted call.
 
+        Returns True if the limit was reached first.
+
         Args:
             task: The number that `post.method()` returned.
             timeout_ms: Limit in ms; 0 waits for ever.
-
-        Returns:
-            True if the limit was reached first.
 
         Raises:
             NaoError: The error of the call, if it failed.
@@ -143,11 +137,7 @@ class ALProxy:
         return self._remote.connection.tasks.is_running(task)
 
     def ping(self) -> bool:
-        """True if the module answers.
-
-        Raises:
-            RobotUnreachable: If there is no connection.
-        """
+        """True if the module answers. Raises RobotUnreachable if there is no connection."""
         if self._remote.offers("ping"):
             return self._remote.method("ping")()
         self._remote.method(ANSWERED_BY_ALL)()
@@ -187,8 +177,7 @@ class ALProxy:
     def _is_the_robots(self, task: Any, method: str) -> bool:
         """Whether a number was not given out here, so that the robot's module must know it.
 
-        Raises:
-            BadArguments: If the module has no such method either.
+        Raises BadArguments if the module has no such method either.
         """
         if self._remote.connection.tasks.knows(task):
             return False

@@ -87,6 +87,8 @@ def connection(
 ) -> Connection:
     """The connection to the NAOqi at an address, opened by the first who asks.
 
+    Raises BadArguments if this is no address, RobotUnreachable if the robot is not there (only with `wait`).
+
     Args:
         ip: Name or IPv4 address of the robot.
         port: TCP port of NAOqi.
@@ -94,10 +96,6 @@ def connection(
             the robot is there; calls made before then fail at once.
         connect_timeout: Limit of the wait, in s.
         timing: How patient the connection is; the first who asks for it decides.
-
-    Raises:
-        BadArguments: If this is no address.
-        RobotUnreachable: If the robot is not there (only with `wait`).
     """
     reason = ""
     if not isinstance(ip, str) or not ip.strip():

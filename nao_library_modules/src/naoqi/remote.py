@@ -42,9 +42,7 @@ class RemoteModule:
     def service(self) -> Any:
         """The remote object of the present session.
 
-        Raises:
-            RobotUnreachable: If there is no session.
-            UnknownModule: If the robot does not have the module.
+        Raises RobotUnreachable if there is no session, UnknownModule if the robot does not have the module.
         """
         return self.connection.service(self.name)
 
@@ -56,11 +54,8 @@ class RemoteModule:
     def attribute(self, name: str) -> Any:
         """What the module has under a name: a method, or libqi's own object for a signal or property.
 
-        While there is no connection everything is taken for a method.
-
-        Raises:
-            UnknownMethod: If there is nothing of that name.
-            UnknownModule: If the robot does not have the module.
+        While there is no connection everything is taken for a method. Raises UnknownMethod if there is nothing of that
+        name, UnknownModule if the robot does not have the module.
         """
         try:
             found = self.find(name)
@@ -73,10 +68,8 @@ class RemoteModule:
     def find(self, name: str) -> Any:
         """What libqi has under a name in the present session.
 
-        Raises:
-            RobotUnreachable: If there is no session.
-            UnknownMethod: If there is nothing of that name.
-            UnknownModule: If the robot does not have the module.
+        Raises RobotUnreachable if there is no session, UnknownMethod if there is nothing of that name, UnknownModule if
+        the robot does not have the module.
         """
         service = self.service()
         found = getattr(service, name, None)
@@ -90,9 +83,7 @@ class RemoteModule:
     def offers(self, name: str) -> bool:
         """Whether the module itself has a method of that name.
 
-        Raises:
-            RobotUnreachable: If there is no session.
-            UnknownModule: If the robot does not have the module.
+        Raises RobotUnreachable if there is no session, UnknownModule if the robot does not have the module.
         """
         return bool(self.overloads(name))
 
@@ -145,11 +136,8 @@ class RemoteMethod:
     def start(self, *arguments: Any) -> Call:
         """Call it without waiting.
 
-        Raises:
-            RobotUnreachable: If there is no session now.
-            UnknownMethod: If the module does not have it.
-            UnknownModule: If the robot does not have the module.
-            BadArguments: If an argument cannot travel.
+        Raises RobotUnreachable if there is no session now, UnknownMethod if the module does not have it, UnknownModule
+        if the robot does not have the module, BadArguments if an argument cannot travel.
         """
         connection = self.module.connection
         presence, thread = connection.presence, get_ident()

@@ -109,11 +109,10 @@ class Connection:
     def wait_connected(self, timeout: Optional[float] = None) -> bool:
         """Wait for the robot.
 
+        Returns whether it is connected.
+
         Args:
             timeout: Limit in s; None waits until there is a connection or it is closed.
-
-        Returns:
-            Whether it is connected.
         """
         with self._condition:
             self._condition.wait_for(lambda: self._state in (State.CONNECTED, State.CLOSED), timeout)
@@ -122,11 +121,10 @@ class Connection:
     def connect(self, limit: float) -> None:
         """Wait until the robot is there, or until an attempt has failed from now on.
 
+        Raises RobotUnreachable if it is not there.
+
         Args:
             limit: Longest wait, in s.
-
-        Raises:
-            RobotUnreachable: If it is not there.
         """
         with self._condition:
             failed_before = self._failed_attempts
@@ -163,9 +161,7 @@ class Connection:
     def service(self, name: str) -> Any:
         """The remote object of a module, in the present session.
 
-        Raises:
-            RobotUnreachable: If there is no session.
-            UnknownModule: If the robot has no module of that name.
+        Raises RobotUnreachable if there is no session, UnknownModule if the robot has no module of that name.
         """
         live = self.live
         if live is None:
@@ -185,11 +181,7 @@ class Connection:
             live.services.pop(name, None)
 
     def module_names(self) -> List[str]:
-        """Names of all modules the robot has.
-
-        Raises:
-            RobotUnreachable: If there is no session.
-        """
+        """Names of all modules the robot has. Raises RobotUnreachable if there is no session."""
         live = self.live
         if live is None:
             raise self.unreachable()

@@ -96,8 +96,7 @@ def _argument_counts(method: Callable[..., Any]) -> Sequence[int]:
 def _fitting(arguments: Sequence[Any], lowest: int, highest: int) -> Sequence[Any]:
     """The arguments, without those of an event that the method does not want to know.
 
-    Raises:
-        TypeError: If they do not fit.
+    Raises TypeError if they do not fit.
     """
     given = len(arguments)
     if given == EVENT_ARGUMENTS > highest:

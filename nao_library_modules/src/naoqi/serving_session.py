@@ -77,9 +77,7 @@ class ServingSession:
     def open(self, port: int) -> None:
         """Listen, and connect to the robot.
 
-        Raises:
-            BrokerError: If the port is not free.
-            RobotUnreachable: If the robot is not there.
+        Raises BrokerError if the port is not free, RobotUnreachable if the robot is not there.
         """
         self.host = listening_address(self._listen_ip, self._connection.host, self._connection.port)
         live = Live(self._on_break)
@@ -106,11 +104,8 @@ class ServingSession:
     def register(self, name: str, served: Any, patience: float) -> None:
         """Register one module; a name in use is tried again until the patience (s) is over.
 
-        A robot that was silent for a while may learn late that our former session is gone.
-
-        Raises:
-            BrokerError: If the name is taken, or the module cannot be called.
-            RobotUnreachable: If the robot does not answer.
+        A robot that was silent for a while may learn late that our former session is gone. Raises BrokerError if the
+        name is taken, or the module cannot be called; RobotUnreachable if the robot does not answer.
         """
         end, delay = time.monotonic() + patience, 0.05
         while True:
@@ -154,14 +149,13 @@ class ServingSession:
 def listening_address(wanted: str, host: str, port: int) -> str:
     """Address on which to listen for a robot.
 
+    Raises RobotUnreachable if no network leads to it.
+
     Args:
         wanted: An own address. Empty: the one that the robot sees, which may be another after a change of networks.
             `0.0.0.0`: all; but for a robot on this computer the loopback address alone.
         host: Name or address of the robot.
         port: TCP port of NAOqi.
-
-    Raises:
-        RobotUnreachable: No network leads to it.
     """
     if wanted not in ("", ANY_ADDRESS):
         return wanted

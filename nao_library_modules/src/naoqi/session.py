@@ -125,15 +125,14 @@ def watch_starts(live: Live, limit: float) -> None:
 def open_live(host: str, port: int, limit: float, announce: Callable[[Live], None]) -> Live:
     """Connect to the NAOqi at an address.
 
+    Raises RobotUnreachable if no NAOqi answers there.
+
     Args:
         host: Name or address of the robot.
         port: TCP port of NAOqi.
         limit: The attempt is given up after this time, in s.
         announce: Called with the session before it connects: closing it breaks the attempt off, and so does
             a `RobotUnreachable` raised here.
-
-    Raises:
-        RobotUnreachable: If no NAOqi answers there.
     """
     deadline = time.monotonic() + limit
     live = Live()
@@ -156,22 +155,15 @@ def open_live(host: str, port: int, limit: float, announce: Callable[[Live], Non
 
 
 def connect_session(session: Any, host: str, port: int, limit: float) -> None:
-    """Connect a session.
-
-    Raises:
-        RobotUnreachable: If no NAOqi answers there within the limit (s).
-    """
+    """Connect a session. Raises RobotUnreachable if no NAOqi answers there within the limit (s)."""
     _value(session.connect(f"tcp://{host}:{port}", _async=True), host, port, limit)
 
 
 def answered(future: Any, limit: float) -> bool:
     """Wait for a future.
 
-    Asked twice: a program that was itself stopped for a while finds the limit over and the answer waiting,
-    and needs only a moment to read it.
-
-    Returns:
-        Whether it is finished; False when the limit (s) is over.
+    Asked twice: a program that was itself stopped for a while finds the limit over and the answer waiting, and needs
+    only a moment to read it. Returns whether it is finished; False when the limit (s) is over.
     """
     for part in (0.8, 0.2):
         if future.wait(max(0, int(1000.0 * part * limit))) != RUNNING:

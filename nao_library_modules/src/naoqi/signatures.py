@@ -32,11 +32,10 @@ ANY_ARGUMENTS = "m"
 def readable_type(signature: str) -> str:
     """Words for one type.
 
+    Returns its meaning, such as `list of (string, float)`; the signature itself where it is not understood.
+
     Args:
         signature: A libqi signature such as `[(sf)]`.
-
-    Returns:
-        Its meaning, such as `list of (string, float)`; the signature itself where it is not understood.
     """
     try:
         text, rest = _read_type(signature)
@@ -48,12 +47,11 @@ def readable_type(signature: str) -> str:
 def readable_call(method: str, parameters: str) -> str:
     """Words for a method with its parameters.
 
+    Returns text such as `setIntensity(string, float)`.
+
     Args:
         method: Name of the method.
         parameters: Its parameters as libqi writes them, such as `(sf)`.
-
-    Returns:
-        Text such as `setIntensity(string, float)`.
     """
     try:
         return f"{method}({', '.join(readable_parameters(parameters))})"

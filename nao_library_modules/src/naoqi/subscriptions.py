@@ -103,8 +103,7 @@ class EventSubscriptions:
     def _memory_is_there(self) -> bool:
         """Wait for ALMemory: a robot that boots can be reached long before it has all its modules.
 
-        Returns:
-            False if the connection is lost before that; then the next one brings a new attempt.
+        Returns False if the connection is lost before that; then the next one brings a new attempt.
         """
         delay = 0.1
         while True:

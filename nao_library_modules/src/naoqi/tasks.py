@@ -28,11 +28,7 @@ class TaskTable:
         self._errors: OrderedDict[int, NaoError] = OrderedDict()
 
     def add(self, call: Call) -> int:
-        """Take a call in.
-
-        Returns:
-            Its number, unique on this connection.
-        """
+        """Take a call in. Returns its number, unique on this connection."""
         with self._lock:
             self._last_id += 1
             task = self._last_id
@@ -52,12 +48,11 @@ class TaskTable:
     def wait(self, task: int, timeout: Optional[float]) -> bool:
         """Wait for the end of a call; one that was stopped has ended like any other.
 
+        Returns whether the limit was over first.
+
         Args:
             task: Its number.
             timeout: Limit in s, or None.
-
-        Returns:
-            Whether the limit was over first.
 
         Raises:
             NaoError: The error of the call, if it failed.

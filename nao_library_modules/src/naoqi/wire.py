@@ -25,15 +25,11 @@ class UnsendableError(Exception):
 def to_wire(arguments: Tuple[Any, ...], takes_raw: Callable[[], bool]) -> Tuple[Any, ...]:
     """Arguments of a call as libqi takes them.
 
+    Returns the same tuple if all was plain, else a converted one. Raises UnsendableError if an argument cannot travel.
+
     Args:
         arguments: What the caller gave.
         takes_raw: Asked only when there are bytes: does the method declare raw data?
-
-    Returns:
-        The same tuple if all was plain, else a converted one.
-
-    Raises:
-        UnsendableError: If an argument cannot travel.
     """
     for argument in arguments:
         if type(argument) not in PLAIN:
@@ -60,8 +56,7 @@ def from_wire(value: Any) -> Any:
 def check_sendable(value: Any) -> None:
     """Look for what libqi itself refuses inside plain values; too slow for every call, so after a failure.
 
-    Raises:
-        UnsendableError: If there is an integer beyond 64 bits or a text that is no Unicode.
+    Raises UnsendableError if there is an integer beyond 64 bits or a text that is no Unicode.
     """
     if isinstance(value, int) and not LOWEST_INTEGER <= value <= HIGHEST_INTEGER:
         raise UnsendableError(f"{value} does not fit into 64 bits")

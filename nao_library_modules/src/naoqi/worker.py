@@ -32,11 +32,10 @@ class Worker:
     def submit(self, job: Callable[[], None]) -> bool:
         """Have a job done after those that wait already.
 
+        Returns whether it was taken; False after `close`.
+
         Args:
             job: Called without arguments in the thread of the worker; what it raises is logged.
-
-        Returns:
-            Whether it was taken; False after `close`.
         """
         with self._lock:
             if self._closed:

@@ -67,11 +67,7 @@ class EnergyFunctions(Part):
         self._card.device("disableEnergyComputation")
 
     def renew(self) -> None:
-        """Have energies computed again.
-
-        Raises:
-            NaoError: The robot does not answer.
-        """
+        """Have energies computed again. Raises NaoError if the robot does not answer."""
         self._call_now("enableEnergyComputation")
         self._left.computing = True
 

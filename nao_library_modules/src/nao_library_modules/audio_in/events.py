@@ -67,12 +67,11 @@ def turned(vector: Vector, angles: Sequence[float]) -> Vector:
 def located_sound(value: Any) -> LocatedSound:
     """A sound from the value of ALSoundLocalization/SoundLocated.
 
+    Raises ValueError if the value is something else.
+
     Args:
         value: [[s, us], [azimuth, elevation, confidence, energy], head in the torso, head in FRAME_ROBOT], the last
             two Position6D in m and rad.
-
-    Raises:
-        ValueError: If the value is something else.
     """
     try:
         (seconds, microseconds), (azimuth, elevation, confidence, *energy), _, head = value
@@ -88,12 +87,11 @@ def located_sound(value: Any) -> LocatedSound:
 def begun_sounds(value: Any) -> list[BegunSound]:
     """The sounds that begin in a value of SoundDetected.
 
+    Raises ValueError if the value is something else.
+
     Args:
         value: [[index, type, confidence, time in us], ...], type 1 for the begin of a sound, 0 for its end; a single
             one may stand alone.
-
-    Raises:
-        ValueError: If the value is something else.
     """
     try:
         rows = [value] if value and not isinstance(value[0], (list, tuple)) else value
@@ -106,13 +104,11 @@ def begun_sounds(value: Any) -> list[BegunSound]:
 def recognised(value: Any) -> list[tuple[str, float]]:
     """Phrases and confidences (0..1) in a value of WordRecognized, the best first.
 
-    Word spotting wraps phrases in marks, which are taken off. A value that was reset has none.
+    Word spotting wraps phrases in marks, which are taken off. A value that was reset has none. Raises ValueError if the
+    value is something else.
 
     Args:
         value: [phrase, confidence, phrase, confidence, ...].
-
-    Raises:
-        ValueError: If the value is something else.
     """
     try:
         value = list(value or [])

@@ -201,8 +201,7 @@ class RecognitionFunctions(Part):
     def take_up(self, recognition: Recognition) -> None:
         """Go on with a recognition that this node had left running before it died.
 
-        Raises:
-            NaoError: The robot does not answer.
+        Raises NaoError if the robot does not answer.
         """
         if recognition.publishes:
             self._module.events.subscribe(WORDS)
@@ -212,11 +211,7 @@ class RecognitionFunctions(Part):
         self._left.recognition = recognition
 
     def pause_again(self) -> None:
-        """Be paused as this node was before it died.
-
-        Raises:
-            NaoError: The robot does not answer.
-        """
+        """Be paused as this node was before it died. Raises NaoError if the robot does not answer."""
         self._recogniser.call_now("pause", True)
         self._left.paused = True
 

@@ -170,8 +170,7 @@ class SoundRecordingFunctions(Part):
     def renew(self, former: Recording) -> None:
         """Go on with a recording of this node before it died, in a further file.
 
-        Raises:
-            NaoError: The robot refuses it.
+        Raises NaoError if the robot refuses it.
         """
         path = _further(PurePosixPath(former.path))
         while (file := self._file_here(str(path))) is not None and file.exists():
@@ -187,8 +186,7 @@ class SoundRecordingFunctions(Part):
     def require_new_file(self, path: str, overwrite: bool, field: str = "str_param") -> None:
         """Check that a file of the robot is not replaced unasked, as far as this computer can tell.
 
-        Raises:
-            BadGoal: There is such a file.
+        Raises BadGoal if there is such a file.
         """
         file = self._file_here(path)
         if file is not None and file.exists() and not overwrite:

@@ -74,6 +74,8 @@ class Sounds(Part):
     ) -> float:
         """Begin a sound, and wait until it is over; preemption silences it.
 
+        Returns how long it sounded, s; 0 in the background.
+
         Args:
             module: NAOqi module.
             method: Its method that takes as long as the sound.
@@ -81,9 +83,6 @@ class Sounds(Part):
             duration: s after which the sound is ended, if it is still there; 0: never.
             background: Whether it is not waited for.
             ended: Called when a sound in the background is over, from a thread of libqi.
-
-        Returns:
-            How long it sounded, s; 0 in the background.
 
         Raises:
             NaoError: If the call fails.
@@ -209,8 +208,7 @@ class LoadedSounds:
     def number(self, name: str) -> int:
         """Id of a loaded file; of the one loaded last without a name.
 
-        Raises:
-            BadGoal: If there is none: the chain was checked, but the robot may have been exchanged since.
+        Raises BadGoal if there is none: the chain was checked, but the robot may have been exchanged since.
         """
         names = self.names
         if not names or (name and name not in names):

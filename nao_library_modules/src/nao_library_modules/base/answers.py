@@ -57,8 +57,7 @@ def json_of(value: Any) -> str:
 def value_of_json(text: str) -> Any:
     """The value of a text.
 
-    Raises:
-        ValueError: It is no JSON, is nested too deep, or has a whole number that no robot knows.
+    Raises ValueError if it is no JSON, is nested too deep, or has a whole number that no robot knows.
     """
     try:
         return json.loads(text, parse_int=_whole)

@@ -74,11 +74,10 @@ class CancellationToken:
     def wait(self, timeout: float) -> bool:
         """Wait for the trigger.
 
+        Returns whether it was triggered.
+
         Args:
             timeout: s of wall-clock time.
-
-        Returns:
-            Whether it was triggered.
         """
         return self._event.wait(timeout)
 

@@ -23,11 +23,10 @@ class WallClock:
     def wait(self, duration: float, interrupt: CancellationToken) -> bool:
         """Wait, unless interrupted.
 
+        Returns whether the whole duration passed.
+
         Args:
             duration: s, >= 0.
             interrupt: Ends the wait.
-
-        Returns:
-            Whether the whole duration passed.
         """
         return not interrupt.wait(duration)

@@ -20,11 +20,7 @@ _HEX = re.compile(r"(?:#|0x)([0-9a-f]{6})")
 
 
 def read_colours(path: Path) -> Mapping[str, Colour]:
-    """Read a table of named colours.
-
-    Raises:
-        ValueError: If an entry is not three numbers within 0..1.
-    """
+    """Read a table of named colours. Raises ValueError if an entry is not three numbers within 0..1."""
     table = json.loads(path.read_text())
     table.pop("_source", None)
     for name, rgb in table.items():
@@ -44,11 +40,7 @@ ALLOWED = f"'#RRGGBB', '0xRRGGBB' or one of {', '.join(named_colours())}"
 
 
 def parse_colour(text: str, field: str = "str_param") -> Colour:
-    """A colour from its name, `#RRGGBB` or `0xRRGGBB`.
-
-    Raises:
-        BadGoal: If the text is none of these.
-    """
+    """A colour from its name, `#RRGGBB` or `0xRRGGBB`. Raises BadGoal if the text is none of these."""
     word = text.strip().lower()
     if word in named_colours():
         return named_colours()[word]

@@ -17,11 +17,7 @@ def is_in_degrees(value: Any) -> bool:
 
 
 def in_rad(value: Any) -> float:
-    """A number, or an angle in degrees as rad.
-
-    Raises:
-        ValueError: It is neither.
-    """
+    """A number, or an angle in degrees as rad. Raises ValueError if it is neither."""
     try:
         if is_in_degrees(value):
             return math.radians(float(value.strip().replace("°", DEGREES)[: -len(DEGREES)]))

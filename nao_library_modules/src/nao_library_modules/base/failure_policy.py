@@ -29,11 +29,10 @@ class FailurePolicy:
     def of(cls, text: str) -> FailurePolicy:
         """The policy that a text names.
 
+        Raises BadGoal if it names none.
+
         Args:
             text: See `ALLOWED`.
-
-        Raises:
-            BadGoal: If it names none.
         """
         words = text.strip().lower()
         if words in ("", "stop"):

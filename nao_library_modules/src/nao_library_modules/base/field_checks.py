@@ -74,11 +74,10 @@ def require_rising(
 def number_parameter(name: str, value: Any, limit: Limit, also: float | None = None) -> float:
     """A number that is a parameter of a node, within the declared bounds of its kind.
 
+    Raises NaoError if it is something else.
+
     Args:
         also: A further number that it may be.
-
-    Raises:
-        NaoError: If it is something else.
     """
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not (number and (limit.lowest <= value <= limit.highest or value == also)):

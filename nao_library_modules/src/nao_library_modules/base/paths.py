@@ -10,8 +10,7 @@ PACKAGE = "nao_library_modules"
 def config_file(name: str) -> Path:
     """Path of a file or folder in `config`: beside the sources, or in the share directory of an installation.
 
-    Raises:
-        FileNotFoundError: If it is in neither place.
+    Raises FileNotFoundError if it is in neither place.
     """
     beside = Path(__file__).resolve().parents[3] / "config" / name
     if beside.exists():

@@ -59,9 +59,8 @@ class FileTrouble(NoPlaceForFile):
 def require_new(path: Path | str, overwrite: bool = False) -> Path:
     """Absolute path of a file that a program is about to write.
 
-    Raises:
-        FileIsThere: There is such a file, and it is not to be replaced.
-        NoPlaceForFile: There is no folder for it.
+    Raises FileIsThere if there is such a file, and it is not to be replaced; NoPlaceForFile if there is no folder for
+    it.
     """
     absolute = Path(path).expanduser().absolute()
     if absolute.exists() and not overwrite:
@@ -77,6 +76,7 @@ class WholeFile(io.RawIOBase):
     What is written waits in memory until `flush`, which puts all of it on the disk or nothing. With the first flush the
     file gets its name. Where there is a file of that name, it is called name.part1.end until it is closed, and takes
     the place of the former one only then. One that is closed without a flush before is not seen until it is complete.
+    Raises FileTrouble if there can be no such file.
 
     Attributes:
         path: Its name at present, or the one that it will have.
@@ -84,9 +84,6 @@ class WholeFile(io.RawIOBase):
     Args:
         path: Where; folders on the way are made.
         numbered: Whether, where there is a file of that name, it becomes name-2.end, name-3.end, ... and replaces none.
-
-    Raises:
-        FileTrouble: There can be no such file.
     """
 
     def __init__(self, path: Path, numbered: bool = False) -> None:
@@ -133,8 +130,7 @@ class WholeFile(io.RawIOBase):
     def flush(self) -> bool:
         """Put on the disk what waits, all of it or nothing; whether there was something.
 
-        Raises:
-            FileTrouble: It cannot be written, nor can what comes behind it: there would be a hole.
+        Raises FileTrouble if it cannot be written, nor can what comes behind it: there would be a hole.
         """
         if not self._waiting:
             return False
@@ -217,13 +213,12 @@ class WholeFile(io.RawIOBase):
 def write_whole(path: Path, content: str | bytes, numbered: bool = False) -> Path:
     """Write a file; one that is there already is replaced, and who reads it meanwhile gets the former one.
 
+    Returns its path.
+
     Args:
         path: The file; its folder is made if it is not there.
         content: A text is written as UTF-8.
         numbered: See `WholeFile`.
-
-    Returns:
-        Its path.
 
     Raises:
         FileTrouble: It cannot be written; nothing has changed.
@@ -238,16 +233,12 @@ def write_whole(path: Path, content: str | bytes, numbered: bool = False) -> Pat
 def move_whole(path: Path, target: Path, overwrite: bool = False) -> Path:
     """Move a file, also to another disk. Until it is whole at its new place it is at the former one.
 
+    Returns where it is now. Raises FileTrouble if it cannot be moved; nothing has changed.
+
     Args:
         path: Where it is.
         target: Where it is to be.
         overwrite: Whether it replaces one that is there; else it becomes name-2.end, name-3.end, ... beside that one.
-
-    Returns:
-        Where it is now.
-
-    Raises:
-        FileTrouble: It cannot be moved; nothing has changed.
     """
     draft = target.parent / f".{os.getpid()}{DRAFT}"
     try:

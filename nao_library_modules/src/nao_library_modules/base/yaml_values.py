@@ -28,11 +28,7 @@ class Budget:
         self._levels = levels
 
     def take(self, node: yaml.Node, depth: int = 0) -> None:
-        """Count a node and what is in it.
-
-        Raises:
-            TooMuch: It is more than is left.
-        """
+        """Count a node and what is in it. Raises TooMuch if it is more than is left."""
         self._left -= 1
         if depth > self._levels or self._left < 0:
             raise TooMuch(self._text)
@@ -56,13 +52,12 @@ class ShallowLoader(yaml.SafeLoader):
 def load_within(text: str, budget: Budget, loader: type[ShallowLoader] = ShallowLoader) -> Any:
     """The value of a text.
 
+    Raises yaml.YAMLError if it is no YAML, or stands for too much.
+
     Args:
         text: YAML.
         budget: How much it may stand for.
         loader: What reads it.
-
-    Raises:
-        yaml.YAMLError: It is no YAML, or stands for too much.
     """
     try:
         reader = loader(text)

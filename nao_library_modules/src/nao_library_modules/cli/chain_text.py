@@ -30,11 +30,7 @@ class TypedFunction:
 
 
 def read_chain(words: Iterable[str]) -> list[TypedFunction]:
-    """Functions in what was typed.
-
-    Raises:
-        click.UsageError: It is no chain.
-    """
+    """Functions in what was typed. Raises click.UsageError if it is no chain."""
     pieces: list[list[str]] = [[]]
     for word in words:
         if word in NEXT:
@@ -72,11 +68,10 @@ def _after_comma(piece: Sequence[str], word: str) -> bool:
 def build_message(function: TypedFunction, kind: Any, taken: Sequence[str] = ()) -> Any:
     """The function message of a typed function.
 
+    Raises click.UsageError if a field is not there, or its value is none of its type.
+
     Args:
         taken: Fields that the function reads, where that is known: errors name these.
-
-    Raises:
-        click.UsageError: A field is not there, or its value is none of its type.
     """
     types = dict(zip(kind.__slots__, kind._slot_types))
     message = kind(function=function.name)
@@ -97,10 +92,8 @@ def build_message(function: TypedFunction, kind: Any, taken: Sequence[str] = ())
 def read_value(kind: str, text: str) -> Any:
     """A value of a type as messages write it.
 
-    Lists are values with commas between them, or YAML in brackets; messages are YAML in braces.
-
-    Raises:
-        ValueError: The text is none.
+    Lists are values with commas between them, or YAML in brackets; messages are YAML in braces. Raises ValueError if
+    the text is none.
     """
     base, bracket, _ = kind.partition("[")
     if bracket:

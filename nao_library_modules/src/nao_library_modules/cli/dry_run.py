@@ -19,11 +19,10 @@ from .stack import Stack
 def ask(stack: Stack, server: str, goals: Sequence[Any]) -> GoalCheck:
     """Have a server check goals.
 
+    Raises NotValidated if it is not there, or cannot tell.
+
     Args:
         goals: In the order in which they would be sent.
-
-    Raises:
-        NotValidated: It is not there, or cannot tell.
     """
     from nao_library_msgs.srv import CheckGoals
 
@@ -36,8 +35,7 @@ def ask(stack: Stack, server: str, goals: Sequence[Any]) -> GoalCheck:
 def tell_dry_run(settings: CliSettings, server: str, functions: Sequence[Any]) -> None:
     """Print what a server says of a goal.
 
-    Raises:
-        CommandFailed: It could not be carried out, or the server does not say.
+    Raises CommandFailed if it could not be carried out, or the server does not say.
     """
     goal = message_class(f"{settings.stack.describe(server, brief=True).action}Goal")
     try:

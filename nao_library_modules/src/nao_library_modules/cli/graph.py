@@ -80,13 +80,11 @@ class Graph:
     def call(self, service: str, kind: type, request: Any, patient: bool = False) -> Any:
         """Call a service.
 
+        Raises StackMissing if it is not there; CommandFailed if it refuses, or its type is another one.
+
         Args:
             service: Its full name.
             patient: Wait for the answer as long as the connection stands, for a service that takes its time.
-
-        Raises:
-            StackMissing: It is not there.
-            CommandFailed: It refuses, or its type is another one.
         """
         try:
             with self._connection(service) as connection, connection.makefile("rwb") as stream:

@@ -16,14 +16,13 @@ def described_by_code(
 ) -> list[tuple[str, Any]]:
     """Servers with their descriptions, as their service would give them.
 
+    Raises click.UsageError if there is no such server.
+
     Args:
         server: Only this one; all without.
         brief: True: without functions.
         names: True: only names and help of the functions.
         functions: Only these; all without.
-
-    Raises:
-        click.UsageError: There is no such server.
     """
     from nao_library_msgs.srv import DescribeFunctionsRequest
 

@@ -44,11 +44,7 @@ class DirectRobot:
         self._proxies.clear()
 
     def call(self, module: str, method: str, *arguments: Any) -> Any:
-        """Call a method.
-
-        Raises:
-            CommandFailed: The robot refuses.
-        """
+        """Call a method. Raises CommandFailed if the robot refuses."""
         try:
             return self._proxy(module).call_async(method, *arguments).result(timeout=self._limit)
         except NaoError as error:
@@ -59,11 +55,7 @@ class DirectRobot:
         return self.call(MEMORY, method, *arguments)
 
     def value(self, key: str) -> Any:
-        """Value of a key.
-
-        Raises:
-            CommandFailed: There is none; the text has the keys that come close.
-        """
+        """Value of a key. Raises CommandFailed if there is none; the text has the keys that come close."""
         try:
             return self.memory("getData", key)
         except CommandFailed:
@@ -83,8 +75,7 @@ class DirectRobot:
     def matching(self, patterns: Sequence[str]) -> list[str]:
         """Keys and events that patterns mean, in their order; a name without wildcards means itself.
 
-        Raises:
-            CommandFailed: A pattern means none.
+        Raises CommandFailed if a pattern means none.
         """
         names: list[str] = []
         known: list[str] | None = None

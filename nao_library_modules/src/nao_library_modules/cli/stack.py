@@ -43,8 +43,7 @@ class Stack:
     def namespace(self) -> str:
         """Of the robot, with a slash at both ends.
 
-        Raises:
-            click.UsageError: There are several robots and none was chosen, or not the one that was.
+        Raises click.UsageError if there are several robots and none was chosen, or not the one that was.
         """
         if self._namespace is None:
             self._namespace = self._choose()
@@ -55,19 +54,13 @@ class Stack:
         return sorted({name.rpartition("/")[0] + "/" for name in self._all_servers()})
 
     def servers(self) -> list[str]:
-        """Names of the robot's servers.
-
-        Raises:
-            StackMissing: It has none.
-        """
+        """Names of the robot's servers. Raises StackMissing if it has none."""
         return sorted(those_in(self.namespace, self._all_servers()), key=str.lower)
 
     def server(self, name: str) -> str:
         """Full name of a server; `lights`, `naolights` and `NaoLights` are the same.
 
-        Raises:
-            StackMissing: It does not run.
-            click.UsageError: There is no such server.
+        Raises StackMissing if it does not run, click.UsageError if there is no such server.
         """
         servers = self.servers()
         for server in servers:
@@ -107,8 +100,7 @@ class Stack:
     ) -> list[tuple[str, DescribeFunctionsResponse]]:
         """Servers that answer, with what they say, as `describe` takes it; `silent` has the others from then on.
 
-        Raises:
-            StackMissing: None answers.
+        Raises StackMissing if none answers.
         """
         found, missing = [], {}
         for name in self.servers():
@@ -137,8 +129,7 @@ class Stack:
     def service(self, name: str) -> str:
         """Full name of a service: that of this robot, or that which all robots share.
 
-        Raises:
-            StackMissing: There is none.
+        Raises StackMissing if there is none.
         """
         services = self.graph.services()
         for full in (self.namespace + name, "/" + name):

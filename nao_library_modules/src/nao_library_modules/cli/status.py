@@ -19,11 +19,7 @@ LEVELS = ("ok", "warning", "error", "stale")
 
 
 def read_status(stack: Stack) -> dict[str, Any]:
-    """What there is to tell; what cannot be asked is None.
-
-    Raises:
-        StackMissing: There are no servers.
-    """
+    """What there is to tell; what cannot be asked is None. Raises StackMissing if there are no servers."""
     names = stack.servers()
     reports = _Diagnostics()
     servers = {name: _server(stack, name) for name in names}

@@ -219,11 +219,7 @@ class BoundFunction:
 
 
 def require_callable(name: str, function: Any) -> Callable[..., Any]:
-    """The function of a table's entry itself.
-
-    Raises:
-        NaoError: If it cannot be called.
-    """
+    """The function of a table's entry itself. Raises NaoError if it cannot be called."""
     if not callable(function):
         raise NaoError(f"function_table[{name!r}] is {function!r}: a function or method is needed, without ()")
     return function
@@ -301,14 +297,13 @@ class FunctionChain:
     ) -> list[FunctionFailed]:
         """All that `read` would find, function by function; nothing runs.
 
+        Raises BadGoal if the chain is empty or too long.
+
         Args:
             messages: Function messages.
             before_check: As `read` takes it.
             context: What the checks share, with those of the chains before.
             stand_in: As `Binding.run_check` takes it.
-
-        Raises:
-            BadGoal: If the chain is empty or too long.
         """
         _require_some(messages)
         context = {} if context is None else context
@@ -325,8 +320,7 @@ class FunctionChain:
     def bind(self, messages: Sequence[Any]) -> list[BoundFunction]:
         """Look at what concerns no robot: names of functions, times, failure policies, what fields declare.
 
-        Returns:
-            For each message what is to be called; its `run_check` runs the check.
+        Returns for each message what is to be called; its `run_check` runs the check.
 
         Raises:
             BadGoal: If the chain is empty or too long.

@@ -62,11 +62,7 @@ def check_request(goals: Sequence[Any]) -> Any:
 
 
 def read_response(response: Any) -> GoalCheck:
-    """What a server answered.
-
-    Raises:
-        NotValidated: It did not look at the goals.
-    """
+    """What a server answered. Raises NotValidated if it did not look at the goals."""
     if response.refused:
         raise NotValidated(response.refused)
     return GoalCheck(tuple(map(_problem, response.problems)), tuple(map(_problem, response.unchecked)))

@@ -72,11 +72,7 @@ class Field:
         return replace(self, **changes)
 
     def require(self, name: str, value: Any) -> None:
-        """See that a value will do.
-
-        Raises:
-            BadGoal: It will not.
-        """
+        """See that a value will do. Raises BadGoal if it will not."""
         if self.check is not None:
             self.check(name, value)
 

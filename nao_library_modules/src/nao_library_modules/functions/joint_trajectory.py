@@ -90,9 +90,7 @@ class KeyFrames:
         """Arguments of ALMotion.angleInterpolationBezier: jointNames, times, controlPoints.
 
         A Bezier segment whose tangents reach a third of its time is the cubic Hermite segment of these velocities.
-
-        Raises:
-            ValueError: If there are no velocities, or the values are relative, which this method of the robot is not.
+        Raises ValueError if there are no velocities, or the values are relative, which this method of the robot is not.
         """
         if self.velocities is None or self.relative:
             raise ValueError("Bezier curves need velocities and absolute values")
@@ -151,13 +149,12 @@ def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False, fie
 def expand_names(names: Sequence[str], chains: Chains, field: str = "joint_names") -> tuple[str, ...]:
     """Joints behind joint and chain names, in order.
 
+    Raises BadGoal if there is none, one is unknown, a joint comes twice, or they are too many.
+
     Args:
         names: Names of joints and chains.
         chains: Chain -> its joints; "Body" tells what joints there are.
         field: What errors call the names.
-
-    Raises:
-        BadGoal: If there is none, one is unknown, a joint comes twice, or they are too many.
     """
     require_length(field, len(names), NAMES)
     known = tuple(chains["Body"])
@@ -182,14 +179,13 @@ def expand_names(names: Sequence[str], chains: Chains, field: str = "joint_names
 def one_each(values: Sequence[float], names: Sequence[str], chains: Chains, field: str) -> tuple[float, ...]:
     """One value for each joint behind `names`, as a point of a trajectory holds them.
 
+    Raises BadGoal if names or values are wrong.
+
     Args:
         values: One value, one for each joint, or a whole H25 body for a robot that has fewer joints.
         names: Names of joints and chains.
         chains: Chain -> its joints; "Body" tells what joints there are.
         field: What errors call the values; the names are called joint_names.
-
-    Raises:
-        BadGoal: If names or values are wrong.
     """
     joints = expand_names(names, chains)
     return _row(values, _body_order(names, joints, len(values)), joints, field)

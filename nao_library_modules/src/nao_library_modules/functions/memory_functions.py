@@ -19,8 +19,7 @@ MAPPING = "'service.signal=event'"
 def parse_assignment(text: str) -> tuple[str, Any]:
     """Split `key=value`; the value is JSON, or plain text where it is not.
 
-    Raises:
-        BadGoal: If there is no key or no equals sign.
+    Raises BadGoal if there is no key or no equals sign.
     """
     key, equals, value = text.partition("=")
     key = key.strip()
@@ -35,8 +34,7 @@ def parse_assignment(text: str) -> tuple[str, Any]:
 def parse_pairs(text: str) -> list[list[Any]]:
     """Keys and values out of JSON: `{"key": value, ...}` or `[["key", value], ...]`.
 
-    Raises:
-        BadGoal: If it is something else.
+    Raises BadGoal if it is something else.
     """
     try:
         told = value_of_json(text)
@@ -53,11 +51,7 @@ def _is_pair(pair: Any) -> bool:
 
 
 def parse_mapping(text: str) -> tuple[str, str, str]:
-    """Service, signal and event out of `service.signal=event`.
-
-    Raises:
-        BadGoal: If it is something else.
-    """
+    """Service, signal and event out of `service.signal=event`. Raises BadGoal if it is something else."""
     source, _, event = text.partition("=")
     service, _, signal = (part.strip() for part in source.rpartition("."))
     if not (service and signal and event.strip()):

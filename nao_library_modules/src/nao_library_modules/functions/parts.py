@@ -37,11 +37,7 @@ def bound(owner: Any, functions: Mapping[str, Callable[..., Any]]) -> dict[str, 
 
 
 def joined(kinds: Iterable[type[Part]]) -> dict[str, Callable[..., Any]]:
-    """The functions of several parts.
-
-    Raises:
-        TypeError: Two parts declare functions of the same name.
-    """
+    """The functions of several parts. Raises TypeError if two parts declare functions of the same name."""
     found: dict[str, Callable[..., Any]] = {}
     for kind in kinds:
         twice = found.keys() & kind.functions.keys()

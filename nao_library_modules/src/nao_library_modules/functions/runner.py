@@ -54,9 +54,7 @@ class FunctionRunner:
     def call(self, proxy: Any, method: str, *args: Any) -> Any:
         """Call a method of the robot; preemption ends the wait and cancels the method.
 
-        Raises:
-            NaoError: If the call fails.
-            Preempted: If a new goal, a cancel or the end of the node came first.
+        Raises NaoError if the call fails; Preempted if a new goal, a cancel or the end of the node came first.
         """
         interrupt = getattr(self._asking, "interrupt", self.interrupt)
         interrupt.check()
@@ -65,13 +63,12 @@ class FunctionRunner:
     def call_all(self, proxy: Any, method: str, arguments: Sequence[Sequence[Any]]) -> list[Any]:
         """Call a method several times at once and wait for all, as `call` does for one.
 
+        Returns the results, in the order of the arguments.
+
         Args:
             proxy: Proxy of the module.
             method: Name of the method.
             arguments: Arguments of each call.
-
-        Returns:
-            The results, in the order of the arguments.
         """
         interrupt = getattr(self._asking, "interrupt", self.interrupt)
         interrupt.check()
@@ -80,18 +77,14 @@ class FunctionRunner:
     def call_now(self, proxy: Any, method: str, *args: Any) -> Any:
         """Call a quick method that preemption must not end, as clean-up needs it.
 
-        Raises:
-            NaoError: If the call fails or takes longer than two seconds.
+        Raises NaoError if the call fails or takes longer than two seconds.
         """
         return proxy.call_async(method, *args).result(timeout=CLEAN_UP_LIMIT)
 
     def after_wait(self, action: Callable[[], None]) -> None:
         """Have something done when the running function and the wait after it are over, however they end.
 
-        The last one left is done first.
-
-        Raises:
-            RuntimeError: If no function runs.
+        The last one left is done first. Raises RuntimeError if no function runs.
         """
         actions = getattr(self._clean_up, "actions", None)
         if actions is None:
@@ -101,9 +94,7 @@ class FunctionRunner:
     def args_of(self, message: Any) -> list[Any]:
         """Arguments for `run`: the fields of a function message that its function takes, checked.
 
-        Raises:
-            UnknownFunction: If there is no such function.
-            BadGoal: If a field will not do.
+        Raises UnknownFunction if there is no such function, BadGoal if a field will not do.
         """
         binding, context = self.chain.bind_one(message), {}
         args = binding.arguments(message, context)
@@ -131,19 +122,14 @@ class FunctionRunner:
     ) -> Any:
         """Run one function, wait, and clean up.
 
+        Returns what the function answers. Raises UnknownFunction if there is no such function; BadGoal if it takes
+        other arguments; Preempted if a new goal, a cancel or the end of the node interrupts it.
+
         Args:
             function: Name in the function table.
             args: Arguments, in the order of its parameters.
             sleep_time: Wait afterwards, in s or as a ROS duration.
             on_answer: Told the answer as soon as it is there, before the wait.
-
-        Returns:
-            What the function answers.
-
-        Raises:
-            UnknownFunction: If there is no such function.
-            BadGoal: If it takes other arguments.
-            Preempted: If a new goal, a cancel or the end of the node interrupts it.
         """
         self.before_run()
         callable_ = self.chain.look_up(function)
@@ -171,11 +157,10 @@ class FunctionRunner:
     def wait(self, duration: float) -> None:
         """Wait on ROS time.
 
+        Raises Preempted if it is interrupted.
+
         Args:
             duration: s.
-
-        Raises:
-            Preempted: If it is interrupted.
         """
         if duration > 0.0 and not self.clock.wait(duration, self.interrupt):
             self.interrupt.check()

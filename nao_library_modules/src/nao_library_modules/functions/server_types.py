@@ -72,8 +72,7 @@ class ServerType:
 def server_type(name: str) -> ServerType:
     """The types of a server; they are imported when they are asked for first.
 
-    Raises:
-        KeyError: There is no such server; the text names those that there are.
+    Raises KeyError if there is no such server; the text names those that there are.
     """
     if name not in SERVERS:
         raise KeyError(f"no server {name!r}{of_those(name, SERVERS)}")
@@ -86,12 +85,11 @@ def server_type(name: str) -> ServerType:
 def described_type(name: str, response: Any) -> ServerType:
     """The types of a server that is none of this package's, as it describes itself.
 
+    Raises BadGoal if its messages are not known in this process.
+
     Args:
         name: Its relative name.
         response: DescribeFunctionsResponse of its service NAME/describe.
-
-    Raises:
-        BadGoal: Its messages are not known in this process.
     """
     from roslib.message import get_message_class  # not needed by who only looks at names
 

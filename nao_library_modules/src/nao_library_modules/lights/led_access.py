@@ -49,8 +49,7 @@ class LedAccess:
     def names(self) -> LightNames:
         """Names of lights and groups, read from the robot when they are not known yet.
 
-        Raises:
-            NaoError: If the robot cannot be asked.
+        Raises NaoError if the robot cannot be asked.
         """
         if self._names is None or self._generation != self._robot.connection.generation:
             return self.read_names()
@@ -62,11 +61,7 @@ class LedAccess:
         return self.names.groups
 
     def read_names(self) -> LightNames:
-        """Read the names of lights and groups from the robot.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
+        """Read the names of lights and groups from the robot. Raises NaoError if the robot cannot be asked."""
         generation = self._robot.connection.generation
         proxy = self.proxy
         short_names = self._call(proxy, "listLEDs")
@@ -95,16 +90,14 @@ class LedAccess:
     def read(self, lights: Iterable[str]) -> Values:
         """Values of the LEDs behind lights and groups, 0..1.
 
-        Raises:
-            NaoError: If the robot cannot be asked or does not tell the value of an LED.
+        Raises NaoError if the robot cannot be asked or does not tell the value of an LED.
         """
         return self._read(self.names.devices(lights), self._call)
 
     def intensities_now(self, lights: Iterable[str]) -> dict[str, float]:
         """Intensities of the single lights behind lights and groups; preemption does not interrupt this.
 
-        Raises:
-            NaoError: If the robot cannot be asked or does not tell the value of an LED.
+        Raises NaoError if the robot cannot be asked or does not tell the value of an LED.
         """
         names = self._names  # not read again: that could be interrupted
         if names is None:

@@ -71,8 +71,7 @@ class RobotBody(Part):
     def facts(self) -> MotionFacts:
         """The joints that there are, asked again after each reconnection.
 
-        Raises:
-            NaoError: If the robot cannot be asked.
+        Raises NaoError if the robot cannot be asked.
         """
         return self._facts()
 
@@ -111,14 +110,11 @@ class RobotBody(Part):
     def require_reached(self, goals: Mapping[str, float]) -> None:
         """See that the commands of joints are where a motion was to bring them.
 
-        A motion that somebody stops ends like one that is over; NAOqi does not distinguish the two.
+        A motion that somebody stops ends like one that is over; NAOqi does not distinguish the two. Raises
+        MotionStopped if one is not, NaoError if something else is known to have stopped it: a fall.
 
         Args:
             goals: Joint -> rad (hands 0..1).
-
-        Raises:
-            MotionStopped: If one is not.
-            NaoError: If something else is known to have stopped it: a fall.
         """
         now = self.motion("getAngles", list(goals), False)
         off = {joint: (goal, at) for (joint, goal), at in zip(goals.items(), now) if abs(at - goal) > REACHED}

@@ -33,8 +33,7 @@ class MotionFacts:
     def joints(self, names: Sequence[str], field: str = "names") -> list[str]:
         """Joints behind joint and chain names, in order.
 
-        Raises:
-            BadGoal: If there is none, one is unknown, or one comes twice.
+        Raises BadGoal if there is none, one is unknown, or one comes twice.
         """
         return list(expand_names([name.strip() for name in names], self.chains, field))
 
@@ -48,11 +47,7 @@ class JointState:
 
 
 def one_each(values: Sequence[float], joints: Sequence[str], field: str) -> list[float]:
-    """One value for each joint, from one for all or one each.
-
-    Raises:
-        BadGoal: If there are as many as neither.
-    """
+    """One value for each joint, from one for all or one each. Raises BadGoal if there are as many as neither."""
     if len(values) == 1:
         return list(values) * len(joints)
     if len(values) != len(joints):

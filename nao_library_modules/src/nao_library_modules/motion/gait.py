@@ -60,8 +60,7 @@ class GaitRange:
 def read_ranges(motion: Callable[..., Any]) -> Mapping[str, GaitRange]:
     """Parameter that can be set -> its range, with `motion` to call ALMotion.
 
-    Raises:
-        NaoError: If the robot cannot be asked.
+    Raises NaoError if the robot cannot be asked.
     """
     configs = [{name: float(v) for name, v in motion("getMoveConfig", which)} for which in CONFIGS]
     names = [name for name in SETTABLE if all(name in values for values in configs)]
@@ -73,12 +72,11 @@ def read_gait(
 ) -> GaitPairs:
     """The parameters that a message gives, in the shape that ALMotion takes.
 
+    Raises BadGoal if a name is not known, or a value is out of its range.
+
     Args:
         names, values, ranges: NAOqi's names, one value each, what the robot allows.
         each_foot: Whether the walk takes parameters for one foot, and a frequency.
-
-    Raises:
-        BadGoal: If a name is not known, or a value is out of its range.
     """
     if len(names) != len(values):
         problem = f"{len(values)} values for {len(names)} parameters"
@@ -131,8 +129,7 @@ def _unknown(name: str, allowed: Mapping[str, GaitRange], each_foot: bool) -> st
 def require_way(way: Place, field: str = "values") -> None:
     """See that a way makes sense.
 
-    Raises:
-        BadGoal: If it is too long, or turns by more than half a turn, or a number is none.
+    Raises BadGoal if it is too long, or turns by more than half a turn, or a number is none.
     """
     numbers = ("x", way.x, WAY), ("y", way.y, WAY), ("theta", way.yaw, TURN)
     for name, value, (_, most, unit) in numbers:
@@ -143,11 +140,7 @@ def require_way(way: Place, field: str = "values") -> None:
 
 
 def places(values: Sequence[float]) -> list[Place]:
-    """Places from one flat list.
-
-    Raises:
-        BadGoal: If there is none, not three numbers for each, or too many.
-    """
+    """Places from one flat list. Raises BadGoal if there is none, not three numbers for each, or too many."""
     require_length("values", len(values) // 3, PLACES)
     if len(values) < 3:
         require_count("values", values, 3, PLACE)
@@ -158,8 +151,7 @@ def places(values: Sequence[float]) -> list[Place]:
 def steps(names: Sequence[str], values: Sequence[float]) -> list[list[float]]:
     """Footsteps of a message: x, y and theta of each, seen from the other foot.
 
-    Raises:
-        BadGoal: If there are not three numbers for each, or a leg cannot put its foot there.
+    Raises BadGoal if there are not three numbers for each, or a leg cannot put its foot there.
     """
     if len(values) != 3 * len(names):
         problem = f"3 numbers for each step are needed, {3 * len(names)} in all"
@@ -178,8 +170,7 @@ def steps(names: Sequence[str], values: Sequence[float]) -> list[list[float]]:
 def step_speeds(count: int, speed: float, speeds: Sequence[float]) -> list[float]:
     """How fast each step is, as a fraction of the fastest; all of it where a message leaves it to us.
 
-    Raises:
-        BadGoal: If there are not as many as steps.
+    Raises BadGoal if there are not as many as steps.
     """
     given = list(speeds) or [speed or 1.0]
     if len(given) not in (1, count):

@@ -31,11 +31,7 @@ class Health:
     on_ground: bool | None = None  # whether a foot touches the ground
 
     def require_fit(self, joints: Iterable[str]) -> None:
-        """See that joints may be moved.
-
-        Raises:
-            NotFit: If a motor is too hot, or the battery empty.
-        """
+        """See that joints may be moved. Raises NotFit if a motor is too hot, or the battery empty."""
         if self.charge is not None and self.charge <= EMPTY and not self.charging:
             raise NotFit(f"the battery is empty ({self.charge:.0%} left)", "plug the charger in")
         hot = self._warmer(joints, TOO_HOT_MOTOR)
@@ -45,13 +41,12 @@ class Health:
     def require_walk(self, joints: Iterable[str], moved: bool) -> None:
         """See that the robot may walk.
 
+        Raises NotFit if a motor is too hot, or the battery empty; CannotWalk if the battery is too low for it, or no
+        foot touches the ground.
+
         Args:
             joints: What the walk moves.
             moved: Whether something moves the robot before: where its feet are then is not known.
-
-        Raises:
-            NotFit: If a motor is too hot, or the battery empty.
-            CannotWalk: If the battery is too low for it, or no foot touches the ground.
         """
         self.require_fit(joints)
         if self.charge is not None and self.charge <= TOO_LOW_TO_WALK and not self.charging:

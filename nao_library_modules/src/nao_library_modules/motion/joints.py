@@ -302,8 +302,7 @@ class JointMotion(BodyPart):
     ) -> tuple[Mapping[str, float], float]:
         """The pose that a message means, and the time to take it in, s; 0 where a speed is meant.
 
-        Raises:
-            BadGoal: If the message gives none, or more than one.
+        Raises BadGoal if the message gives none, or more than one.
         """
         given = [bool(angles), bool(trajectory.points), bool(str_param.strip())]
         if sum(given) != 1:

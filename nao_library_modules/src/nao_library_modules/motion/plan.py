@@ -66,11 +66,7 @@ class MotionPlan:
 
     @property
     def facts(self) -> MotionFacts:
-        """The joints.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
+        """The joints. Raises NaoError if the robot cannot be asked."""
         return self._read_facts()
 
     @property
@@ -135,8 +131,7 @@ class MotionPlan:
     def require_stiff(self, joints: Sequence[str], stiffness: float) -> None:
         """See that joints can move: stiff already, or stiffened by the function; and that no walk moves them.
 
-        Raises:
-            BadGoal: If they are limp, or the robot walks with them.
+        Raises BadGoal if they are limp, or the robot walks with them.
         """
         self.walk.require_free(joints)
         self.health.require_fit(joints)
@@ -153,8 +148,7 @@ class MotionPlan:
     def require_fit_legs(self) -> None:
         """See that the robot can get on its feet; an arm or a head that is too hot stays limp then.
 
-        Raises:
-            NotFit: If a motor of the legs is too hot, or the battery empty.
+        Raises NotFit if a motor of the legs is too hot, or the battery empty.
         """
         self.health.require_fit(self.legs())
 
@@ -163,11 +157,7 @@ class MotionPlan:
         return [joint for leg in LEGS for joint in chains.get(leg, ())]
 
     def require_angle(self, joint: str, angle: float, field: str) -> None:
-        """See that an angle is within the limits of a joint.
-
-        Raises:
-            BadGoal: If it is not; names the limits.
-        """
+        """See that an angle is within the limits of a joint. Raises BadGoal if it is not; names the limits."""
         limits = self.facts.limits[joint]
         if not (math.isfinite(angle) and limits.lower - TOLERANCE <= angle <= limits.upper + TOLERANCE):
             unit, hint = _unit(joint), degrees_hint(angle, limits.lower, limits.upper)
@@ -212,14 +202,13 @@ class MotionPlan:
     ) -> None:
         """Joints go through key frames.
 
+        Raises BadGoal if an angle is out of reach, or a joint would have to be faster than it is.
+
         Args:
             values: Joint -> its angles at the times, rad.
             times: s from the start, rising, above 0.
             relative: Whether the angles are added to where the joint is at the start.
             field: What errors call the angles.
-
-        Raises:
-            BadGoal: If an angle is out of reach, or a joint would have to be faster than it is.
         """
         goals: dict[str, float | None] = {}
         for joint, angles in values.items():
@@ -279,11 +268,7 @@ class WalkPlan:
         return [joint for chain in LEGS + ARMS for joint in chains.get(chain, ()) if not joint.endswith("Hand")]
 
     def require_ready(self) -> None:
-        """See that a walk can begin: on its feet, with stiff legs.
-
-        Raises:
-            CannotWalk: If it cannot.
-        """
+        """See that a walk can begin: on its feet, with stiff legs. Raises CannotWalk if it cannot."""
         legs = self._plan.legs()
         softest = min(legs, key=self._plan.stiffnesses.__getitem__)
         stiffness = self._plan.stiffnesses[softest]
@@ -299,8 +284,7 @@ class WalkPlan:
     def require_free(self, joints: Iterable[str]) -> None:
         """See that the walk does not move the joints.
 
-        Raises:
-            BadGoal: If the robot walks by then, and one is in a leg.
+        Raises BadGoal if the robot walks by then, and one is in a leg.
         """
         legs = set(self._plan.legs())
         wanted = [joint for joint in joints if joint in legs]

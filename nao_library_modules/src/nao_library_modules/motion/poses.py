@@ -32,8 +32,7 @@ class NamedPoses:
     def find(self, name: str, joints: Container[str]) -> dict[str, float]:
         """Joint -> angle in rad of a pose, as far as the robot has the joints.
 
-        Raises:
-            BadGoal: If there is no such pose or file, or the file is broken.
+        Raises BadGoal if there is no such pose or file, or the file is broken.
         """
         file, separator, pose = name.strip().rpartition(SEPARATOR)
         poses = self._of_file(file) if separator else self._all()

@@ -42,11 +42,7 @@ class MotionStore:
         return _names(self.folder)
 
     def load(self, name: str) -> RecordedMotion:
-        """A motion.
-
-        Raises:
-            BadGoal: If there is none of that name, or its file is broken.
-        """
+        """A motion. Raises BadGoal if there is none of that name, or its file is broken."""
         path: Path | None = self.path(name)
         if not path.is_file():
             path = self._shipped_file(name)
@@ -61,14 +57,12 @@ class MotionStore:
     def save(self, name: str, motion: RecordedMotion, numbered: bool = False) -> Path:
         """Write a motion; one of that name is replaced as a whole, never left half written.
 
+        Raises BadGoal if the name will not do, FileTrouble if the file cannot be written.
+
         Args:
             name: Its name.
             motion: What to write.
             numbered: Whether, where there is one of that name, it becomes name-2, name-3, ... and replaces none.
-
-        Raises:
-            BadGoal: If the name will not do.
-            FileTrouble: If the file cannot be written.
         """
         path = self.path(name)
         text = yaml.safe_dump(motion.to_content(), default_flow_style=None, sort_keys=False, width=10**6)
@@ -77,9 +71,8 @@ class MotionStore:
     def rename(self, name: str, new_name: str) -> Path:
         """Give a motion another name; answers its file.
 
-        Raises:
-            BadGoal: If there is none of that name, it comes with the library, there is one of the new name already, or
-                the file cannot be renamed.
+        Raises BadGoal if there is none of that name, it comes with the library, there is one of the new name already,
+        or the file cannot be renamed.
         """
         path, target = self.require(name), self.require_free(new_name)
         try:
@@ -92,8 +85,7 @@ class MotionStore:
     def delete(self, name: str) -> None:
         """Delete a motion.
 
-        Raises:
-            BadGoal: If there is none of that name, it comes with the library, or the file cannot be deleted.
+        Raises BadGoal if there is none of that name, it comes with the library, or the file cannot be deleted.
         """
         path = self.require(name)
         try:
@@ -105,8 +97,7 @@ class MotionStore:
     def require_free(self, name: str, field: str = "texts") -> Path:
         """File of a new motion, whose name is in `field` of the message.
 
-        Raises:
-            BadGoal: If the name will not do, or there is a motion of that name already.
+        Raises BadGoal if the name will not do, or there is a motion of that name already.
         """
         path = self.path(name, field)
         if path.exists():
@@ -115,19 +106,14 @@ class MotionStore:
         return path
 
     def path(self, name: str, field: str = "str_param") -> Path:
-        """File of a motion of that name, whether it is there or not.
-
-        Raises:
-            BadGoal: If the name will not do.
-        """
+        """File of a motion of that name, whether it is there or not. Raises BadGoal if the name will not do."""
         require_name(field, name)
         return self.folder / f"{name}{SUFFIX}"
 
     def require(self, name: str) -> Path:
         """File of a motion that can be renamed and deleted.
 
-        Raises:
-            BadGoal: If there is none of that name, or it comes with the library.
+        Raises BadGoal if there is none of that name, or it comes with the library.
         """
         path = self.path(name)
         if not path.is_file():

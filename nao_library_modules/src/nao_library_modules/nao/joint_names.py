@@ -39,20 +39,12 @@ class JointNames:
 
     @property
     def chains(self) -> Mapping[str, tuple[str, ...]]:
-        """Chain -> its joints.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
+        """Chain -> its joints. Raises NaoError if the robot cannot be asked."""
         return self._chains()
 
     @property
     def body(self) -> tuple[str, ...]:
-        """All joints, in the robot's order.
-
-        Raises:
-            NaoError: If the robot cannot be asked.
-        """
+        """All joints, in the robot's order. Raises NaoError if the robot cannot be asked."""
         return self.chains["Body"]
 
     def _ask(self) -> dict[str, tuple[str, ...]]:

@@ -108,8 +108,7 @@ class LightNames:
     def expand(self, names: Iterable[str]) -> list[str]:
         """Single lights behind names of lights and groups, each once, in order.
 
-        Raises:
-            UnknownLight: If a name is unknown.
+        Raises UnknownLight if a name is unknown.
         """
         expanded: dict[str, None] = {}
         for name in map(self.of_robot, names):
@@ -122,11 +121,7 @@ class LightNames:
         return list(expanded)
 
     def devices(self, names: Iterable[str]) -> list[str]:
-        """LEDs behind names of lights and groups, each once, in order.
-
-        Raises:
-            UnknownLight: If a name is unknown.
-        """
+        """LEDs behind names of lights and groups, each once, in order. Raises UnknownLight if a name is unknown."""
         found: dict[str, None] = {}
         for light in self.expand(names):
             found.update(dict.fromkeys(self.lights.get(light, (light,))))

@@ -65,8 +65,7 @@ class Pose:
 def pose_table(table: Any) -> dict[str, Pose]:
     """Poses from a table as nao_robot's parameter `~poses` holds it: name -> joint_names, positions, time_from_start.
 
-    Raises:
-        BadPose: If an entry is no pose.
+    Raises BadPose if an entry is no pose.
     """
     if not isinstance(table, Mapping):
         raise BadPose("poses", f"the table is {table!r}")
@@ -81,11 +80,7 @@ def built_in() -> dict[str, Pose]:
 
 
 def library(path: str) -> dict[str, Pose]:
-    """Poses of a library of Choregraphe (.xap).
-
-    Raises:
-        BadPoseFile: If it cannot be read.
-    """
+    """Poses of a library of Choregraphe (.xap). Raises BadPoseFile if it cannot be read."""
     return {name: Pose(tuple(pose), tuple(pose.values()), XAP_TIME) for name, pose in read_poses(path).items()}
 
 

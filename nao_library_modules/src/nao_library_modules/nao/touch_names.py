@@ -73,12 +73,11 @@ def names_of(sensors: Iterable[Sensor]) -> list[str]:
 def sensors_of(words: Sequence[str], field: str = "sensors") -> tuple[Sensor, ...]:
     """Sensors behind short names, events, devices and groups; each once, in the order of `SENSORS`.
 
+    Raises BadGoal if something has none of these names.
+
     Args:
         words: The names; none stands for all sensors.
         field: Of the message that holds them.
-
-    Raises:
-        BadGoal: Something has none of these names.
     """
     if not words:
         return SENSORS
@@ -89,8 +88,7 @@ def sensors_of(words: Sequence[str], field: str = "sensors") -> tuple[Sensor, ..
 def devices_of(words: Sequence[str]) -> list[str]:
     """Devices behind words as `sensors_of` takes them, each once; a device means itself alone.
 
-    Raises:
-        BadGoal: Something has none of these names.
+    Raises BadGoal if something has none of these names.
     """
     found: dict[str, None] = {}
     for word in words:

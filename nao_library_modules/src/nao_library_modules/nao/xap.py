@@ -38,14 +38,13 @@ class BadPoseFile(NaoError):  # noqa: N818  named like the errors of the proxy l
 def read_poses(path: str | Path) -> dict[str, dict[str, float]]:
     """Read a pose library.
 
+    Raises BadPoseFile if it cannot be read, is no XML, or holds no pose or a broken one.
+
     Args:
         path: The .xap file.
 
     Returns:
         Name of the pose -> joint -> angle in rad (hands: 0..1).
-
-    Raises:
-        BadPoseFile: If it cannot be read, is no XML, or holds no pose or a broken one.
     """
     path = Path(path).expanduser()
     try:

@@ -90,11 +90,7 @@ class DesignatorServer:
 
 
 def read(goal: Any) -> Designator:
-    """The designator of a goal of PerformDesignator.
-
-    Raises:
-        PlanError: It has none, or it cannot be read.
-    """
+    """The designator of a goal of PerformDesignator. Raises PlanError if it has none, or it cannot be read."""
     if goal.designator.strip():
         if goal.pairs:
             raise PlanError("designator: there is text, and keys and values: one of the two")

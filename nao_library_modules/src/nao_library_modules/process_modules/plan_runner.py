@@ -108,8 +108,7 @@ class PlanRun:
 def wake_up() -> None:
     """Have the robot stand with its motors on, which walking and moving need. Waits for the driver and the robot.
 
-    Raises:
-        LowLevelFailure: The robot cannot be reached, or does not stand up.
+    Raises LowLevelFailure if the robot cannot be reached, or does not stand up.
     """
     deadline = time.monotonic() + ROBOT_LIMIT
     while True:

@@ -21,13 +21,12 @@ from .service_call import LIMIT, NotAnswered, call_service
 def check_goals(server: str, *goals: Any, limit: float = LIMIT) -> GoalCheck:
     """What is wrong with goals; nothing is done, and a goal that runs goes on.
 
+    Raises NotValidated if it is not there, has no such service, or does not answer in time.
+
     Args:
         server: Name of the action: NaoMotion.
         goals: Of its type, in the order in which they would be sent.
         limit: s that the server has.
-
-    Raises:
-        NotValidated: It is not there, has no such service, or does not answer in time.
     """
     try:
         return read_response(call_service(server + CHECK, CheckGoals, check_request(goals), limit))

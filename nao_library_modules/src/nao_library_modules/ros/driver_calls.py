@@ -34,11 +34,7 @@ class DriverCall:
         return bool(futures.wait([self._answer], timeout).done)
 
     def result(self, timeout: float | None = None) -> Any:
-        """Wait for its end, and what it answered.
-
-        Raises:
-            NaoError: It failed, or is not over in time.
-        """
+        """Wait for its end, and what it answered. Raises NaoError if it failed, or is not over in time."""
         if not self.wait(timeout):
             raise NaoError(f"{self}: no answer within {timeout:g} s")
         return self._answer.result()

@@ -117,10 +117,8 @@ def leaves(tree: dict[str, Any], above: str = "/") -> Iterator[tuple[str, Any]]:
 def restore(book: Book, master: Api, caller: str) -> int:
     """Tell a master what another knew, as far as it is still so.
 
-    What the new one knows already counts: parameters that have been set, nodes that have been started again.
-
-    Returns:
-        How many nodes there are of those that the other knew.
+    What the new one knows already counts: parameters that have been set, nodes that have been started again. Returns
+    how many nodes there are of those that the other knew.
     """
     known = set(master.ask("getParamNames"))
     for name, value in leaves(book.parameters):

@@ -175,32 +175,20 @@ def _address_of(service: str) -> str:
 
 
 def _succeeded(state: int, text: str) -> None:
-    """Nothing.
-
-    Raises:
-        NaoError: It failed, or somebody else ended it.
-    """
+    """Nothing. Raises NaoError if it failed, or somebody else ended it."""
     if state != GoalStatus.SUCCEEDED:
         raise NaoError(text or f"it ended {GoalStatus.to_string(state).lower()}, and the driver does not say why")
 
 
 def _walked(state: int, text: str) -> bool | None:
-    """None; False if somebody else ended it.
-
-    Raises:
-        NaoError: It failed.
-    """
+    """None; False if somebody else ended it. Raises NaoError if it failed."""
     if state in (GoalStatus.PREEMPTED, GoalStatus.RECALLED):
         return False
     return _succeeded(state, text)
 
 
 def _posture_reached(state: int, text: str) -> bool:
-    """Whether it was reached.
-
-    Raises:
-        NaoError: It failed for another reason.
-    """
+    """Whether it was reached. Raises NaoError if it failed for another reason."""
     if state == GoalStatus.ABORTED and "did not reach the posture" in text:
         return False
     _succeeded(state, text)
@@ -208,21 +196,13 @@ def _posture_reached(state: int, text: str) -> bool:
 
 
 def _no_answer(error: str) -> None:
-    """Nothing.
-
-    Raises:
-        NaoError: There is an error.
-    """
+    """Nothing. Raises NaoError if there is an error."""
     if error:
         raise NaoError(error)
 
 
 def _arrived(error: str) -> bool | None:
-    """None; False if the robot did not get there.
-
-    Raises:
-        NaoError: There is another error.
-    """
+    """None; False if the robot did not get there. Raises NaoError if there is another error."""
     return False if NOT_THERE in error else _no_answer(error)
 
 

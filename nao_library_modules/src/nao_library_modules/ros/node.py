@@ -49,12 +49,11 @@ def robot_parser(description: str) -> argparse.ArgumentParser:
 def robot_address(options: argparse.Namespace, get_param: Callable[[str, Any], Any]) -> tuple[str, int]:
     """Address and port of the robot: command line, then parameter, then environment (NAO_IP, NAO_PORT), then default.
 
+    Raises NaoError if the port is no port.
+
     Args:
         options: What `robot_parser` gave.
         get_param: Gives a parameter by name, or the default given with it.
-
-    Raises:
-        NaoError: If the port is no port.
     """
     ip = options.pip if options.pip is not None else get_param("~pip", os.environ.get("NAO_IP") or DEFAULT_IP)
     port = options.pport if options.pport is not None else get_param("~pport", _usual_port())
@@ -72,8 +71,7 @@ def _usual_port() -> Any:
 def launch_path(value: Any) -> tuple[str, str] | None:
     """`(package, launchfile)` from a parameter: "package launchfile", a list of the two, or nothing.
 
-    Raises:
-        NaoError: If it is something else.
+    Raises NaoError if it is something else.
     """
     words = value.split() if isinstance(value, str) else value
     if not words:
@@ -136,10 +134,8 @@ def run_module(
 def start_node(name: str, description: str, argv: Sequence[str] | None) -> argparse.Namespace:
     """Make this process a node that ends in time and whose log has what the libraries tell.
 
-    A launched node whose name another node takes waits here until that one has ended.
-
-    Returns:
-        What `robot_parser` gives for the arguments.
+    A launched node whose name another node takes waits here until that one has ended. Returns what `robot_parser` gives
+    for the arguments.
     """
     options = robot_parser(description).parse_args(rospy.myargv(argv)[1:])
     waited_for = wait_for_name()

@@ -34,8 +34,7 @@ CLOSE_LIMIT = 10.0
 def wait_for_name() -> str:
     """Wait until the name is free that another node took from this one, and set the parameters that this one had.
 
-    Returns:
-        The name; empty, at once, if none was taken.
+    Returns the name; empty, at once, if none was taken.
     """
     name = os.environ.pop(WAITING, "")
     while name and _in_use(name):

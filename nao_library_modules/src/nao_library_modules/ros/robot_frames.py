@@ -27,11 +27,10 @@ class RobotFrames:
     def locate(self, frame: str) -> Place:
         """Where a frame is now, seen from above by the robot.
 
+        Raises NaoError if it is not connected with the robot.
+
         Args:
             frame: Its name.
-
-        Raises:
-            NaoError: If it is not connected with the robot.
         """
         robot = tf_prefix() + ROBOT
         patience = rospy.Duration.from_sec(PATIENCE)

@@ -76,11 +76,7 @@ class ServerNode:
         return server
 
     def seconds(self, name: str, default: float) -> float:
-        """A private parameter of the node that is a time, s.
-
-        Raises:
-            NaoError: It is no time from 0 to 1 s.
-        """
+        """A private parameter of the node that is a time, s. Raises NaoError if it is no time from 0 to 1 s."""
         value = rospy.get_param(f"~{name}", default)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value <= LONGEST_SECONDS:
             raise NaoError(f"~{name} is {value!r}: 0 to {LONGEST_SECONDS:g} s")
@@ -141,8 +137,7 @@ class ServerNode:
     def locate(self, frame: str) -> Place:
         """Where a frame of /tf is now, seen from above by the robot.
 
-        Raises:
-            NaoError: If it is not connected with the robot.
+        Raises NaoError if it is not connected with the robot.
         """
         if self._frames is None:  # /tf is a busy topic: who never asks never listens
             self._frames = RobotFrames()

@@ -99,8 +99,8 @@ class ExtractorUse(Part):
     def begin(self, module: str, method: str, args: Sequence[Any], undo: str, *undo_args: Any) -> Any:
         """Call a method that begins something which has to be ended.
 
-        Preemption does not end the call in the middle: only when it is over it is known whether there is something
-        to end. A call that takes too long for that is undone when it is over.
+        Preemption does not end the call in the middle: only when it is over it is known whether there is something to
+        end. A call that takes too long for that is undone when it is over. Returns what the call returns.
 
         Args:
             module: NAOqi module.
@@ -108,9 +108,6 @@ class ExtractorUse(Part):
             args: Arguments of it.
             undo: The method that ends what it begins.
             undo_args: Arguments of that.
-
-        Returns:
-            What the call returns.
 
         Raises:
             NaoError: If the call fails; then nothing has begun.

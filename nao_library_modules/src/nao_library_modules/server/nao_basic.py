@@ -117,6 +117,8 @@ class NaoBasic(FunctionRunner):
     ) -> None:
         """Connect in the background; the robot need not be there yet.
 
+        Raises BadLaunchPath if the launch file is to be started and is not there.
+
         Args:
             ip: Address of the robot.
             port: Port of its NAOqi.
@@ -126,9 +128,6 @@ class NaoBasic(FunctionRunner):
             node: ROS side, where not that of this process's node.
             patience: s from now on for which goals wait for a robot that has never been reached.
             kept: Where what goals set up is kept beyond the death of the node, where not in the file of the node.
-
-        Raises:
-            BadLaunchPath: If the launch file is to be started and is not there.
         """
         if not isinstance(autostart, bool):
             raise NaoError(f"autostart is {autostart!r}: True or False")
@@ -235,8 +234,7 @@ class NaoBasic(FunctionRunner):
     def start_launch(self) -> None:
         """Start the launch file and keep it running, instead of one that was started for another `launchpath`.
 
-        Raises:
-            BadLaunchPath: If `launchpath` names no launch file; what runs goes on.
+        Raises BadLaunchPath if `launchpath` names no launch file; what runs goes on.
         """
         if self._launch is None or self._launched != self.launchpath:
             new = launch_supervisor(self.launchpath, self.ip, self.port, self._node.namespace)
@@ -435,12 +433,11 @@ class NaoBasic(FunctionRunner):
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Fill the result message. Modules with more fields extend it.
 
+        Raises NaoError if the robot cannot be asked; the goal is aborted then.
+
         Args:
             result: Result with at least the fields `memList` and `results`.
             outcomes: What was done.
-
-        Raises:
-            NaoError: If the robot cannot be asked; the goal is aborted then.
         """
         told = sorted([*outcomes, *self._failures], key=lambda outcome: outcome.position)
         result.results = [_result_of(outcome) for outcome in told]

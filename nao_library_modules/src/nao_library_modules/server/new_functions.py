@@ -39,14 +39,13 @@ FITS: dict[str, Callable[[Any], bool]] = {
 def new_function(kind: type, function: str, *values: Any, **fields: Any) -> Any:
     """A function message.
 
+    Raises TypeError if there is no such field, or none is left for a value.
+
     Args:
         kind: Its class.
         function: Name of the function.
         values: Each for the next field of its kind.
         fields: Fields by name.
-
-    Raises:
-        TypeError: If there is no such field, or none is left for a value.
     """
     message = kind(function=function)
     for name, value in fields.items():

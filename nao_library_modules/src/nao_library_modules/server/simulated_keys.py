@@ -24,11 +24,10 @@ class SimulatedKey:
     def known(self, call: Callable[..., Any]) -> bool:
         """Whether the robot has it.
 
+        Raises NaoError if the robot cannot be asked.
+
         Args:
             call: `call` of a module: proxy, method, arguments.
-
-        Raises:
-            NaoError: The robot cannot be asked.
         """
         generation = self._robot.connection.generation
         if self._generation != generation:
@@ -39,27 +38,23 @@ class SimulatedKey:
     def value(self, call: Callable[..., Any]) -> Any:
         """What it holds.
 
+        Raises NaoError if the robot cannot be asked.
+
         Args:
             call: As `known` takes it.
-
-        Raises:
-            NaoError: The robot cannot be asked.
         """
         return call(self._robot.proxy(MEMORY), "getData", self._name)
 
     def span(self, call: Callable[..., Any], clock: RobotClock, began: float) -> tuple[float, float]:
         """ROS times, s, from a key that holds [onset, end] of what came last, s of the robot.
 
+        Returns both; 0 where it is something else, or there has been nothing. Raises NaoError if the robot cannot be
+        asked.
+
         Args:
             call: As `known` takes it.
             clock: Turns times of the robot into ROS time.
             began: ROS time, s; what began before is something else.
-
-        Returns:
-            Both; 0 where it is something else, or there has been nothing.
-
-        Raises:
-            NaoError: The robot cannot be asked.
         """
         return checked_span([clock.ros_time(call, time) for time in self.value(call)], began)
 

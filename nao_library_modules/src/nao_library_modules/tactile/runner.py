@@ -40,13 +40,12 @@ class BehaviorClient:
     def run(self, behavior: str, parameters: Sequence[str], done: Callable[[str, str], None]) -> None:
         """Start a behaviour and go on.
 
+        Raises NaoError if there is no server.
+
         Args:
             behavior: Its name.
             parameters: Each as name=value.
             done: Gets how it ended and what was said about it, once, in a thread of actionlib.
-
-        Raises:
-            NaoError: There is no server.
         """
         client = self._connected()
         if not client.wait_for_server(rospy.Duration(SERVER_LIMIT)):

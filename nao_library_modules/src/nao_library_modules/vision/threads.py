@@ -66,6 +66,8 @@ class ImageThreads:
     ) -> ImageThread:
         """Pass the pictures of a topic on to another one, with their camera_info if there is one.
 
+        Raises NaoError if a thread of that name runs, or the topic holds no pictures.
+
         Args:
             name: Of the thread.
             topic: Of the camera.
@@ -73,9 +75,6 @@ class ImageThreads:
             width: Pixels; 0: in proportion to the height, or as it is.
             height: Pixels; 0: likewise.
             rate: Pictures a second at most; 0: all.
-
-        Raises:
-            NaoError: A thread of that name runs, or the topic holds no pictures.
         """
         return self._start(Stream(name, topic, rate, self._topics, self._clock, topic_out, width, height))
 
@@ -92,6 +91,8 @@ class ImageThreads:
     ) -> ImageThread:
         """Record the pictures of a topic, each at the time at which it was taken.
 
+        Raises NaoError if a thread of that name runs, the topic holds no pictures, or the file cannot be written.
+
         Args:
             name: Of the thread.
             topic: Of the camera.
@@ -101,9 +102,6 @@ class ImageThreads:
             rate: Pictures a second at most; 0: all.
             codec: h264, mpeg4, mjpeg or ffv1; empty: what fits the file.
             overwrite: Whether a file that is there may be replaced.
-
-        Raises:
-            NaoError: A thread of that name runs, the topic holds no pictures, or the file cannot be written.
         """
         kind = self._files.file_type(file, "", VIDEO_TYPES)
         spec = VideoSpec(self._files.path(file, kind), kind, codec_name(codec, kind), width, height, overwrite)

@@ -65,8 +65,7 @@ def bind_what_can_be(
 ) -> tuple[SequenceNode, list[Problem]]:
     """As `bind`: the program of all steps that could be read, and what is wrong with them and the others.
 
-    Raises:
-        BadGoal: A value for a parameter will not do.
+    Raises BadGoal if a value for a parameter will not do.
     """
     binder = _Binder(library, tables or FunctionTables(), tables is not None)
     program = binder.behavior(behavior, arguments(behavior.parameters, values), (), behavior.name)

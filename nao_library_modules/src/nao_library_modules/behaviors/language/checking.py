@@ -26,13 +26,12 @@ def check(
 ) -> SequenceNode:
     """Check a behaviour as a whole, without servers: functions, fields, boxes, times, and names that all robots have.
 
+    Returns what would run.
+
     Args:
         library: Gives the behaviours of its boxes by name.
         values: Of its parameters; the defaults for those that are not named.
         tables: Functions of the servers, if they are known already.
-
-    Returns:
-        What would run.
 
     Raises:
         BehaviorError: With everything that is wrong.

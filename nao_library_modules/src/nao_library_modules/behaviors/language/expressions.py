@@ -57,9 +57,7 @@ class BadExpression(BadGoal):
 def substitute(value: Any, values: Mapping[str, Any]) -> Any:
     """A value with everything in `${}` worked out, also inside lists and mappings.
 
-    Raises:
-        BadExpression: If something cannot be worked out.
-        NotKnown: It depends on a value that is wrong.
+    Raises BadExpression if something cannot be worked out, NotKnown if it depends on a value that is wrong.
     """
     if value is UNKNOWN:
         raise NotKnown
@@ -75,8 +73,7 @@ def substitute(value: Any, values: Mapping[str, Any]) -> Any:
 def names_in(value: Any) -> Iterator[str]:
     """Names that the expressions in a value use, also inside lists and mappings.
 
-    Raises:
-        BadExpression: If an expression cannot be read.
+    Raises BadExpression if an expression cannot be read.
     """
     if isinstance(value, str):
         for match in _PART.finditer(value):

@@ -25,13 +25,12 @@ NANOSECONDS = 1_000_000_000
 def message_of(message_type: type, fields: Any, where: str = "", taken: Sequence[str] = ()) -> Any:
     """A message with some fields filled; the others have their defaults.
 
+    Raises BadGoal if a field is unknown, or its value is of the wrong kind.
+
     Args:
         fields: Name -> plain value; times and durations in s.
         where: What errors put before the names of fields.
         taken: Fields that make sense here, where not all do: errors name these.
-
-    Raises:
-        BadGoal: If a field is unknown, or its value is of the wrong kind.
     """
     if not isinstance(fields, dict):
         raise BadGoal(where or message_type.__name__, fields, f"a mapping with {', '.join(message_type.__slots__)}")

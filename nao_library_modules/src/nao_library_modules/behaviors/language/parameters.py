@@ -69,11 +69,7 @@ class Parameter:
         return f"a {self.kind}{f' in{unit}' if unit else ''}"
 
     def check(self, value: Any) -> Any:
-        """The value as it is used.
-
-        Raises:
-            BadGoal: If the parameter cannot have it.
-        """
+        """The value as it is used. Raises BadGoal if the parameter cannot have it."""
         if UNKNOWN in (self.default, value):
             return UNKNOWN
         if self.kind == TEXT and kind_of(value) == NUMBER:
@@ -90,8 +86,7 @@ class Parameter:
     def parse(self, text: str) -> Any:
         """The value that a text stands for: texts as they are, all else as in YAML.
 
-        Raises:
-            BadGoal: If it is none of the parameter's kind.
+        Raises BadGoal if it is none of the parameter's kind.
         """
         if self.default is UNKNOWN or self.kind == TEXT:
             return self.check(text)
@@ -105,19 +100,14 @@ class Parameter:
 def arguments(parameters: Mapping[str, Parameter], given: Mapping[str, Any]) -> dict[str, Any]:
     """Name -> value of all parameters: those given, and the defaults of the others.
 
-    Raises:
-        BadGoal: If one is unknown, or a value will not do.
+    Raises BadGoal if one is unknown, or a value will not do.
     """
     require_known(given, parameters)
     return {name: each.check(given[name]) if name in given else each.default for name, each in parameters.items()}
 
 
 def require_known(names: Iterable[str], parameters: Mapping[str, Parameter]) -> None:
-    """See that all names are parameters.
-
-    Raises:
-        BadGoal: If one is not.
-    """
+    """See that all names are parameters. Raises BadGoal if one is not."""
     for name in names:
         if name not in parameters:
             known = f"there are {', '.join(parameters)}" if parameters else "it has none"

@@ -35,12 +35,7 @@ class PlannedStore:
         return context.setdefault(KEY, cls(store))
 
     def load(self, name: str) -> Behavior:
-        """A behaviour.
-
-        Raises:
-            UnknownYet: It will be recorded.
-            NaoError: As `BehaviorStore.load`.
-        """
+        """A behaviour. Raises UnknownYet if it will be recorded, NaoError as `BehaviorStore.load`."""
         change = self._changes.get(name)
         if change is _UNKNOWN:
             raise UnknownYet(name)
@@ -60,11 +55,7 @@ class PlannedStore:
         raise self._unknown(name)
 
     def require_of_user(self, name: str) -> None:
-        """See that one can be changed.
-
-        Raises:
-            NaoError: As `BehaviorStore.require_of_user`.
-        """
+        """See that one can be changed. Raises NaoError as `BehaviorStore.require_of_user`."""
         change = self._changes.get(name)
         if change is _GONE:
             raise self._unknown(name)
@@ -72,11 +63,7 @@ class PlannedStore:
             self._store.require_of_user(name)
 
     def require_free(self, name: str, overwrite: bool, field: str = "str_param") -> None:
-        """See that a name can be given to a behaviour.
-
-        Raises:
-            BadGoal: If it will not do, or is taken.
-        """
+        """See that a name can be given to a behaviour. Raises BadGoal if it will not do, or is taken."""
         self._store.path(name, field)
         change = self._changes.get(name)
         if overwrite or change is _GONE:

@@ -50,11 +50,7 @@ def read(text: str, name: str, file: str = "") -> Behavior:
 
 
 def require_name(name: str, field: str = "str_param") -> str:
-    """A name that a behaviour may have: it stays inside its folder.
-
-    Raises:
-        BadGoal: If it will not do.
-    """
+    """A name that a behaviour may have: it stays inside its folder. Raises BadGoal if it will not do."""
     if not NAME.fullmatch(name):
         raise BadGoal(field, name, NAME_ALLOWED, problem=f"{name[:120]!r} is no name for a behavior")
     return name

@@ -62,12 +62,11 @@ class FunctionTables:
     def server(self, name: str, field: str = "step") -> ServerType:
         """The types of a server that steps may use.
 
+        Raises BadGoal if there is none of that name.
+
         Args:
             name: Its relative name.
             field: What names it, for the error.
-
-        Raises:
-            BadGoal: If there is none of that name.
         """
         if name in NAMES:
             return server_type(name)

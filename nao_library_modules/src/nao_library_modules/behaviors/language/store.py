@@ -37,18 +37,14 @@ class BehaviorStore:
     def text(self, name: str) -> str:
         """The text of a file.
 
-        Raises:
-            NoSuchBehavior: If there is none of that name.
-            BehaviorError: If the file cannot be read.
+        Raises NoSuchBehavior if there is none of that name, BehaviorError if the file cannot be read.
         """
         return self._read(self._existing(name))
 
     def shipped_text(self, name: str) -> str:
         """The text of a file that comes with the library.
 
-        Raises:
-            NoSuchBehavior: If there is none of that name.
-            BehaviorError: If the file cannot be read.
+        Raises NoSuchBehavior if there is none of that name, BehaviorError if the file cannot be read.
         """
         if not self.is_shipped(name):
             raise NoSuchBehavior(name, self.names())
@@ -57,9 +53,7 @@ class BehaviorStore:
     def load(self, name: str) -> Behavior:
         """A behaviour, as far as it can be read without knowing servers and boxes.
 
-        Raises:
-            NoSuchBehavior: If there is none of that name.
-            BehaviorError: If there is something wrong with it.
+        Raises NoSuchBehavior if there is none of that name, BehaviorError if there is something wrong with it.
         """
         path = self._existing(name)
         return read(self._read(path), name, str(path))
@@ -91,18 +85,13 @@ class BehaviorStore:
     def save(self, name: str, text: str, overwrite: bool = False, numbered: bool = False) -> Path:
         """Write a behaviour; one of that name is replaced as a whole, never left half written.
 
+        Returns its file. Raises BadGoal if the name will not do or is taken, FileTrouble if the file cannot be written.
+
         Args:
             name: A name that a behaviour may have.
             text: What to write; it is not looked at.
             overwrite: Whether one of the user's may be replaced.
             numbered: Whether, where it may not, it becomes name-2, name-3, ...
-
-        Returns:
-            Its file.
-
-        Raises:
-            BadGoal: If the name will not do or is taken.
-            FileTrouble: If the file cannot be written.
         """
         path = self.path(name)
         if not overwrite and not numbered:
@@ -117,9 +106,8 @@ class BehaviorStore:
     def rename(self, name: str, new_name: str, overwrite: bool = False) -> Path:
         """Give one of the user's behaviours another name; answers its file.
 
-        Raises:
-            NoSuchBehavior: If there is none of that name.
-            BadGoal: If it is one of the library's, or the new name will not do.
+        Raises NoSuchBehavior if there is none of that name; BadGoal if it is one of the library's, or the new name will
+        not do.
         """
         path, target = self.require_of_user(name), self.path(new_name, "new_name")
         if not overwrite:
@@ -133,9 +121,7 @@ class BehaviorStore:
     def delete(self, name: str) -> None:
         """Delete one of the user's behaviours.
 
-        Raises:
-            NoSuchBehavior: If there is none of that name.
-            BadGoal: If it is one of the library's.
+        Raises NoSuchBehavior if there is none of that name, BadGoal if it is one of the library's.
         """
         try:
             self.require_of_user(name).unlink()
@@ -145,8 +131,7 @@ class BehaviorStore:
     def require_free(self, name: str, field: str = "str_param") -> None:
         """See that no behaviour of the user has a name. One of the library may: it is not replaced, only put behind.
 
-        Raises:
-            BadGoal: If one has.
+        Raises BadGoal if one has.
         """
         if self.path(name, field).is_file():
             problem = f"there is a behavior {name!r} already"
@@ -155,9 +140,7 @@ class BehaviorStore:
     def require_of_user(self, name: str) -> Path:
         """File of one of the user's behaviours.
 
-        Raises:
-            NoSuchBehavior: If there is none of that name.
-            BadGoal: If it is one of the library's.
+        Raises NoSuchBehavior if there is none of that name, BadGoal if it is one of the library's.
         """
         if self.of_user(name):
             return self.path(name)
@@ -167,11 +150,7 @@ class BehaviorStore:
         raise NoSuchBehavior(name, self.names())
 
     def path(self, name: str, field: str = "str_param") -> Path:
-        """File of a behaviour of the user, whether it is there or not.
-
-        Raises:
-            BadGoal: If the name will not do.
-        """
+        """File of a behaviour of the user, whether it is there or not. Raises BadGoal if the name will not do."""
         return self.folder / f"{require_name(name, field)}{SUFFIX}"
 
     def _existing(self, name: str) -> Path:

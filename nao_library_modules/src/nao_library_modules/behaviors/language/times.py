@@ -29,11 +29,7 @@ class At:
 
 
 def at_of(value: Any) -> At:
-    """What a value of `at` means.
-
-    Raises:
-        BadGoal: If it means nothing.
-    """
+    """What a value of `at` means. Raises BadGoal if it means nothing."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return At(value)
     if isinstance(value, str):

@@ -16,11 +16,7 @@ _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def step_of(server: str, goal: Any) -> dict[str, Any]:
-    """A goal as a step of a file: a function, or a chain of them.
-
-    Raises:
-        BadGoal: If steps may not use the server.
-    """
+    """A goal as a step of a file: a function, or a chain of them. Raises BadGoal if steps may not use the server."""
     if server == OWN:
         raise BadGoal("server", server, "another one", "a behavior that sends goals to NaoBehavior would end itself")
     messages = getattr(goal, goal.__slots__[0])
@@ -42,7 +38,6 @@ def text_of(help_: str, steps: Sequence[Mapping[str, Any]], tags: Sequence[str] 
 def from_goal(server: str, goal: Any, help_: str = "") -> str:
     """Write down one goal as a behaviour; what is returned can be stored: `store.save(name, text)`.
 
-    Raises:
-        BadGoal: If steps may not use the server.
+    Raises BadGoal if steps may not use the server.
     """
     return text_of(help_ or f"A goal of {server}.", [step_of(server, goal)])

@@ -114,11 +114,7 @@ _Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(loader
 
 
 def load(text: str, name: str) -> Any:
-    """The value of a text.
-
-    Raises:
-        BehaviorError: If it is no YAML, or too much of it.
-    """
+    """The value of a text. Raises BehaviorError if it is no YAML, or too much of it."""
     if len(text) > LONGEST:
         raise BehaviorError(name, [Problem("", f"the file has {len(text)} characters: at most {LONGEST} are read")])
     try:

@@ -53,11 +53,7 @@ class ServerClient(PlanActionClient):
         self._name = server.name
 
     def check(self, goals: Sequence[Any]) -> GoalCheck:
-        """Have the server check goals without carrying them out.
-
-        Raises:
-            NotValidated: It does not, or not in time.
-        """
+        """Have the server check goals without carrying them out. Raises NotValidated if it does not, or not in time."""
         return check_goals(self._name, *goals)
 
 
@@ -74,11 +70,7 @@ class Clients:
         self._lock = threading.Lock()
 
     def __call__(self, name: str) -> ServerClient:
-        """The client of a server.
-
-        Raises:
-            BadGoal: If there is no server of that name.
-        """
+        """The client of a server. Raises BadGoal if there is no server of that name."""
         with self._lock:
             if name not in self._clients:
                 self._clients[name] = ServerClient(self._types(name))

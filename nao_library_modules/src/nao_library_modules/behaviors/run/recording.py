@@ -80,11 +80,10 @@ class BehaviorRecording:
     def timeline(self, check: Callable[[dict[str, Any]], None]) -> tuple[list[dict[str, Any]], list[str]]:
         """Entries of a timeline that begins with the first goal; and what was left out, and why.
 
+        Raises BadGoal if no goal came.
+
         Args:
             check: Raises NaoError for a step that could not be stored.
-
-        Raises:
-            BadGoal: If no goal came.
         """
         with self._lock:
             heard = sorted(self._heard.values(), key=lambda each: each.time)

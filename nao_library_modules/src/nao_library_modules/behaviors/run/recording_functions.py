@@ -108,8 +108,7 @@ class BehaviorRecordingFunctions(Part):
     def keep_recording(self) -> list[str]:
         """Store what came so far of a recording that goes on, where nobody can be told if that fails.
 
-        Returns:
-            As stopRecording, and where it is; empty if nothing is stored.
+        Returns as stopRecording, and where it is; empty if nothing is stored.
         """
         if self.recording is None:
             return []

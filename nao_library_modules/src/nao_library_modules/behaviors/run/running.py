@@ -161,11 +161,7 @@ class RunningFunctions(Part):
         )
 
     def ask(self, server: str, goals: Sequence[Any]) -> GoalCheck:
-        """Have a server check goals.
-
-        Raises:
-            NotValidated: It does not.
-        """
+        """Have a server check goals. Raises NotValidated if it does not."""
         check = getattr(self._clients(server), "check", None)
         if check is None:
             raise NotValidated("it cannot be asked")

@@ -111,15 +111,14 @@ def described_servers(
 ) -> list[tuple[str, Any]]:
     """Servers with what they say about themselves: those that run, or what the code says where none does.
 
+    Raises click.UsageError if there is no such server.
+
     Args:
         settings: Of this run.
         server: Only this one; all without.
         brief: True: without functions.
         names: True: only names and help of the functions.
         functions: Only these; all without.
-
-    Raises:
-        click.UsageError: There is no such server.
     """
     try:
         stack = settings.stack
@@ -144,8 +143,7 @@ def described_servers(
 def _help_server(settings: CliSettings, name: str, function: str) -> None:
     """Help for a server; or what looks like a name that is not there.
 
-    Raises:
-        click.UsageError: There is neither a function nor a server of that name.
+    Raises click.UsageError if there is neither a function nor a server of that name.
     """
     from ...base.suggestion import did_you_mean
 

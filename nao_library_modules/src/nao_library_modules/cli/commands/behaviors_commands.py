@@ -31,11 +31,7 @@ def _complete_parameter(context: click.Context, _parameter: click.Parameter, sta
 
 
 def _the_stored(settings: CliSettings, name: str) -> dict[str, Any]:
-    """The stored behaviour of a name, as plain values.
-
-    Raises:
-        CommandFailed: There is none.
-    """
+    """The stored behaviour of a name, as plain values. Raises CommandFailed if there is none."""
     found = settings.stack.behaviors(name)
     if not found:
         known = [behavior["name"] for behavior in settings.stack.behaviors()]

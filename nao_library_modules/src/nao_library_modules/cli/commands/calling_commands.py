@@ -72,8 +72,7 @@ def _tell_of_unread(typed: Sequence[TypedFunction], taken: Mapping[str, Sequence
 def _require_not_elsewhere(settings: CliSettings, server: str, unknown: Sequence[str]) -> None:
     """See that no function that a server does not know is one of another; of what nobody knows, the server tells.
 
-    Raises:
-        click.UsageError: It is; the text names the servers that have it.
+    Raises click.UsageError if it is; the text names the servers that have it.
     """
     from ..offline import described_by_code
 

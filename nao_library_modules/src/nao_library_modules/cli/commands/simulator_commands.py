@@ -120,11 +120,7 @@ def picture(context: click.Context, file: str, view: str, size: str, overwrite: 
 
 
 def read_size(text: str) -> tuple[int, int]:
-    """Width and height in pixels from `640x480`.
-
-    Raises:
-        click.UsageError: It is no size.
-    """
+    """Width and height in pixels from `640x480`. Raises click.UsageError if it is no size."""
     width, by, height = text.lower().partition("x")
     if not (by and width.isdigit() and height.isdigit()):
         raise click.UsageError(f"{text!r} is no size: 640x480")

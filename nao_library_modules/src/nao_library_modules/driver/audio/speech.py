@@ -109,13 +109,12 @@ class RobotSpeech:
     ) -> Utterance:
         """Append a text to the queue.
 
+        Raises NaoError if too many are waiting.
+
         Args:
             text: What to say.
             on_start: Called when the robot begins to say it.
             on_failure: Called with the error if it could not be said.
-
-        Raises:
-            NaoError: If too many are waiting.
         """
         utterance = Utterance(text, on_start, on_failure)
         with self._news:

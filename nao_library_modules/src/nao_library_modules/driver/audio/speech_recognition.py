@@ -87,8 +87,7 @@ class WordRecognition:
     def apply(self) -> None:
         """Use the present settings, if it listens.
 
-        Raises:
-            NaoError: If the robot cannot; then it listens as before, or not at all.
+        Raises NaoError if the robot cannot; then it listens as before, or not at all.
         """
         if not self._listening.running:
             return

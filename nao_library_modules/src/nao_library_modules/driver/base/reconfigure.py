@@ -65,6 +65,8 @@ def serve(
 ) -> Server:
     """Offer parameters of a node for changes.
 
+    Returns the server; `update` changes values from within the node.
+
     Args:
         node: Their node.
         fields: The parameters. Those that are set already keep their values.
@@ -73,9 +75,6 @@ def serve(
             client gets its text.
         part: Part of the node that they belong to: it comes before their names. With a slash before it, the full
             name of something else that they belong to, such as a topic.
-
-    Returns:
-        The server; `update` changes values from within the node.
 
     Raises:
         NaoError: If a parameter is set to something that it cannot be. The server would change it without a word.

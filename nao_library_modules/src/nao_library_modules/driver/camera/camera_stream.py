@@ -105,8 +105,7 @@ class CameraStream:
     def change(self, settings: StreamSettings) -> None:
         """Change the settings. Pictures keep coming meanwhile, unless the camera changes.
 
-        Raises:
-            NaoError: If the robot refuses, or cannot be asked; then the former settings hold.
+        Raises NaoError if the robot refuses, or cannot be asked; then the former settings hold.
         """
         with self._changing:
             before, subscription = self._settings, self._subscription

@@ -35,8 +35,7 @@ class CameraTuning:
     def choose(self, camera: int, values: Mapping[str, int], connected: bool) -> None:
         """Set values, now if the robot is connected, and on a robot that comes later.
 
-        Raises:
-            NaoError: If the camera cannot be set to one of them; then none is set.
+        Raises NaoError if the camera cannot be set to one of them; then none is set.
         """
         with self._lock:
             if connected:

@@ -75,6 +75,8 @@ def blink(
 ) -> bool:
     """Blink until the interrupt comes; the eyes have the background colour then.
 
+    Returns whether a newer goal replaces this one. Raises NaoError if the robot refuses or is lost.
+
     Args:
         robot: Gives proxies.
         blinks: Colours and times.
@@ -82,12 +84,6 @@ def blink(
         interrupt: Ends it.
         tell: Gets the colour of each blink that begins.
         chance: Picks colours and pauses.
-
-    Returns:
-        Whether a newer goal replaces this one.
-
-    Raises:
-        NaoError: If the robot refuses or is lost.
     """
     third = blinks.duration / 3.0
     try:

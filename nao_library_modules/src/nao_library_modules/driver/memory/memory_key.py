@@ -145,8 +145,7 @@ class WatchedKey:
     def release(self, now: float) -> tuple[float | None, Any]:
         """The event that was held.
 
-        Returns:
-            s until it may be published, None if none is held; and the event if that is 0.
+        Returns s until it may be published, None if none is held; and the event if that is 0.
         """
         with self._lock:
             if self._held is NOTHING:

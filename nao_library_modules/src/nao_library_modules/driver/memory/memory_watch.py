@@ -69,8 +69,7 @@ class MemoryWatch:
     def watch(self, rules: Iterable[MemoryRule]) -> None:
         """Apply rules, when the robot is connected.
 
-        Raises:
-            NaoError: If there are more keys than may be watched at once; then nothing changes.
+        Raises NaoError if there are more keys than may be watched at once; then nothing changes.
         """
         with self._work:
             former = self._rules.copy()

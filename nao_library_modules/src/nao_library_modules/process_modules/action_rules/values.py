@@ -91,11 +91,7 @@ def _finite(values: Sequence[Any]) -> list[float]:
 
 
 def points_of(desig: Designator) -> Iterator[Point3]:
-    """Points of designators of things and of locations.
-
-    Raises:
-        DesignatorError: A solution has no position.
-    """
+    """Points of designators of things and of locations. Raises DesignatorError if a solution has no position."""
     for solution in desig.solutions():
         position = getattr(solution, "position", None)
         if position is not None:

@@ -83,8 +83,7 @@ def examine(desig: Designator, *keys: str) -> dict[str, Any]:
 def go_to(desig: Designator) -> Place:
     """Walk to a location, in a plan: to the first of its places that can be reached. Returns where the robot is then.
 
-    Raises:
-        NavigationHighLevelFailure: None of them can be reached.
+    Raises NavigationHighLevelFailure if none of them can be reached.
     """
     place = [current_desig(desig)]
 
@@ -106,11 +105,10 @@ def go_to(desig: Designator) -> Place:
 def at_location(desig: Designator, body: Branch, position: AnyFluent, distance: float = 0.2, turn: float = 0.6) -> Any:
     """Do something at a location, in a plan: a robot that leaves it goes back and begins again.
 
+    Raises NavigationHighLevelFailure if the location was lost too often, or cannot be reached.
+
     Args:
         position: A fluent with the `Place` of the robot, in the frame of the location.
-
-    Raises:
-        NavigationHighLevelFailure: The location was lost too often, or cannot be reached.
     """
     if desig.kind != location:
         raise PlanError(f"at_location: {desig} is no location")

@@ -86,8 +86,7 @@ class ProcessModule(ABC):
     def execute(self, command: Command) -> Any:
         """Carry out a command, in a thread of the module; the answer goes to the caller.
 
-        Raises:
-            PlanFailure: It cannot be done.
+        Raises PlanFailure if it cannot be done.
         """
 
     def on_started(self) -> None:  # noqa: B027  most modules need none

@@ -32,11 +32,10 @@ def project(
 ) -> Trace:
     """Run the program of a plan on a simulated robot of its own; the trace of the plan, whether it succeeded or not.
 
+    Raises ProjectionFailed if the simulator does not come up, or there is no trace.
+
     Args:
         launch: Further arguments of nao_sim.launch.
-
-    Raises:
-        ProjectionFailed: The simulator does not come up, or there is no trace.
     """
     with tempfile.TemporaryDirectory(prefix="projection_") as folder:
         given = {"world": world, "speed": AS_FAST_AS_POSSIBLE, "record_dir": folder, **(launch or {})}
@@ -51,8 +50,7 @@ def project(
 def run_program(program: Path, arguments: Sequence[str], master_uri: str, folder: Path, limit: float = LIMIT) -> Trace:
     """Run a program that takes `--trace FILE` with a ROS master, for at most `limit` s; the trace that it keeps.
 
-    Raises:
-        ProjectionFailed: It kept no trace.
+    Raises ProjectionFailed if it kept no trace.
     """
     trace = folder / "trace.json"
     command = [sys.executable, str(program), *arguments, "--trace", str(trace)]

@@ -100,8 +100,7 @@ def with_process_module_aliases(**aliases: str) -> Iterator[None]:
 def with_process_modules_running(*modules: ProcessModule, **aliases: str) -> Iterator[tuple[ProcessModule, ...]]:
     """Run modules while a block lasts: they have started when it begins, and have ended after it.
 
-    Raises:
-        ProcessModuleRunning: One of them runs already.
+    Raises ProcessModuleRunning if one of them runs already.
     """
     started: list[ProcessModule] = []
     with with_process_module_aliases(**aliases):
@@ -136,8 +135,7 @@ def stop_process_modules() -> None:
 def matching_process_module(desig: Designator) -> str:
     """Name of the module that its solution is for.
 
-    Raises:
-        DesignatorError: It has no solution that a module could carry out.
+    Raises DesignatorError if it has no solution that a module could carry out.
     """
     return _command_of(desig).module
 
@@ -183,11 +181,8 @@ def perform(desig: Union[Designator, Command]) -> Any:
     """Do what an action or a motion designator describes, in a plan; the answer of the module or the plan.
 
     An action whose rules give a plan (a function) runs that plan. A key `goal` with an occasion says what is to hold:
-    nothing is done when it holds already, and it has to hold afterwards.
-
-    Raises:
-        GoalNotAchieved: The goal does not hold afterwards.
-        PlanFailure: It could not be done.
+    nothing is done when it holds already, and it has to hold afterwards. Raises GoalNotAchieved if the goal does not
+    hold afterwards, PlanFailure if it could not be done.
     """
     if isinstance(desig, Command):
         return execute_on(get_running_process_module(desig.module), desig)

@@ -98,8 +98,7 @@ class Designator:
     def merge(self, other: Designator) -> Designator:
         """A designator with the keys of both.
 
-        Raises:
-            DesignatorError: The kinds differ, or the values of a common key.
+        Raises DesignatorError if the kinds differ, or the values of a common key.
         """
         if other.kind != self.kind:
             raise DesignatorError(self, f"cannot be merged with {other}: the kinds differ")
@@ -112,11 +111,7 @@ class Designator:
     # --- solutions ----------------------------------------------------------------------------------------------------
 
     def reference(self) -> Any:
-        """The first solution; always the same from then on.
-
-        Raises:
-            DesignatorError: There is none.
-        """
+        """The first solution; always the same from then on. Raises DesignatorError if there is none."""
         with self._lock:
             if not self._has(self._place):
                 tried = f" after {len(self._found)}" if self._found else ""
@@ -210,10 +205,8 @@ def designator(description: Description, kind: str = "") -> Designator:
 
     The kind is that of the argument, else the value of the key `type` if it is a kind, else action: both `{type:
     action, name: to open, side: left}` and `{type: opening, gripper: left}` are actions. Nested mappings that name a
-    kind, `{location: {...}}` or `{type: location, ...}`, are designators as well.
-
-    Raises:
-        PlanError: The description is none of these, or too large.
+    kind, `{location: {...}}` or `{type: location, ...}`, are designators as well. Raises PlanError if the description
+    is none of these, or too large.
     """
     if isinstance(description, str):
         require_short(len(description))
@@ -237,11 +230,7 @@ def require_short(characters: int) -> None:
 
 
 def read_yaml(text: str, budget: Budget) -> Any:
-    """The value of a YAML text, within a budget.
-
-    Raises:
-        PlanError: It is not valid YAML, or too large.
-    """
+    """The value of a YAML text, within a budget. Raises PlanError if it is not valid YAML, or too large."""
     try:
         return load_within(text, budget)
     except yaml.YAMLError as error:

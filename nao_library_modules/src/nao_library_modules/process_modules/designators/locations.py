@@ -76,8 +76,7 @@ def register_location_validation_function(priority: int, validator: Validator, n
 def sampled(desig: Designator) -> Iterator[tuple[Place, str]]:
     """Generated places that no validator rejects, with their frames.
 
-    Raises:
-        DesignatorError: There is no candidate, or all were rejected: by which validator, and how often.
+    Raises DesignatorError if there is no candidate, or all were rejected: by which validator, and how often.
     """
     rejected: dict[str, int] = {}
     looked = taken = 0

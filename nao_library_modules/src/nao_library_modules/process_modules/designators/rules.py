@@ -133,8 +133,7 @@ class Rules:
     def solutions(self, desig: Designator) -> Iterator[Any]:
         """Solutions of all matching rules.
 
-        Raises:
-            DesignatorError: No rule matches; the text names the nearest, and the key on which each failed.
+        Raises DesignatorError if no rule matches; the text names the nearest, and the key on which each failed.
         """
         rules, misses = self.of(desig.kind), []
         for rule in rules:

@@ -56,9 +56,8 @@ class Flow:
     def check(self) -> None:
         """End here if the task is to end; pause here while it is suspended.
 
-        Raises:
-            Evaporated: A task of this thread is to end.
-            Interrupted: It is suspended, and inside of `retry_after_suspension`.
+        Raises Evaporated if a task of this thread is to end; Interrupted if it is suspended, and inside of
+        `retry_after_suspension`.
         """
         self._wait(lambda: True, None, waits=False)
 

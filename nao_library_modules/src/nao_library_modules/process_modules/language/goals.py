@@ -144,9 +144,8 @@ def perceive_state(goal: Occasion | Goal, *arguments: Any) -> dict[str, Any] | N
 def achieve(goal: Occasion | Goal, *arguments: Any) -> Any:
     """Make an occasion true: nothing is done when it holds already. The answer of its plan, or None.
 
-    Raises:
-        GoalNotAchieved: The plan succeeded, and the occasion does not hold.
-        PlanError: There is no plan for these arguments.
+    Raises GoalNotAchieved if the plan succeeded, and the occasion does not hold; PlanError if there is no plan for
+    these arguments.
     """
     occasion = _occasion(goal, arguments)
 

@@ -54,11 +54,7 @@ class Settings:
 
 
 def load_settings(file: Path | str = FILE) -> Settings:
-    """Read settings.
-
-    Raises:
-        NaoError: The file cannot be read, or a key is unknown or missing.
-    """
+    """Read settings. Raises NaoError if the file cannot be read, or a key is unknown or missing."""
     path = Path(file)
     try:
         content = yaml.safe_load(path.read_text(encoding="utf-8"))

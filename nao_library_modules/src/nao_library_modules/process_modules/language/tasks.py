@@ -109,11 +109,7 @@ class Task:
     # --- running ------------------------------------------------------------------------------------------------------
 
     def run(self) -> Any:
-        """Run it in this thread; its answer.
-
-        Raises:
-            PlanFailure: It failed, or was evaporated alone.
-        """
+        """Run it in this thread; its answer. Raises PlanFailure if it failed, or was evaporated alone."""
         flow = here()
         if flow is None:
             raise PlanError(f"the task {self.name} is outside of a plan: use top_level, or run_and_tell")

@@ -35,11 +35,7 @@ FINE = 2
 
 
 def draw(trace: Trace) -> Image.Image:
-    """The picture of a trace; of a very long one the first tasks.
-
-    Raises:
-        NaoError: It has no task.
-    """
+    """The picture of a trace; of a very long one the first tasks. Raises NaoError if it has no task."""
     lines = list(_lines(trace, None, 0))
     if not lines:
         raise NaoError("a trace without a task cannot be drawn")
@@ -59,9 +55,7 @@ def draw(trace: Trace) -> Image.Image:
 def save(trace: Trace, path: Path) -> None:
     """Draw a trace into a PNG file.
 
-    Raises:
-        NaoError: The trace has no task.
-        FileTrouble: The file cannot be written.
+    Raises NaoError if the trace has no task, FileTrouble if the file cannot be written.
     """
     # A few colours are enough, and a third of the size.
     with WholeFile(path) as file:

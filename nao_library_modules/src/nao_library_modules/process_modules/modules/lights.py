@@ -30,8 +30,7 @@ class Lights(RobotModule):
     def set_color(self, color: str, lights: Sequence[str] = (FACE,), time: float = 0.0, revert: bool = False) -> None:
         """Give lights a colour, by name or #RRGGBB; wait `time` s, then restore the former one with `revert`.
 
-        Raises:
-            LightsLowLevelFailure: There is no such light or colour, or it failed.
+        Raises LightsLowLevelFailure if there is no such light or colour, or it failed.
         """
         self._run(LedFunction(function="setColor", lights=list(lights), str_param=color, revert=revert), time)
 

@@ -85,14 +85,7 @@ class Manipulation(RobotModule):
     # --- hands --------------------------------------------------------------------------------------------------------
 
     def open_gripper(self, side: str) -> float:
-        """Open a hand; returns its opening, 0..1.
-
-        Raises:
-            GripperGoalNotReached: It does not open.
-
-        Raises:
-            GripperGoalNotReached: It does not open.
-        """
+        """Open a hand; returns its opening, 0..1. Raises GripperGoalNotReached if it does not open."""
         return self.move_gripper(side, self.robot.settings.gripper["open"])
 
     def close_gripper(self, side: str, grasp: bool = False) -> Grip:
@@ -118,8 +111,7 @@ class Manipulation(RobotModule):
     def move_gripper(self, side: str, opening: float) -> float:
         """Move a hand to an opening, 0..1; returns the opening that it reached.
 
-        Raises:
-            GripperGoalNotReached: It does not get there.
+        Raises GripperGoalNotReached if it does not get there.
         """
         reached = self._gripper(side, opening)
         if abs(reached - opening) >= self.robot.settings.gripper_tolerance:
@@ -214,8 +206,7 @@ class Manipulation(RobotModule):
     def move_joints(self, angles: Mapping[str, float], time: float = 0.0) -> Mapping[str, float]:
         """Move joints to angles, rad by name, in `time` s (0: by the arms' speed); returns the reached angles.
 
-        Raises:
-            ManipulationGoalNotReached: They did not get there.
+        Raises ManipulationGoalNotReached if they did not get there.
         """
         wanted = {name: float(angle) for name, angle in angles.items()}
         return self._move(wanted, time or self._time(wanted, self.robot.settings.arm_speed), ManipulationGoalNotReached)

@@ -72,16 +72,14 @@ class PlanActionClient:
     ) -> ActionEnd:
         """Send a goal and wait for its end, in a plan.
 
-        A plan that ends cancels it and waits for its end. A suspension cancels it; it is sent again afterwards.
+        A plan that ends cancels it and waits for its end. A suspension cancels it; it is sent again afterwards. Raises
+        ActionlibActionTimedOut if there is no server, or the goal took too long; LowLevelFailure if the server went
+        away.
 
         Args:
             timeout: s; default: that of the client.
             on_feedback: Gets the feedback, in actionlib's thread.
             on_end: Gets the end, also that of a goal that was cancelled because the plan ends.
-
-        Raises:
-            ActionlibActionTimedOut: There is no server, or the goal took too long.
-            LowLevelFailure: The server went away.
         """
         limit = self.timeout if timeout is None else timeout
         body = lambda: retry_after_suspension(lambda: self._once(goal, limit, on_feedback, on_end))  # noqa: E731

@@ -46,8 +46,7 @@ class Solution:
 class Chain:
     """Joints from a base link to the origin of a tip link; `joints` are the moving ones, from the base on.
 
-    Raises:
-        NaoError: The description is no URDF, or has no such chain.
+    Raises NaoError if the description is no URDF, or has no such chain.
     """
 
     def __init__(self, description: str, base: str, tip: str) -> None:

@@ -110,8 +110,7 @@ class RobotLink:
     def angles(self) -> Mapping[str, float]:
         """Angles of the joints, rad by name; the first ones are waited for, in a plan.
 
-        Raises:
-            LowLevelFailure: Nobody publishes them.
+        Raises LowLevelFailure if nobody publishes them.
         """
         if not wait_until(lambda: self.joints.value, [self.joints], STATE_LIMIT):
             raise LowLevelFailure(f"no joint states on {rospy.resolve_name('joint_states')}: is a driver running?")
@@ -124,9 +123,7 @@ class RobotLink:
     def chain(self, base: str, tip: str) -> Chain:
         """Joints between two links of the robot description.
 
-        Raises:
-            LowLevelFailure: There is no description.
-            NaoError: It has no such chain.
+        Raises LowLevelFailure if there is no description, NaoError if it has no such chain.
         """
         key = f"{base} {tip}"
         if key not in self._chains:
@@ -155,8 +152,7 @@ class RobotLink:
     def _transform(self, to: str, of: str) -> Any:
         """The transform that brings points of one frame into another, as soon as there is one.
 
-        Raises:
-            LowLevelFailure: The frames are not connected.
+        Raises LowLevelFailure if the frames are not connected.
         """
         target, source = tf_prefix() + to.lstrip("/"), tf_prefix() + of.lstrip("/")
         problem = ""

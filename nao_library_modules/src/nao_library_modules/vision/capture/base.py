@@ -76,10 +76,7 @@ class Cameras(Part):
         """Topic of a camera's pictures.
 
         A user's launch file brings its cameras: the topic of the robot's own if that is among its images, else those
-        named image_raw first, then by name.
-
-        Raises:
-            BadGoal: If the nodes of the launch file publish no image for it.
+        named image_raw first, then by name. Raises BadGoal if the nodes of the launch file publish no image for it.
         """
         topic, launchpath = self._camera_topics[camera], self._module.launchpath
         if tuple(launchpath) == CAMERAS_LAUNCH or topic != CAMERA_TOPICS[camera]:

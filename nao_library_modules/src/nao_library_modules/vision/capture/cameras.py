@@ -61,8 +61,7 @@ _OTHERWISE.update(setdefaultparams="setAllParametersToDefault")
 def camera_name(text: str, active: str) -> str:
     """Name of a camera from its name or NAOqi's number in a goal; the active one for an empty text.
 
-    Raises:
-        BadGoal: If there is no such camera.
+    Raises BadGoal if there is no such camera.
     """
     bare = text.strip().lower()
     if not bare:
@@ -77,8 +76,7 @@ def camera_name(text: str, active: str) -> str:
 def resolution_name(text: str) -> str:
     """Name of a resolution, without the k (VGA), from its name, NAOqi's number or 640x480.
 
-    Raises:
-        BadGoal: If there is no such resolution.
+    Raises BadGoal if there is no such resolution.
     """
     bare = re.sub(r"\s", "", text).lower()
     for name, (number, width, height) in RESOLUTIONS.items():
@@ -96,8 +94,7 @@ def resolution_of(number: int) -> str:
 def parameter_number(text: str) -> int:
     """NAOqi's number of a parameter from brightness, kCameraBrightnessID or 0.
 
-    Raises:
-        BadGoal: If there is no such parameter, or another function sets it.
+    Raises BadGoal if there is no such parameter, or another function sets it.
     """
     bare = re.sub(r"^k?camera_?|_?id$", "", text.strip(), flags=re.IGNORECASE).replace("_", "").lower()
     if bare in _OTHERWISE:

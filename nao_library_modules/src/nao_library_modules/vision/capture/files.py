@@ -37,8 +37,7 @@ class VisionFiles:
     def file_type(self, name: str, file_type: str, known: Sequence[str]) -> str:
         """Type of a file: that of the field, of the end of the name, or the first known one.
 
-        Raises:
-            BadGoal: It is not known, or name and field differ.
+        Raises BadGoal if it is not known, or name and field differ.
         """
         field = known_type("file_type", file_type, known)
         end = known_type("str_param", Path(name.strip()).suffix, known)
@@ -50,12 +49,11 @@ class VisionFiles:
     def path(self, name: str, file_type: str) -> Path:
         """Path of a file that a goal names; its folder may have to be made.
 
+        Raises BadGoal if it leads out of the folder or cannot be a name.
+
         Args:
             name: Relative to the folder, or absolute and inside it, with or without a suffix.
             file_type: Suffix where the name has none.
-
-        Raises:
-            BadGoal: It leads out of the folder or cannot be a name.
         """
         allowed = f"a name of a file in {self.folder}"
         bare = name.strip()
@@ -75,8 +73,7 @@ class VisionFiles:
     def require_free(self, path: Path, overwrite: bool) -> None:
         """Check that a file may be written.
 
-        Raises:
-            BadGoal: It exists and may not be replaced, or a recording writes it.
+        Raises BadGoal if it exists and may not be replaced, or a recording writes it.
         """
         with self._lock:
             busy = path in self._open
@@ -106,14 +103,13 @@ class VisionFiles:
     def create(self, path: Path, overwrite: bool = False, numbered: bool = False) -> WholeFile:
         """Open a file for writing; call `done` at its end.
 
+        Raises BadGoal if it exists and is neither to be replaced nor to be numbered, FileTrouble if it cannot be
+        written.
+
         Args:
             path: See `path`.
             overwrite: Whether an existing file is replaced.
             numbered: Whether this file becomes name-2, name-3, ... beside an existing one.
-
-        Raises:
-            BadGoal: It exists and is neither to be replaced nor to be numbered.
-            FileTrouble: It cannot be written.
         """
         with self._lock:
             free, number = path, 1
@@ -145,11 +141,7 @@ class VisionFiles:
 
 
 def known_type(field: str, text: str, known: Sequence[str]) -> str:
-    """Usual name of a type of file; empty for none.
-
-    Raises:
-        BadGoal: It is not known.
-    """
+    """Usual name of a type of file; empty for none. Raises BadGoal if it is not known."""
     bare = text.strip().lower().lstrip(".")
     kind = SYNONYMS.get(bare, bare)
     if kind and kind not in known:

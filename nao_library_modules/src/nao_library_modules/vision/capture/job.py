@@ -104,11 +104,7 @@ class CaptureJob(ABC):
             return self._state == "running"
 
     def start(self) -> None:
-        """Begin to take frames.
-
-        Raises:
-            NaoError: If it runs already, or cannot.
-        """
+        """Begin to take frames. Raises NaoError if it runs already, or cannot."""
         if self.runs:
             raise taken(self.ident)
         self._finish()  # what failed before may still have something open

@@ -32,11 +32,7 @@ class CaptureJobs:
             return dict(sorted(self._jobs.items()))
 
     def get(self, ident: str) -> CaptureJob:
-        """The job of a name.
-
-        Raises:
-            BadGoal: If there is none.
-        """
+        """The job of a name. Raises BadGoal if there is none."""
         known = self.known
         if ident not in known:
             raise unknown(ident, known)
@@ -45,8 +41,7 @@ class CaptureJobs:
     def add(self, job: CaptureJob) -> None:
         """Add a job; it replaces one of the same name that does not run.
 
-        Raises:
-            BadGoal: If one of that name runs, or there are too many.
+        Raises BadGoal if one of that name runs, or there are too many.
         """
         with self._lock:
             old = self._jobs.get(job.ident)

@@ -97,8 +97,7 @@ def size_rows() -> list[tuple[str, int, str, str]]:
 def picture_of(message: Any) -> Picture:
     """The picture of a sensor_msgs/Image or sensor_msgs/CompressedImage.
 
-    Raises:
-        BadPicture: If it holds none that can be read.
+    Raises BadPicture if it holds none that can be read.
     """
     if is_compressed(message):
         return _decompressed(message)
@@ -183,8 +182,7 @@ def wanted_size(size: tuple[int, int], width: int, height: int) -> tuple[int, in
 def scaled(picture: Picture, width: int, height: int) -> Picture:
     """A picture scaled to `wanted_size`.
 
-    Raises:
-        BadPicture: It would be too large, as the free side of a narrow picture may be.
+    Raises BadPicture if it would be too large, as the free side of a narrow picture may be.
     """
     size = (picture.shape[1], picture.shape[0])
     wanted = wanted_size(size, width, height)

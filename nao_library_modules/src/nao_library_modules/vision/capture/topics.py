@@ -65,11 +65,7 @@ class VisionTopics:
     """Topics and settings of cameras. Needs `rospy.init_node` before; any thread may use it."""
 
     def subscribe(self, topic: str, take: Callable[[Any], None]) -> TopicSubscription:
-        """Take pictures from a topic, which need not be there yet.
-
-        Raises:
-            BadGoal: If what it holds are no pictures.
-        """
+        """Take pictures from a topic, which need not be there yet. Raises BadGoal if what it holds are no pictures."""
         return TopicSubscription(topic, self._kind(topic), take)
 
     def subscribe_info(self, topic: str, take: Callable[[Any], None]) -> TopicSubscription:
@@ -93,16 +89,14 @@ class VisionTopics:
     def settings(self, server: str) -> dict[str, Any]:
         """The settings of a node that takes dynamic_reconfigure: name -> value.
 
-        Raises:
-            SettingsTrouble: There is no such node.
+        Raises SettingsTrouble if there is no such node.
         """
         return self._configured(server, {})
 
     def set(self, server: str, values: Mapping[str, Any]) -> dict[str, Any]:
         """Change some settings; answers all afterwards.
 
-        Raises:
-            SettingsTrouble: There is no such node, or it refuses.
+        Raises SettingsTrouble if there is no such node, or it refuses.
         """
         return self._configured(server, values)
 

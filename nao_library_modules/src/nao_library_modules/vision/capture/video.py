@@ -147,16 +147,12 @@ class VideoFile:
     def write(self, picture: np.ndarray, stamp: float) -> bool:
         """Add a frame.
 
+        Returns whether it has a place in the video. Raises VideoTrouble if it cannot be compressed, FileTrouble if it
+        cannot be written.
+
         Args:
             picture: (height, width, 3) uint8, blue, green, red. One of another size than the first is made to fit.
             stamp: When it was taken, s.
-
-        Returns:
-            Whether it has a place in the video.
-
-        Raises:
-            VideoTrouble: It cannot be compressed.
-            FileTrouble: It cannot be written.
         """
         time = self._times.place(stamp)
         if time is None:
@@ -179,9 +175,7 @@ class VideoFile:
     def close(self) -> None:
         """End the video and the file; of one that could not be written to its end the playable part is kept.
 
-        Raises:
-            VideoTrouble: The end cannot be compressed.
-            FileTrouble: The end cannot be written.
+        Raises VideoTrouble if the end cannot be compressed, FileTrouble if the end cannot be written.
         """
         try:
             try:

@@ -222,8 +222,7 @@ class Detectors(ExtractorUse):
     def looking_through(self, module: str, wanted: int | None) -> Iterator[int]:
         """Have an extractor look through a camera during a block; its former camera comes back afterwards.
 
-        Raises:
-            InUse: It looks through another camera for other subscribers.
+        Raises InUse if it looks through another camera for other subscribers.
         """
         owner = module
         try:

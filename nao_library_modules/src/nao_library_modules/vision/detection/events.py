@@ -67,11 +67,10 @@ NOTHING = DetectionArray(None, None, None, None, ())
 def ball_detections(value: Any) -> DetectionArray:
     """A picture with a ball, from redBallDetected.
 
+    Raises ValueError if the value is something else.
+
     Args:
         value: [[s, us], [alpha, beta, radius, radius], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
-
-    Raises:
-        ValueError: The value is something else.
     """
     return _read(value, "red ball", _ball)
 
@@ -79,12 +78,11 @@ def ball_detections(value: Any) -> DetectionArray:
 def landmark_detections(value: Any) -> DetectionArray:
     """A picture with landmarks, from LandmarkDetected.
 
+    Raises ValueError if the value is something else.
+
     Args:
         value: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in the torso, camera in
             FRAME_ROBOT, camera]; rad.
-
-    Raises:
-        ValueError: The value is something else.
     """
     return _read(value, "landmarks", _landmarks)
 
@@ -92,14 +90,12 @@ def landmark_detections(value: Any) -> DetectionArray:
 def face_detections(value: Any) -> DetectionArray:
     """A picture with faces, from FaceDetected.
 
-    The only face of a picture, if it has no name, gets that of the only person who was recognised for some time.
+    The only face of a picture, if it has no name, gets that of the only person who was recognised for some time. Raises
+    ValueError if the value is something else.
 
     Args:
         value: [[s, us], [[[0, alpha, beta, width, height], [id, score, name, ...]], ..., recognised for some time],
             camera in the torso, camera in FRAME_ROBOT, camera]; rad.
-
-    Raises:
-        ValueError: The value is something else.
     """
     return _read(value, "faces", _faces)
 
@@ -107,12 +103,11 @@ def face_detections(value: Any) -> DetectionArray:
 def movement_detections(value: Any) -> DetectionArray:
     """A picture with movements, from the key MovementDetection/MovementInfo.
 
+    Raises ValueError if the value is something else.
+
     Args:
         value: [[s, us], [[[alpha, beta], [left, top, width, height], [fraction of the picture's pixels, of the
             region's], ...], ...], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
-
-    Raises:
-        ValueError: The value is something else.
     """
     return _read(value, "movements", _movements)
 
@@ -120,14 +115,13 @@ def movement_detections(value: Any) -> DetectionArray:
 def code_detections(value: Any, width: int, height: int, lens: Lens) -> tuple[Detection, ...]:
     """Codes, from BarcodeReader/BarcodeDetected.
 
+    Raises ValueError if the value is something else.
+
     Args:
         value: [[text, [[x, y], [x, y], [x, y], [x, y]]], ...]: corners in pixels, around the code from its upper left.
         width: Of the picture, pixels.
         height: Of the picture, pixels.
         lens: Field of view of the camera.
-
-    Raises:
-        ValueError: The value is something else.
     """
     try:
         return tuple(

@@ -33,8 +33,7 @@ MIDDLE = math.radians(3.0)
 def aim(detection: LocalizedDetection) -> Angles:
     """Head angles that bring a detection into the middle of the picture, also beyond the head's limits.
 
-    Raises:
-        ValueError: If it is in the head.
+    Raises ValueError if it is in the head.
     """
     head = load_head()
     return look_at(head, head.cameras[CAMERA_NAMES[detection.camera]], detection.in_torso)
