@@ -16,11 +16,8 @@ _Vector = TypeVar("_Vector", bound="Scalable")
 def as_number(value: object, what: str) -> float:
     """Return `value` as a float.
 
-    Raises AlmathError if it is not a number.
-
-    Args:
-        value: What should be a number.
-        what: Name of the value, for the error text.
+    `value`: what should be a number. `what`: name of the value, for the error text. Raises AlmathError if it is not a
+    number.
     """
     if not isinstance(value, Real):
         raise AlmathError(f"{what} must be a number, got {value!r}")
@@ -30,11 +27,8 @@ def as_number(value: object, what: str) -> float:
 def as_numbers(values: object, what: str) -> list[float]:
     """Return a sequence of numbers as a list of floats.
 
-    Raises AlmathError if it is not a sequence, or one of its items is not a number.
-
-    Args:
-        values: What should be a flat sequence of numbers.
-        what: Name of the sequence, for the error text.
+    `values`: what should be a flat sequence of numbers. `what`: name of the sequence, for the error text. Raises
+    AlmathError if it is not a sequence, or one of its items is not a number.
     """
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise AlmathError(f"{what} must be a sequence of numbers, got {values!r}")
@@ -312,11 +306,8 @@ def answer(value: _Value, out: _Value | None, where: str) -> _Value | None:
 def unit(vector: _Vector, length: float) -> _Vector:
     """Divide a vector by its length.
 
-    Raises AlmathError if the length is zero, so that there is no direction to keep.
-
-    Args:
-        vector: What to scale.
-        length: Its norm.
+    `vector`: what to scale. `length`: its norm. Raises AlmathError if the length is zero, so that there is no direction
+    to keep.
     """
     if length == 0.0:
         raise AlmathError(f"{vector!r} has no direction: its norm is zero")

@@ -21,9 +21,7 @@ _NEGLIGIBLE = 0.0001
 def axisRotationProjection(axis: Position3D, rotated: Rotation | Transform) -> Rotation | Transform:
     """Rotation about `axis` that is nearest to a given one; the origin of a transform stays.
 
-    Args:
-        axis: Of any length but zero.
-        rotated: The rotation or transform to project.
+    `axis`: of any length but zero. `rotated`: the rotation or transform to project.
     """
     require(axis, Position3D, "axisRotationProjection")
     if not isinstance(rotated, (Rotation, Transform)):
@@ -49,9 +47,8 @@ def _projected(axis: _matrix.Triple, rows: _matrix.Matrix) -> _matrix.Matrix:
 def orthogonalSpace(axis: Position3D, out: Transform | None = None) -> Transform | None:
     """Right-handed frame whose third axis has a given direction.
 
-    Args:
-        axis: Of any length but zero.
-        out: A transform whose rotation to overwrite, instead of returning a new one; its origin stays.
+    `axis`: of any length but zero. `out`: a transform whose rotation to overwrite, instead of returning a new one; its
+    origin stays.
     """
     require(axis, Position3D, "orthogonalSpace")
     third = axis.normalize()

@@ -90,11 +90,8 @@ transformMeanInPlace = in_place(transformMean)
 def position6DFromTransformDiff(current: Transform, target: Transform) -> Position6D:
     """Difference of two transforms in the frame in which both are given, as a controller takes it.
 
-    Returns the translation in m, and the axis of the rotation times the sine of its angle.
-
-    Args:
-        current: Where the body is.
-        target: Where it should be.
+    `current`: where the body is. `target`: where it should be. Returns the translation in m, and the axis of the
+    rotation times the sine of its angle.
     """
     require(current, Transform, "position6DFromTransformDiff")
     require(target, Transform, "position6DFromTransformDiff")

@@ -47,12 +47,8 @@ def meanAngle(angles: list[float]) -> float:
 def weightedMeanAngle(angles: list[float], weights: list[float]) -> float:
     """Direction of the weighted mean of the unit vectors at some angles.
 
-    Returns the mean, in rad in ]-pi, pi]. Raises AlmathError if the lengths differ, a weight is not above zero, or the
-    directions cancel out.
-
-    Args:
-        angles: In rad.
-        weights: One for each angle, all above zero.
+    `angles`: in rad. `weights`: one for each angle, all above zero. Returns the mean, in rad in ]-pi, pi]. Raises
+    AlmathError if the lengths differ, a weight is not above zero, or the directions cancel out.
     """
     angles = as_numbers(angles, "weightedMeanAngle angles")
     weights = as_numbers(weights, "weightedMeanAngle weights")

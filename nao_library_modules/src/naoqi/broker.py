@@ -100,11 +100,8 @@ class ALBroker:
     def serve(self, name: str, served: Any, worker: Worker) -> None:
         """Register a module with the robot.
 
+        `served`: the object whose methods libqi serves. `worker`: runs the calls; closed when the broker is shut down.
         Raises BrokerError if the name is taken, or the broker is shut down; RobotUnreachable if there is no connection.
-
-        Args:
-            served: The object whose methods libqi serves.
-            worker: Runs the calls; closed when the broker is shut down.
         """
         with self._lock:
             if self._down.is_set():

@@ -88,9 +88,8 @@ class Call:
     def add_done_callback(self, callback: Callable[[Call], None]) -> None:
         """Call a function with this call when it is finished; at once if it already is.
 
-        Args:
-            callback: Runs in a thread of libqi and must not wait: it may set an event, no more.
-                Its exceptions are logged.
+        `callback`: runs in a thread of libqi and must not wait: it may set an event, no more. Its exceptions are
+        logged.
         """
         # No closure: the traceback frames of a stored error would keep it alive.
         held = functools.partial(self._run, callback)

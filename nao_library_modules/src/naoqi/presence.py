@@ -55,10 +55,7 @@ class Presence:
     def wait_until_empty(self, limit: float) -> bool:
         """Wait until all threads but the calling one have returned and libqi serves no objects any more.
 
-        Returns whether that was reached.
-
-        Args:
-            limit: Longest wait, in s.
+        `limit`: longest wait, in s. Returns whether that was reached.
         """
         self._awaited = True
         end = time.monotonic() + limit

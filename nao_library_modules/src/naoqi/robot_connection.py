@@ -109,10 +109,7 @@ class Connection:
     def wait_connected(self, timeout: Optional[float] = None) -> bool:
         """Wait for the robot.
 
-        Returns whether it is connected.
-
-        Args:
-            timeout: Limit in s; None waits until there is a connection or it is closed.
+        `timeout`: limit in s; None waits until there is a connection or it is closed. Returns whether it is connected.
         """
         with self._condition:
             self._condition.wait_for(lambda: self._state in (State.CONNECTED, State.CLOSED), timeout)
@@ -121,10 +118,7 @@ class Connection:
     def connect(self, limit: float) -> None:
         """Wait until the robot is there, or until an attempt has failed from now on.
 
-        Raises RobotUnreachable if it is not there.
-
-        Args:
-            limit: Longest wait, in s.
+        `limit`: longest wait, in s. Raises RobotUnreachable if it is not there.
         """
         with self._condition:
             failed_before = self._failed_attempts

@@ -27,9 +27,7 @@ libqi 3.1.5 would turn bytes for a parameter of any type into the text of their 
 def public_methods(module: Any, base: type) -> List[str]:
     """Names of the methods that a module serves: the public ones of its class.
 
-    Args:
-        module: The module.
-        base: The class whose `NOT_SERVED` methods are left out unless they are overridden.
+    `module`: the module. `base`: the class whose `NOT_SERVED` methods are left out unless they are overridden.
     """
     names = []
     for name in dir(type(module)):

@@ -38,8 +38,7 @@ class Live:
     def __init__(self, on_break: Callable[[], None] = lambda: None) -> None:
         """Make a session that is not connected.
 
-        Args:
-            on_break: Called in a thread of libqi when the connection breaks; not when `close` ends it.
+        `on_break`: called in a thread of libqi when the connection breaks; not when `close` ends it.
         """
         qi.logging.setFilters(QUIET_LIBQI)
         self.session = qi.Session()

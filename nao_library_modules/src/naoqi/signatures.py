@@ -32,10 +32,8 @@ ANY_ARGUMENTS = "m"
 def readable_type(signature: str) -> str:
     """Words for one type.
 
-    Returns its meaning, such as `list of (string, float)`; the signature itself where it is not understood.
-
-    Args:
-        signature: A libqi signature such as `[(sf)]`.
+    `signature`: a libqi signature such as `[(sf)]`. Returns its meaning, such as `list of (string, float)`; the
+    signature itself where it is not understood.
     """
     try:
         text, rest = _read_type(signature)
@@ -47,11 +45,8 @@ def readable_type(signature: str) -> str:
 def readable_call(method: str, parameters: str) -> str:
     """Words for a method with its parameters.
 
-    Returns text such as `setIntensity(string, float)`.
-
-    Args:
-        method: Name of the method.
-        parameters: Its parameters as libqi writes them, such as `(sf)`.
+    `method`: name of the method. `parameters`: its parameters as libqi writes them, such as `(sf)`. Returns text such
+    as `setIntensity(string, float)`.
     """
     try:
         return f"{method}({', '.join(readable_parameters(parameters))})"

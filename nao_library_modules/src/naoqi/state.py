@@ -58,11 +58,7 @@ class Listeners:
     """Functions that are called with each new state, one after the other, in one thread."""
 
     def __init__(self, name: str) -> None:
-        """Make an empty list.
-
-        Args:
-            name: Of the thread.
-        """
+        """Make an empty list. `name`: of the thread."""
         self._lock = threading.Lock()  # guards the list; not held during calls
         self._listeners: List[Listener] = []
         self._worker = Worker(name)

@@ -53,9 +53,7 @@ class EventSubscriptions:
     def note(self, method: str, arguments: Tuple[Any, ...]) -> None:
         """Take down a call that succeeded.
 
-        Args:
-            method: One of `OBSERVED_METHODS`.
-            arguments: Event, module, and for a subscription what else it had.
+        `method`: one of `OBSERVED_METHODS`. `arguments`: event, module, and for a subscription what else it had.
         """
         event, module = arguments[:2]
         with self._lock:

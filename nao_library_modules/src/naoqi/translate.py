@@ -78,11 +78,7 @@ def connect_reason(text: str) -> Reason:
 def call_error(raised: Exception, site: CallSite) -> NaoError:
     """The error of a call that failed.
 
-    Returns the error to raise, with `raised` as its cause.
-
-    Args:
-        raised: What libqi raised.
-        site: The call.
+    `raised`: what libqi raised. `site`: the call. Returns the error to raise, with `raised` as its cause.
     """
     text = str(raised).strip()
     if text in NOT_SENT:

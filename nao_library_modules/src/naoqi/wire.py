@@ -25,11 +25,8 @@ class UnsendableError(Exception):
 def to_wire(arguments: Tuple[Any, ...], takes_raw: Callable[[], bool]) -> Tuple[Any, ...]:
     """Arguments of a call as libqi takes them.
 
+    `arguments`: what the caller gave. `takes_raw`: asked only when there are bytes: does the method declare raw data?
     Returns the same tuple if all was plain, else a converted one. Raises UnsendableError if an argument cannot travel.
-
-    Args:
-        arguments: What the caller gave.
-        takes_raw: Asked only when there are bytes: does the method declare raw data?
     """
     for argument in arguments:
         if type(argument) not in PLAIN:

@@ -18,11 +18,7 @@ class Worker:
     """A queue of jobs and the thread that works it off; the thread starts with the first job."""
 
     def __init__(self, name: str) -> None:
-        """Make an idle worker.
-
-        Args:
-            name: Of its thread, for logs and debuggers.
-        """
+        """Make an idle worker. `name`: of its thread, for logs and debuggers."""
         self.name = name
         self._jobs: queue.SimpleQueue[Optional[Callable[[], None]]] = queue.SimpleQueue()
         self._lock = threading.Lock()  # guards the two below
@@ -32,10 +28,8 @@ class Worker:
     def submit(self, job: Callable[[], None]) -> bool:
         """Have a job done after those that wait already.
 
-        Returns whether it was taken; False after `close`.
-
-        Args:
-            job: Called without arguments in the thread of the worker; what it raises is logged.
+        `job`: called without arguments in the thread of the worker; what it raises is logged. Returns whether it was
+        taken; False after `close`.
         """
         with self._lock:
             if self._closed:
@@ -49,8 +43,7 @@ class Worker:
     def close(self, timeout: float = 0.0) -> None:
         """Take no more jobs, and end the thread after those it has.
 
-        Args:
-            timeout: How long to wait for its end, in s. A job may close its own worker; then nobody waits.
+        `timeout`: how long to wait for its end, in s. A job may close its own worker; then nobody waits.
         """
         with self._lock:
             self._closed = True

@@ -23,10 +23,7 @@ HOME = "/home/nao/"
 def require_file(field: str, name: str, suffixes: Sequence[str]) -> str:
     """Name of a file on the robot: relative, or in the home folder of its user; whether it is there the robot knows.
 
-    Returns the name without blanks around it.
-
-    Args:
-        suffixes: Allowed ends of the name, in lower case: ".wav".
+    `suffixes`: allowed ends of the name, in lower case: ".wav". Returns the name without blanks around it.
     """
     path = require_text(field, name, "the name of a file")
     allowed = allowed_files(suffixes)

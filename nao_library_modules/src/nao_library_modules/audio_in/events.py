@@ -53,9 +53,7 @@ class LocatedSound:
 def turned(vector: Vector, angles: Sequence[float]) -> Vector:
     """A vector of a turned frame, in the frame that it is turned in.
 
-    Args:
-        vector: In the turned frame.
-        angles: (3,) rad about X, Y, Z, as in NAOqi's Position6D: Z is turned about last.
+    `vector`: in the turned frame. `angles`: (3,) rad about X, Y, Z, as in NAOqi's Position6D: Z is turned about last.
     """
     x, y, z = vector
     wx, wy, wz = angles
@@ -67,11 +65,8 @@ def turned(vector: Vector, angles: Sequence[float]) -> Vector:
 def located_sound(value: Any) -> LocatedSound:
     """A sound from the value of ALSoundLocalization/SoundLocated.
 
-    Raises ValueError if the value is something else.
-
-    Args:
-        value: [[s, us], [azimuth, elevation, confidence, energy], head in the torso, head in FRAME_ROBOT], the last
-            two Position6D in m and rad.
+    `value`: [[s, us], [azimuth, elevation, confidence, energy], head in the torso, head in FRAME_ROBOT], the last two
+    Position6D in m and rad. Raises ValueError if the value is something else.
     """
     try:
         (seconds, microseconds), (azimuth, elevation, confidence, *energy), _, head = value
@@ -87,11 +82,8 @@ def located_sound(value: Any) -> LocatedSound:
 def begun_sounds(value: Any) -> list[BegunSound]:
     """The sounds that begin in a value of SoundDetected.
 
-    Raises ValueError if the value is something else.
-
-    Args:
-        value: [[index, type, confidence, time in us], ...], type 1 for the begin of a sound, 0 for its end; a single
-            one may stand alone.
+    `value`: [[index, type, confidence, time in us], ...], type 1 for the begin of a sound, 0 for its end; a single one
+    may stand alone. Raises ValueError if the value is something else.
     """
     try:
         rows = [value] if value and not isinstance(value[0], (list, tuple)) else value
@@ -105,10 +97,7 @@ def recognised(value: Any) -> list[tuple[str, float]]:
     """Phrases and confidences (0..1) in a value of WordRecognized, the best first.
 
     Word spotting wraps phrases in marks, which are taken off. A value that was reset has none. Raises ValueError if the
-    value is something else.
-
-    Args:
-        value: [phrase, confidence, phrase, confidence, ...].
+    value is something else. `value`: [phrase, confidence, phrase, confidence, ...].
     """
     try:
         value = list(value or [])

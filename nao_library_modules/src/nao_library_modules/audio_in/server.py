@@ -66,9 +66,8 @@ class NaoAudioInput(NaoBasic):
     ) -> None:
         """Start the server; arguments as NaoBasic takes them, but for one.
 
-        Args:
-            robot_home: Folder of this computer that is the home of the robot's user, as the `record_dir` of a simulated
-                robot is; "~" stands for the home of this computer's user. Empty: it is on the robot alone.
+        `robot_home`: folder of this computer that is the home of the robot's user, as the `record_dir` of a simulated
+        robot is; "~" stands for the home of this computer's user. Empty: it is on the robot alone.
         """
         super().__init__(ip, port, autostart, launchpath, **options)
         self._taking_up = threading.Lock()

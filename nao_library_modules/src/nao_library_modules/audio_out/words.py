@@ -84,10 +84,7 @@ class SpokenWords:
     def span(self, began: float) -> tuple[float, float]:
         """ROS times, s, of the first and the last sound of a text that was said just now; 0 where they are not known.
 
-        Raises NaoError if the robot cannot be asked.
-
-        Args:
-            began: ROS time at which it was asked for, s.
+        `began`: ROS time at which it was asked for, s. Raises NaoError if the robot cannot be asked.
         """
         if self._exact.known(self._module.call):
             return self._exact.span(self._module.call, self._module.robot_clock, began)

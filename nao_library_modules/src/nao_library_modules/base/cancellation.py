@@ -28,8 +28,7 @@ class CancellationToken:
     def trigger(self, reason: Exception | None = None) -> None:
         """End the present wait and all later ones until `clear`.
 
-        Args:
-            reason: What `check` raises; Preempted if none is given. The first reason counts.
+        `reason`: what `check` raises; Preempted if none is given. The first reason counts.
         """
         with self._lock:
             if self._reason is None:
@@ -72,13 +71,7 @@ class CancellationToken:
                     del reason  # else this frame and the error keep each other, and the goal that is being run
 
     def wait(self, timeout: float) -> bool:
-        """Wait for the trigger.
-
-        Returns whether it was triggered.
-
-        Args:
-            timeout: s of wall-clock time.
-        """
+        """Wait for the trigger. `timeout`: s of wall-clock time. Returns whether it was triggered."""
         return self._event.wait(timeout)
 
     @contextmanager

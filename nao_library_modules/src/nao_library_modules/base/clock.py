@@ -23,10 +23,6 @@ class WallClock:
     def wait(self, duration: float, interrupt: CancellationToken) -> bool:
         """Wait, unless interrupted.
 
-        Returns whether the whole duration passed.
-
-        Args:
-            duration: s, >= 0.
-            interrupt: Ends the wait.
+        `duration`: s, >= 0. `interrupt`: ends the wait. Returns whether the whole duration passed.
         """
         return not interrupt.wait(duration)

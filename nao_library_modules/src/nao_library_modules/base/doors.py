@@ -10,9 +10,8 @@ from typing import Any
 def door(package: str, names: Mapping[str, str]) -> Callable[[str], Any]:
     """The `__getattr__` of a package.
 
-    Args:
-        package: Its `__name__`.
-        names: Name -> the module that has it, relative to the package; "module:other" where it is called so there.
+    `package`: its `__name__`. `names`: name -> the module that has it, relative to the package; "module:other" where it
+    is called so there.
     """
 
     def get(name: str) -> Any:
@@ -27,8 +26,7 @@ def door(package: str, names: Mapping[str, str]) -> Callable[[str], Any]:
 class Later:
     """A library that is imported with the first thing that is asked of it: `cv2 = Later("cv2")`.
 
-    Args:
-        name: Of the module.
+    `name`: of the module.
     """
 
     def __init__(self, name: str) -> None:

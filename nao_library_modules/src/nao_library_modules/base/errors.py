@@ -170,12 +170,7 @@ class NotReady(NaoError):  # noqa: N818  named like the errors of the proxy laye
     """
 
     def __init__(self, problem: str, remedy: str) -> None:
-        """Compose the text.
-
-        Args:
-            problem: Why it cannot.
-            remedy: What to do about it.
-        """
+        """Compose the text. `problem`: why it cannot. `remedy`: what to do about it."""
         super().__init__(f"{problem}: {remedy}")
         self.problem = problem
 

@@ -27,13 +27,7 @@ class FailurePolicy:
 
     @classmethod
     def of(cls, text: str) -> FailurePolicy:
-        """The policy that a text names.
-
-        Raises BadGoal if it names none.
-
-        Args:
-            text: See `ALLOWED`.
-        """
+        """The policy that a text names. `text`: see `ALLOWED`. Raises BadGoal if it names none."""
         words = text.strip().lower()
         if words in ("", "stop"):
             return cls()

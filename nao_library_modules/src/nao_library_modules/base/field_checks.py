@@ -58,9 +58,7 @@ def require_rising(
 ) -> None:
     """Moments that follow each other, at least one.
 
-    Args:
-        times: s from the start.
-        shared: Whether the same moments are for all of several joints.
+    `times`: s from the start. `shared`: whether the same moments are for all of several joints.
     """
     require_length(field, len(times), most)
     lowest, highest, _ = limit
@@ -74,10 +72,7 @@ def require_rising(
 def number_parameter(name: str, value: Any, limit: Limit, also: float | None = None) -> float:
     """A number that is a parameter of a node, within the declared bounds of its kind.
 
-    Raises NaoError if it is something else.
-
-    Args:
-        also: A further number that it may be.
+    `also`: a further number that it may be. Raises NaoError if it is something else.
     """
     number = isinstance(value, (int, float)) and not isinstance(value, bool)
     if not (number and (limit.lowest <= value <= limit.highest or value == also)):
@@ -90,9 +85,7 @@ def number_parameter(name: str, value: Any, limit: Limit, also: float | None = N
 def require_count(field: str, values: Sequence[float], count: int, what: str, places: str = "") -> None:
     """So many numbers, or so many for each of several places.
 
-    Args:
-        what: They in words, with units.
-        places: What they are repeated for, in words: "step"; empty where they are not.
+    `what`: they in words, with units. `places`: what they are repeated for, in words: "step"; empty where they are not.
     """
     if not values or len(values) % count if places else len(values) != count:
         each = f" for each {places}" if places else ""

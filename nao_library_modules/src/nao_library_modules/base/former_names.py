@@ -13,8 +13,7 @@ from typing import Any
 class Former:
     """Finds a module by its former name: it is the same module then, with the same classes.
 
-    Args:
-        modules: Former full name -> full name.
+    `modules`: former full name -> full name.
     """
 
     def __init__(self, modules: Mapping[str, str]) -> None:

@@ -17,9 +17,7 @@ class TooMuch(yaml.YAMLError):  # noqa: N818  named like the errors of the proxy
 class Budget:
     """Values that texts may stand for together, those of aliases counted each time; lists and mappings in each other.
 
-    Args:
-        values: The most values.
-        levels: The most levels.
+    `values`: the most values. `levels`: the most levels.
     """
 
     def __init__(self, values: int, levels: int) -> None:

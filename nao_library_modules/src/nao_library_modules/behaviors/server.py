@@ -63,9 +63,8 @@ class NaoBehavior(NaoBasic):
     ) -> None:
         """Start the server; arguments as NaoBasic takes them, but for two.
 
-        Args:
-            behavior_dir: Folder of the user's behaviours; under ROS_HOME if relative, "~" stands for the home.
-            clients: Clients of the servers by name, where not those of this process's node.
+        `behavior_dir`: folder of the user's behaviours; under ROS_HOME if relative, "~" stands for the home. `clients`:
+        clients of the servers by name, where not those of this process's node.
         """
         super().__init__(ip, port, autostart, launchpath, **options)
         self.store = BehaviorStore(Path(behavior_dir).expanduser(), config_file(SHIPPED))

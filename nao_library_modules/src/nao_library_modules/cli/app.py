@@ -117,13 +117,7 @@ def nao() -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the program.
-
-    Returns exit status.
-
-    Args:
-        arguments: Those of the process by default.
-    """
+    """Run the program. `arguments`: those of the process by default. Returns exit status."""
     # A shell that starts it in the background may have it ignore Ctrl-C; a goal must be stoppable all the same.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if COMPLETE in os.environ:

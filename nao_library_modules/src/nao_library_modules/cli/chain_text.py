@@ -68,10 +68,8 @@ def _after_comma(piece: Sequence[str], word: str) -> bool:
 def build_message(function: TypedFunction, kind: Any, taken: Sequence[str] = ()) -> Any:
     """The function message of a typed function.
 
-    Raises click.UsageError if a field is not there, or its value is none of its type.
-
-    Args:
-        taken: Fields that the function reads, where that is known: errors name these.
+    `taken`: fields that the function reads, where that is known: errors name these. Raises click.UsageError if a field
+    is not there, or its value is none of its type.
     """
     types = dict(zip(kind.__slots__, kind._slot_types))
     message = kind(function=function.name)

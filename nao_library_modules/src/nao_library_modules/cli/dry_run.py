@@ -19,10 +19,7 @@ from .stack import Stack
 def ask(stack: Stack, server: str, goals: Sequence[Any]) -> GoalCheck:
     """Have a server check goals.
 
-    Raises NotValidated if it is not there, or cannot tell.
-
-    Args:
-        goals: In the order in which they would be sent.
+    `goals`: in the order in which they would be sent. Raises NotValidated if it is not there, or cannot tell.
     """
     from nao_library_msgs.srv import CheckGoals
 

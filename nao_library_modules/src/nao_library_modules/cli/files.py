@@ -19,11 +19,8 @@ def wanted_file(file: str, overwrite: bool, kinds: Sequence[str] = ()) -> Path |
     """Where a file is to go, absolute, or the folder for it; None if that was left to the server.
 
     Asked for before anything is done: a recording that finds no place is lost. Raises click.UsageError if it ends in
-    something else; CommandFailed if there is one already, or no folder for it.
-
-    Args:
-        overwrite: Whether it may be there already.
-        kinds: What its name may end in, without the dot; empty where the server decides.
+    something else; CommandFailed if there is one already, or no folder for it. `overwrite`: whether it may be there
+    already. `kinds`: what its name may end in, without the dot; empty where the server decides.
     """
     if not file:
         return None
@@ -52,11 +49,8 @@ def passing_name() -> str:
 def bring(path: str, target: Path | None, overwrite: bool = False) -> str:
     """Move a file that a server has written to where it is wanted; where that is, as a text.
 
-    Raises CommandFailed if it is on another computer, or cannot be moved.
-
-    Args:
-        target: As `wanted_file` answers it.
-        overwrite: Whether it replaces a file that is there by now; else it gets a number.
+    `target`: as `wanted_file` answers it. `overwrite`: whether it replaces a file that is there by now; else it gets a
+    number. Raises CommandFailed if it is on another computer, or cannot be moved.
     """
     if target is None:
         return path

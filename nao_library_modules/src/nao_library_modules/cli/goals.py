@@ -66,11 +66,7 @@ def run_functions(settings: CliSettings, server: str, functions: Sequence[Any]) 
 
 
 def carry_out(settings: CliSettings, server: str, functions: Sequence[Any], quiet: bool = False) -> GoalEnd:
-    """Run functions and print what came of it.
-
-    Args:
-        quiet: Nobody asked for anything: print nothing, except in JSON.
-    """
+    """Run functions and print what came of it. `quiet`: nobody asked for anything: print nothing, except in JSON."""
     end = run_functions(settings, server, functions)
     if settings.json or not quiet:
         show(settings, end)
@@ -220,11 +216,7 @@ def start_node() -> None:
 
 
 def function_message(settings: CliSettings, server: str, **fields: Any) -> Any:
-    """A function message of a server.
-
-    Args:
-        fields: Its fields; those that are None keep their defaults.
-    """
+    """A function message of a server. `fields`: its fields; those that are None keep their defaults."""
     kind = message_class(settings.stack.describe(server, brief=True).message)
     return kind(**{name: value for name, value in fields.items() if value is not None})
 

@@ -37,11 +37,7 @@ class _Transport(xmlrpc.client.Transport):
 
 
 class Graph:
-    """The master of this shell, asked when something is wanted of it.
-
-    Args:
-        limit: s that an answer may take.
-    """
+    """The master of this shell, asked when something is wanted of it. `limit`: s that an answer may take."""
 
     def __init__(self, limit: float = LIMIT) -> None:
         self.uri = os.environ.get("ROS_MASTER_URI") or DEFAULT_MASTER
@@ -80,11 +76,8 @@ class Graph:
     def call(self, service: str, kind: type, request: Any, patient: bool = False) -> Any:
         """Call a service.
 
-        Raises StackMissing if it is not there; CommandFailed if it refuses, or its type is another one.
-
-        Args:
-            service: Its full name.
-            patient: Wait for the answer as long as the connection stands, for a service that takes its time.
+        `service`: its full name. `patient`: wait for the answer as long as the connection stands, for a service that
+        takes its time. Raises StackMissing if it is not there; CommandFailed if it refuses, or its type is another one.
         """
         try:
             with self._connection(service) as connection, connection.makefile("rwb") as stream:

@@ -25,11 +25,8 @@ TOLD_ELSEWHERE = frozenset({"index", "function", "count"})
 class Progress:
     """Shown from the beginning of a `with` block to its end.
 
-    Feedback comes from a thread of ROS, the wheel turns in one of its own; the lock guards what they print.
-
-    Args:
-        shown: False: nothing is printed.
-        called: Function -> what it is called here, where its name says nothing to people.
+    Feedback comes from a thread of ROS, the wheel turns in one of its own; the lock guards what they print. `shown`:
+    False: nothing is printed. `called`: function -> what it is called here, where its name says nothing to people.
     """
 
     def __init__(self, shown: bool, called: Mapping[str, str] = NO_NAMES) -> None:

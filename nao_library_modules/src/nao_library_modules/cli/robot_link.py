@@ -20,9 +20,7 @@ MEMORY = "ALMemory"
 class DirectRobot:
     """A connection to one robot, for a `with` block.
 
-    Args:
-        address: IP and port.
-        limit: s for the connection and for each answer.
+    `address`: IP and port. `limit`: s for the connection and for each answer.
     """
 
     def __init__(self, address: tuple[str, int], limit: float = LIMIT) -> None:

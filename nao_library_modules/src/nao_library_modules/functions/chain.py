@@ -50,10 +50,9 @@ OF_THE_SERVER = frozenset({"function", *COMMON})
 def checked_by(check: Callable[..., None]) -> Callable[[Function], Function]:
     """Declare the check of a library function.
 
-    Args:
-        check: Called before the chain runs with `self` and the fields it names; raises BadGoal when they
-            will not do. A parameter `context` is a dict that lives as long as the check of one chain: what
-            an earlier function will define can be left there for the checks of later ones.
+    `check`: called before the chain runs with `self` and the fields it names; raises BadGoal when they will not do. A
+    parameter `context` is a dict that lives as long as the check of one chain: what an earlier function will define can
+    be left there for the checks of later ones.
     """
 
     def declare(function: Function) -> Function:
@@ -105,9 +104,7 @@ def fields_read(function: Callable[..., Any], fields: Sequence[str]) -> list[str
 def declared_fields(function: Callable[..., Any], names: Collection[str]) -> dict[str, Field]:
     """What a function and the check beside it declare of fields.
 
-    Args:
-        function: The function.
-        names: The fields of its message.
+    `function`: the function. `names`: the fields of its message.
     """
     check = getattr(function, CHECK_ATTRIBUTE, None)
     of_check = {} if check is None else fields_of(check, names)

@@ -48,11 +48,7 @@ class CheckService:
 
 
 def check_request(goals: Sequence[Any]) -> Any:
-    """What to ask a server.
-
-    Args:
-        goals: Of one type, at least one.
-    """
+    """What to ask a server. `goals`: of one type, at least one."""
     serialized = []
     for goal in goals:
         buffer = BytesIO()

@@ -89,9 +89,7 @@ class Description:
     def functions(self, names: Sequence[str] = (), arguments: bool = True) -> list[Described]:
         """Descriptions of functions; of all without names. Unknown names are left out.
 
-        Args:
-            names: Names of functions.
-            arguments: False: without what they take.
+        `names`: names of functions. `arguments`: False: without what they take.
         """
         table = dict(self.table)
         return [self._described(name, table[name], arguments) for name in names or table if name in table]

@@ -32,9 +32,7 @@ class Choices:
     def __init__(self, robot: Any, own: Callable[[str, str], Sequence[str]]) -> None:
         """Ask nothing yet.
 
-        Args:
-            robot: Proxies and connection.
-            own: Function, field -> words that the module itself knows.
+        `robot`: proxies and connection. `own`: function, field -> words that the module itself knows.
         """
         self._own = own
         self._robot = robot

@@ -171,12 +171,7 @@ def word(choices: Sequence[str], meaning: str, kind: str = "", empty: str | None
 
 
 def text(what: str, meaning: str) -> Field:
-    """A text with something in it.
-
-    Args:
-        what: It in words, for refusals: "the name of a group".
-        meaning: The help.
-    """
+    """A text with something in it. `what`: it in words, for refusals: "the name of a group". `meaning`: the help."""
     return Field(meaning, "", what, check=lambda name, value: require_text(name, value, what))
 
 
@@ -190,9 +185,8 @@ def _limit(bounds: Bounds, unit: str) -> Limit:
 def fields_of(function: Callable[..., Any], names: Collection[str]) -> dict[str, Field]:
     """What a callable declares of fields, in the order of its parameters.
 
-    Args:
-        function: A function, method or other callable, wrapped or not, also with some arguments given (`partial`).
-        names: The fields that its message has; parameters of other names are none.
+    `function`: a function, method or other callable, wrapped or not, also with some arguments given (`partial`).
+    `names`: the fields that its message has; parameters of other names are none.
     """
     return {name: field for name, field in _declared(function) if name in names}
 

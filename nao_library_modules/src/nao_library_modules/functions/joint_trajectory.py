@@ -73,8 +73,7 @@ class KeyFrames:
     def absolute(self, start: Sequence[float]) -> KeyFrames:
         """The same frames with values that are not relative.
 
-        Args:
-            start: Values of the joints at the start, in their order.
+        `start`: values of the joints at the start, in their order.
         """
         if not self.relative:
             return self

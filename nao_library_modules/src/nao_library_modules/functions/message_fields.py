@@ -38,8 +38,7 @@ class MessageField:
 def read_fields(definition: str) -> dict[str, MessageField]:
     """The fields of a message by name, in their order.
 
-    Args:
-        definition: Text of the .msg file; what genpy keeps of the messages inside may follow it.
+    `definition`: text of the .msg file; what genpy keeps of the messages inside may follow it.
     """
     fields: dict[str, MessageField] = {}
     last = ""

@@ -31,9 +31,7 @@ class FunctionRunner:
     def __init__(self, function_table: Mapping[str, Callable[..., Any]], clock: Any) -> None:
         """Keep table and clock.
 
-        Args:
-            function_table: NAOqi function name -> callable; it may change later.
-            clock: WallClock or RosClock.
+        `function_table`: NAOqi function name -> callable; it may change later. `clock`: WallClock or RosClock.
         """
         self.clock = clock
         self.interrupt = CancellationToken()
@@ -155,13 +153,7 @@ class FunctionRunner:
         return answer
 
     def wait(self, duration: float) -> None:
-        """Wait on ROS time.
-
-        Raises Preempted if it is interrupted.
-
-        Args:
-            duration: s.
-        """
+        """Wait on ROS time. `duration`: s. Raises Preempted if it is interrupted."""
         if duration > 0.0 and not self.clock.wait(duration, self.interrupt):
             self.interrupt.check()
 

@@ -85,11 +85,8 @@ def server_type(name: str) -> ServerType:
 def described_type(name: str, response: Any) -> ServerType:
     """The types of a server that is none of this package's, as it describes itself.
 
-    Raises BadGoal if its messages are not known in this process.
-
-    Args:
-        name: Its relative name.
-        response: DescribeFunctionsResponse of its service NAME/describe.
+    `name`: its relative name. `response`: DescribeFunctionsResponse of its service NAME/describe. Raises BadGoal if its
+    messages are not known in this process.
     """
     from roslib.message import get_message_class  # not needed by who only looks at names
 

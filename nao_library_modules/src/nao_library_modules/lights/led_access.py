@@ -80,11 +80,7 @@ class LedAccess:
         self._names = names
 
     def list_names(self, method: str) -> list[str]:
-        """Names as the robot lists them.
-
-        Args:
-            method: listLEDs or listGroups.
-        """
+        """Names as the robot lists them. `method`: listLEDs or listGroups."""
         return list(self._call(self.proxy, method))
 
     def read(self, lights: Iterable[str]) -> Values:

@@ -51,11 +51,7 @@ class RobotBody(Part):
         self.begin_chain()
 
     def begin_chain(self, now: bool = True) -> None:
-        """Plan a new chain.
-
-        Args:
-            now: Whether it finds the joints where they are; else they are anywhere, and stiff.
-        """
+        """Plan a new chain. `now`: whether it finds the joints where they are; else they are anywhere, and stiff."""
         if not now:
             self.plan = MotionPlan(lambda: self.facts, self._any_state)
             return
@@ -111,10 +107,8 @@ class RobotBody(Part):
         """See that the commands of joints are where a motion was to bring them.
 
         A motion that somebody stops ends like one that is over; NAOqi does not distinguish the two. Raises
-        MotionStopped if one is not, NaoError if something else is known to have stopped it: a fall.
-
-        Args:
-            goals: Joint -> rad (hands 0..1).
+        MotionStopped if one is not, NaoError if something else is known to have stopped it: a fall. `goals`: joint ->
+        rad (hands 0..1).
         """
         now = self.motion("getAngles", list(goals), False)
         off = {joint: (goal, at) for (joint, goal), at in zip(goals.items(), now) if abs(at - goal) > REACHED}

@@ -41,12 +41,9 @@ class Health:
     def require_walk(self, joints: Iterable[str], moved: bool) -> None:
         """See that the robot may walk.
 
-        Raises NotFit if a motor is too hot, or the battery empty; CannotWalk if the battery is too low for it, or no
-        foot touches the ground.
-
-        Args:
-            joints: What the walk moves.
-            moved: Whether something moves the robot before: where its feet are then is not known.
+        `joints`: what the walk moves. `moved`: whether something moves the robot before: where its feet are then is not
+        known. Raises NotFit if a motor is too hot, or the battery empty; CannotWalk if the battery is too low for it,
+        or no foot touches the ground.
         """
         self.require_fit(joints)
         if self.charge is not None and self.charge <= TOO_LOW_TO_WALK and not self.charging:
@@ -68,9 +65,7 @@ class Health:
 def read_health(call: Callable[..., Any], joints: Sequence[str]) -> Health:
     """The health of now, with one call; all is well if a robot cannot tell.
 
-    Args:
-        call: Calls a module of the robot: its name, a method, arguments.
-        joints: Those whose motors are of interest.
+    `call`: calls a module of the robot: its name, a method, arguments. `joints`: those whose motors are of interest.
     """
     keys = [CHARGE, CURRENT, FOOT_CONTACT, *map(temperature_key, joints)]
     try:

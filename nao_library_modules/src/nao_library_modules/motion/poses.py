@@ -21,9 +21,7 @@ class NamedPoses:
     """Finds poses by name.
 
     A pose is named as in its file (`Wave`), or, when several files know the name, with the file (`mine.xap:Wave`).
-
-    Args:
-        folder: Where the user's pose libraries (.xap) are.
+    `folder`: where the user's pose libraries (.xap) are.
     """
 
     def __init__(self, folder: Path) -> None:

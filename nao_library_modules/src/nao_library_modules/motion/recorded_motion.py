@@ -56,9 +56,8 @@ class RecordedMotion:
     def within(self, limits: Mapping[str, tuple[float, float]], slack: float = SLACK) -> RecordedMotion:
         """The motion with angles that are beyond a limit by no more than `slack` put on the limit.
 
-        Args:
-            limits: Joint -> lowest and highest angle, rad. Joints that are not in it stay as they are.
-            slack: rad. What is farther off stays as it is: it is no measurement of such a joint.
+        `limits`: joint -> lowest and highest angle, rad. Joints that are not in it stay as they are. `slack`: rad. What
+        is farther off stays as it is: it is no measurement of such a joint.
         """
         ranges = [limits.get(joint, (-math.inf, math.inf)) for joint in self.joints]
         return replace(

@@ -27,9 +27,8 @@ def require_name(field: str, name: str) -> None:
 class MotionStore:
     """Recorded motions by name.
 
-    Args:
-        folder: Where they are; made when the first one is saved.
-        shipped: Where there are more that can only be replayed; those in `folder` stand before them.
+    `folder`: where they are; made when the first one is saved. `shipped`: where there are more that can only be
+    replayed; those in `folder` stand before them.
     """
 
     def __init__(self, folder: Path, shipped: Path | None = None) -> None:

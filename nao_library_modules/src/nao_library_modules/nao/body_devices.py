@@ -46,11 +46,8 @@ NEAREST, FARTHEST = 0.25, 2.55
 def echo_of(value: Any) -> float:
     """Distance of an echo, m.
 
-    Returns infinity where there is nothing, not a number for a sensor that failed.
-
-    Args:
-        value: What the robot's memory says: m to the nearest echo, 0 for a sensor that failed, the farthest or more
-            where nothing echoed.
+    `value`: what the robot's memory says: m to the nearest echo, 0 for a sensor that failed, the farthest or more where
+    nothing echoed. Returns infinity where there is nothing, not a number for a sensor that failed.
     """
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0.0:
         return math.nan

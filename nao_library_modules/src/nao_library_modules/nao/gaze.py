@@ -43,10 +43,7 @@ def load_head() -> Head:
 def look_at(head: Head, camera: CameraMount, point: tuple[float, float, float]) -> tuple[float, float]:
     """Head angles that bring a point into the middle of a camera's picture.
 
-    Returns HeadYaw and HeadPitch, rad. Raises ValueError if the point is in the head.
-
-    Args:
-        point: In the torso frame, m.
+    `point`: in the torso frame, m. Returns HeadYaw and HeadPitch, rad. Raises ValueError if the point is in the head.
     """
     x, y, z = point
     ahead, above = math.hypot(x, y), z - head.height

@@ -70,9 +70,7 @@ class LightNames:
     def from_listings(cls, lights: Mapping[str, Sequence[str]], groups: Mapping[str, Sequence[str]]) -> LightNames:
         """Make the dictionary from what the robot lists.
 
-        Args:
-            lights: Short name -> device names.
-            groups: Name of a group -> members: short names, device names or groups.
+        `lights`: short name -> device names. `groups`: name of a group -> members: short names, device names or groups.
         """
         names = cls({name: tuple(devices) for name, devices in lights.items()}, {})
         return cls(names.lights, {name: names._resolve(name, groups, frozenset()) for name in groups})

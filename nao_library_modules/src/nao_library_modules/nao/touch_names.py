@@ -73,11 +73,8 @@ def names_of(sensors: Iterable[Sensor]) -> list[str]:
 def sensors_of(words: Sequence[str], field: str = "sensors") -> tuple[Sensor, ...]:
     """Sensors behind short names, events, devices and groups; each once, in the order of `SENSORS`.
 
-    Raises BadGoal if something has none of these names.
-
-    Args:
-        words: The names; none stands for all sensors.
-        field: Of the message that holds them.
+    `words`: the names; none stands for all sensors. `field`: of the message that holds them. Raises BadGoal if
+    something has none of these names.
     """
     if not words:
         return SENSORS

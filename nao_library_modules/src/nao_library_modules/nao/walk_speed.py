@@ -9,19 +9,11 @@ STEP_LENGTH, STEP_TURN = 0.04, 0.349
 
 
 def step_period(frequency: float) -> float:
-    """Time that a step takes, s.
-
-    Args:
-        frequency: Share 0..1 of the range of step frequencies.
-    """
+    """Time that a step takes, s. `frequency`: share 0..1 of the range of step frequencies."""
     return LONGEST_STEP + frequency * (SHORTEST_STEP - LONGEST_STEP)
 
 
 def top_speeds(frequency: float) -> tuple[float, float]:
-    """Speed ahead, m/s, and of turning, rad/s, that velocities of 1 mean.
-
-    Args:
-        frequency: As `step_period` takes it.
-    """
+    """Speed ahead, m/s, and of turning, rad/s, that velocities of 1 mean. `frequency`: as `step_period` takes it."""
     period = step_period(frequency)
     return STEP_LENGTH / period, STEP_TURN / period

@@ -101,9 +101,7 @@ class OwnershipTable:
 class OwnerWatch:
     """Listens to the owners of a robot, or waits until the watch that does has gone.
 
-    Args:
-        address: `ip:port` of the robot.
-        stop: Called with each thing that has lost its owner, in a thread of its own.
+    `address`: `ip:port` of the robot. `stop`: called with each thing that has lost its owner, in a thread of its own.
     """
 
     def __init__(self, address: str, stop: Callable[[Owned], None]) -> None:

@@ -127,11 +127,8 @@ def wake_up() -> None:
 def run_and_tell(plan: Branch, name: str = "", trace: str = "", picture: str = "", overwrite: bool = False) -> int:
     """Run a plan and print its tree; the exit status of a program that does nothing else.
 
-    The plan does not run when a file exists already, unless `overwrite`.
-
-    Args:
-        trace: File for the trace as JSON; empty for none.
-        picture: File for its picture as PNG; empty for none.
+    The plan does not run when a file exists already, unless `overwrite`. `trace`: file for the trace as JSON; empty for
+    none. `picture`: file for its picture as PNG; empty for none.
     """
     try:
         trace_file, picture_file = (require_new(file, overwrite) if file else None for file in (trace, picture))

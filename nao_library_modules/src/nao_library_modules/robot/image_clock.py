@@ -32,9 +32,7 @@ class ImageClock:
     def take(self, robot: float, now: float) -> float:
         """ROS time at which a picture was taken, s, never after its arrival.
 
-        Args:
-            robot: Robot's time at which it was taken, s.
-            now: ROS time of its arrival, s.
+        `robot`: robot's time at which it was taken, s. `now`: ROS time of its arrival, s.
         """
         last_robot, last_ros = self._last
         if robot < last_robot or now < last_ros:

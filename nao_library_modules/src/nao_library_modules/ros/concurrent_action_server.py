@@ -113,22 +113,14 @@ class ConcurrentActionServer:
             member.interrupt.trigger()
 
     def interrupt_all(self, reason: Exception | None = None) -> None:
-        """End all goals.
-
-        Args:
-            reason: What their executors get; Preempted if none is given.
-        """
+        """End all goals. `reason`: what their executors get; Preempted if none is given."""
         with self._lock:
             members = list(self._members)
         for member in members:
             member.interrupt.trigger(reason)
 
     def close(self, limit: float) -> None:
-        """End all goals, those that come later too, and wait for it.
-
-        Args:
-            limit: s, for all together.
-        """
+        """End all goals, those that come later too, and wait for it. `limit`: s, for all together."""
         with self._lock:
             self._closed = True
             members = list(self._members)

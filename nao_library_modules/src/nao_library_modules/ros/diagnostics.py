@@ -41,10 +41,8 @@ class DiagnosticsPublisher:
     def __init__(self, hardware_id: str, reports: Reports | Callable[[], Reports]) -> None:
         """Start publishing.
 
-        Args:
-            hardware_id: What the reports are about, `ip:port`.
-            reports: The reports; the name of the node comes before theirs. Or a function that gives those of this
-                moment, with whole names.
+        `hardware_id`: what the reports are about, `ip:port`. `reports`: the reports; the name of the node comes before
+        theirs. Or a function that gives those of this moment, with whole names.
         """
         self._reports = reports if callable(reports) else lambda: reports
         self._updater = _PartsUpdater() if callable(reports) else Updater()

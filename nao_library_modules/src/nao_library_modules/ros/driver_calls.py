@@ -72,8 +72,7 @@ class DriverCall:
 class ServiceCall(DriverCall):
     """A service that is called in a thread of its own; it cannot be taken back.
 
-    Args:
-        read: What the call answers, of the text of the error, which is empty if there is none; may raise NaoError.
+    `read`: what the call answers, of the text of the error, which is empty if there is none; may raise NaoError.
     """
 
     def __init__(self, name: str, kind: type, read: Callable[[str], Any], *arguments: Any) -> None:

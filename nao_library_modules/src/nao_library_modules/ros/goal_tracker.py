@@ -54,11 +54,8 @@ class GoalTracker:
     def cancel(self, handle: Any, limit: float = ACKNOWLEDGEMENT_LIMIT) -> bool:
         """Cancel the goal, unless it is over.
 
-        Returns whether it was cancelled; False: it was over before.
-
-        Args:
-            handle: The client's handle of the goal.
-            limit: s of this computer to wait until the server has told of the goal.
+        `handle`: the client's handle of the goal. `limit`: s of this computer to wait until the server has told of the
+        goal. Returns whether it was cancelled; False: it was over before.
         """
         self.acknowledged.wait(limit)
         with handle.comm_state_machine.mutex:  # nothing comes in between

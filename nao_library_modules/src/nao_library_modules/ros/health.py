@@ -46,12 +46,7 @@ class GoalCounter:
         self._last_error = ""
 
     def ended(self, end: str, text: str) -> None:
-        """Count a goal.
-
-        Args:
-            end: succeeded, preempted or aborted.
-            text: Why, for an aborted one.
-        """
+        """Count a goal. `end`: succeeded, preempted or aborted. `text`: why, for an aborted one."""
         with self._lock:
             self._counts[end] += 1
             if end == "aborted":
@@ -66,12 +61,7 @@ class GoalCounter:
 
 
 def connection_report(address: str, connection: Any) -> Report:
-    """State of the connection to the robot.
-
-    Args:
-        address: `ip:port`.
-        connection: Connection of the proxy layer.
-    """
+    """State of the connection to the robot. `address`: `ip:port`. `connection`: connection of the proxy layer."""
     latency = connection.latency
     values = {
         "address": address,

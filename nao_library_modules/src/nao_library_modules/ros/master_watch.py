@@ -162,9 +162,7 @@ def _is_there(name: str, uri: str, master: Api, caller: str) -> bool:
 class MasterWatch:
     """Looks at the master, in a thread of its own, and notices that it is another one.
 
-    Args:
-        uri: Of the master.
-        caller: Name of this node.
+    `uri`: of the master. `caller`: name of this node.
     """
 
     def __init__(self, uri: str, caller: str, period: float = PERIOD) -> None:

@@ -49,11 +49,8 @@ def robot_parser(description: str) -> argparse.ArgumentParser:
 def robot_address(options: argparse.Namespace, get_param: Callable[[str, Any], Any]) -> tuple[str, int]:
     """Address and port of the robot: command line, then parameter, then environment (NAO_IP, NAO_PORT), then default.
 
-    Raises NaoError if the port is no port.
-
-    Args:
-        options: What `robot_parser` gave.
-        get_param: Gives a parameter by name, or the default given with it.
+    `options`: what `robot_parser` gave. `get_param`: gives a parameter by name, or the default given with it. Raises
+    NaoError if the port is no port.
     """
     ip = options.pip if options.pip is not None else get_param("~pip", os.environ.get("NAO_IP") or DEFAULT_IP)
     port = options.pport if options.pport is not None else get_param("~pport", _usual_port())
@@ -150,9 +147,7 @@ def start_node(name: str, description: str, argv: Sequence[str] | None) -> argpa
 def own_as_node(robot: Any, watches: bool) -> None:
     """Own what is set going under the name of this node.
 
-    Args:
-        robot: Its proxies and connection.
-        watches: As `run_module` takes it.
+    `robot`: its proxies and connection. `watches`: as `run_module` takes it.
     """
     own_goals(robot.owners)
     if watches:

@@ -38,11 +38,7 @@ class NodeInterface:
     """
 
     def __init__(self, name: str = "") -> None:
-        """Make nothing yet.
-
-        Args:
-            name: Of the part, relative to the node's namespace; empty: the node itself.
-        """
+        """Make nothing yet. `name`: of the part, relative to the node's namespace; empty: the node itself."""
         self.name = rospy.resolve_name(name) if name else rospy.get_name()
         self.namespace = self.name.rpartition("/")[0] + "/"
         self._ends: list[Callable[[], Any]] = []
@@ -133,11 +129,7 @@ class NodeInterface:
 
 
 def node_that_offers(service: str) -> str:
-    """Another node that offers a service and is alive; empty if there is none.
-
-    Args:
-        service: Full name.
-    """
+    """Another node that offers a service and is alive; empty if there is none. `service`: full name."""
     own = rospy.get_name()
     master = rosgraph.Master(own)
     try:

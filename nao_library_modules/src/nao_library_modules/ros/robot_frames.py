@@ -27,10 +27,7 @@ class RobotFrames:
     def locate(self, frame: str) -> Place:
         """Where a frame is now, seen from above by the robot.
 
-        Raises NaoError if it is not connected with the robot.
-
-        Args:
-            frame: Its name.
+        `frame`: its name. Raises NaoError if it is not connected with the robot.
         """
         robot = tf_prefix() + ROBOT
         patience = rospy.Duration.from_sec(PATIENCE)

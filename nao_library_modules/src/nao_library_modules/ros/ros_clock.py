@@ -23,11 +23,7 @@ class RosClock:
     def wait(self, duration: float, interrupt: CancellationToken) -> bool:
         """Wait, unless interrupted.
 
-        Returns whether the whole duration passed.
-
-        Args:
-            duration: s of ROS time, >= 0.
-            interrupt: Ends the wait.
+        `duration`: s of ROS time, >= 0. `interrupt`: ends the wait. Returns whether the whole duration passed.
         """
         if is_wallclock():
             return not interrupt.wait(duration)

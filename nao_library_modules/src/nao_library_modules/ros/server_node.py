@@ -102,9 +102,8 @@ class ServerNode:
     def serve_description(self, name: str, answer: Callable[[Any], Any]) -> None:
         """Answer what the functions of an action server are, on the service `NAME/describe`.
 
-        Args:
-            name: Relative name of the action.
-            answer: Request -> response of DescribeFunctions; called in a thread of each client.
+        `name`: relative name of the action. `answer`: request -> response of DescribeFunctions; called in a thread of
+        each client.
         """
         rospy.Service(name + DESCRIBE, DescribeFunctions, answer)
 
@@ -153,11 +152,7 @@ class ServerNode:
 
 
 def node_file(name: str) -> Kept:
-    """The file of a node, or of a part of one, for this run of the ROS master.
-
-    Args:
-        name: Its full name.
-    """
+    """The file of a node, or of a part of one, for this run of the ROS master. `name`: its full name."""
     file = name.strip("/").replace("/", "_")
     return Kept(Path(get_ros_home()) / "nao_library" / f"{file}.json", str(rospy.get_param("/run_id", "")))
 

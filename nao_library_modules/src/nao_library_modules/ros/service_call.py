@@ -20,10 +20,8 @@ class NotAnswered(NaoError):  # noqa: N818  it says what became of the question
 def call_service(name: str, kind: type, request: Any, limit: float = LIMIT) -> Any:
     """Call a service, if it is there.
 
-    Raises NotAnswered if it is not there, refuses, or does not answer in time.
-
-    Args:
-        limit: s of the computer for the answer.
+    `limit`: s of the computer for the answer. Raises NotAnswered if it is not there, refuses, or does not answer in
+    time.
     """
     full = rospy.resolve_name(name)
     try:

@@ -14,9 +14,7 @@ SOONEST_END = 0.005
 def let_the_client_note_the_goal(taken_up: float, soonest_end: float = SOONEST_END) -> None:
     """Wait until a goal may be over.
 
-    Args:
-        taken_up: When it was taken up, by `time.monotonic`.
-        soonest_end: s after which it may be over.
+    `taken_up`: when it was taken up, by `time.monotonic`. `soonest_end`: s after which it may be over.
     """
     left = taken_up + soonest_end - time.monotonic()
     if left > 0.0:

@@ -25,10 +25,8 @@ def require_patience(value: Any) -> float:
 class StartupGrace:
     """Waits for a robot that has never been reached; for one that went away nobody waits.
 
-    Any thread may wait. Time is that of the computer, for simulated time may not have begun.
-
-    Args:
-        patience: s from now on for which goals wait.
+    Any thread may wait. Time is that of the computer, for simulated time may not have begun. `patience`: s from now on
+    for which goals wait.
     """
 
     def __init__(self, robot: Any, patience: float) -> None:
@@ -45,9 +43,7 @@ class StartupGrace:
     def wait(self, interrupt: CancellationToken, tell: Callable[[str], None]) -> None:
         """Wait until the robot is there, the time is over, or something interrupts.
 
-        Args:
-            interrupt: Ends the wait.
-            tell: Gets what is waited for, "the robot at ...", if that takes any time.
+        `interrupt`: ends the wait. `tell`: gets what is waited for, "the robot at ...", if that takes any time.
         """
         if not self.expected or interrupt.is_set():
             return

@@ -44,12 +44,7 @@ class Events:
     """
 
     def __init__(self, clock: Any, interrupt: CancellationToken) -> None:
-        """Nothing has happened yet.
-
-        Args:
-            clock: Time of waits.
-            interrupt: Ends them.
-        """
+        """Nothing has happened yet. `clock`: time of waits. `interrupt`: ends them."""
         self._clock = clock
         self._interrupt = interrupt
         self._news = CancellationToken()
@@ -125,9 +120,8 @@ class ExtractorUse(Part):
     def ended_by(self, action: Callable[[], Any], what: str) -> Iterator[None]:
         """Do something at the end of a block, however it ends.
 
-        Args:
-            action: What to do; an error in it counts where there is no other.
-            what: What goes on if that fails, for the log.
+        `action`: what to do; an error in it counts where there is no other. `what`: what goes on if that fails, for the
+        log.
         """
         try:
             yield

@@ -189,8 +189,7 @@ class NaoBasic(FunctionRunner):
     def add_parts(self, *parts: Part) -> None:
         """Take in parts: their functions, and what checks without a goal must copy. Before `serve`.
 
-        Args:
-            parts: One of each class in `part_types`, and those without functions that they share.
+        `parts`: one of each class in `part_types`, and those without functions that they share.
         """
         self.parts += parts
         for part in parts:
@@ -200,9 +199,8 @@ class NaoBasic(FunctionRunner):
     def serve(self, name: str, action: type) -> None:
         """Start the action server, its services and the diagnostics: the last line of a module's constructor.
 
-        Args:
-            name: Relative name of the action.
-            action: Its type; the first field of the goal is the array of function messages.
+        `name`: relative name of the action. `action`: its type; the first field of the goal is the array of function
+        messages.
         """
         self.chain.server = name
         self._feedback_type = type(action().action_feedback.feedback)
@@ -346,8 +344,7 @@ class NaoBasic(FunctionRunner):
     def end_chain(self, end: str) -> None:
         """Called when a chain is over, before its result is filled. For what must not outlive a chain that failed.
 
-        Args:
-            end: "succeeded", "aborted" or "preempted".
+        `end`: "succeeded", "aborted" or "preempted".
         """
 
     def begin_check(self, position: int) -> None:
@@ -363,8 +360,7 @@ class NaoBasic(FunctionRunner):
     def check(self, *goals: Any) -> GoalCheck:
         """What is wrong with goals, by the checks that come before the first function. Nothing is done; any thread.
 
-        Args:
-            goals: In the order in which they would be sent.
+        `goals`: in the order in which they would be sent.
         """
         return check_goals(self, goals)
 
@@ -380,8 +376,7 @@ class NaoBasic(FunctionRunner):
     def begin_goal_check(self, now: bool) -> None:
         """Called for such a view before the chain of each goal is checked.
 
-        Args:
-            now: Whether the goal finds the robot as it is at this moment.
+        `now`: whether the goal finds the robot as it is at this moment.
         """
 
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
@@ -417,9 +412,8 @@ class NaoBasic(FunctionRunner):
     def publish_feedback(self, **fields: Any) -> None:
         """Publish how far the chain is. Any thread.
 
-        Args:
-            fields: What else the feedback of the module's action has; `stamp`: ROS time of what it tells, s, if that
-                is not now.
+        `fields`: what else the feedback of the module's action has; `stamp`: ROS time of what it tells, s, if that is
+        not now.
         """
         index, function, count = self._progress
         self._send_feedback(index=index, function=function, count=count, **fields)
@@ -433,11 +427,8 @@ class NaoBasic(FunctionRunner):
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         """Fill the result message. Modules with more fields extend it.
 
-        Raises NaoError if the robot cannot be asked; the goal is aborted then.
-
-        Args:
-            result: Result with at least the fields `memList` and `results`.
-            outcomes: What was done.
+        `result`: result with at least the fields `memList` and `results`. `outcomes`: what was done. Raises NaoError if
+        the robot cannot be asked; the goal is aborted then.
         """
         told = sorted([*outcomes, *self._failures], key=lambda outcome: outcome.position)
         result.results = [_result_of(outcome) for outcome in told]
@@ -530,10 +521,8 @@ class NaoBasic(FunctionRunner):
     def connected(self, again: bool) -> None:
         """Called when the robot is there; not before the module has its server, and so is complete.
 
-        In the thread that the connection has for its listeners; they may call the robot.
-
-        Args:
-            again: The connection was lost before: what was set up in the robot is gone.
+        In the thread that the connection has for its listeners; they may call the robot. `again`: the connection was
+        lost before: what was set up in the robot is gone.
         """
 
     def _on_connection(self, *_: Any) -> None:

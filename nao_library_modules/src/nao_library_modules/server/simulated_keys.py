@@ -24,10 +24,7 @@ class SimulatedKey:
     def known(self, call: Callable[..., Any]) -> bool:
         """Whether the robot has it.
 
-        Raises NaoError if the robot cannot be asked.
-
-        Args:
-            call: `call` of a module: proxy, method, arguments.
+        `call`: `call` of a module: proxy, method, arguments. Raises NaoError if the robot cannot be asked.
         """
         generation = self._robot.connection.generation
         if self._generation != generation:
@@ -36,13 +33,7 @@ class SimulatedKey:
         return self._known
 
     def value(self, call: Callable[..., Any]) -> Any:
-        """What it holds.
-
-        Raises NaoError if the robot cannot be asked.
-
-        Args:
-            call: As `known` takes it.
-        """
+        """What it holds. `call`: as `known` takes it. Raises NaoError if the robot cannot be asked."""
         return call(self._robot.proxy(MEMORY), "getData", self._name)
 
     def span(self, call: Callable[..., Any], clock: RobotClock, began: float) -> tuple[float, float]:

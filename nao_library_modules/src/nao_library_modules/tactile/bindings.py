@@ -129,11 +129,8 @@ class TouchBindings:
     def bind(self, binding: Binding, pressed: Sequence[Contact]) -> None:
         """Start a behaviour at touches from now on; one of the same name is replaced.
 
-        Raises NaoError if the robot cannot be asked for the events.
-
-        Args:
-            binding: The link.
-            pressed: Sensors that are pressed already.
+        `binding`: the link. `pressed`: sensors that are pressed already. Raises NaoError if the robot cannot be asked
+        for the events.
         """
         for sensor in binding.sensors:
             self._relay.subscribe(sensor.event)

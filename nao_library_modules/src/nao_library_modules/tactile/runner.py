@@ -24,11 +24,8 @@ SERVER_LIMIT = 5.0
 class BehaviorClient:
     """Client of NaoBehavior. Nothing of ROS is needed before the first behaviour is to run.
 
-    It stands on actionlib's ActionClient: a behaviour that was started by another touch goes on being followed when
-    the next one replaces it.
-
-    Args:
-        name: Of the action.
+    It stands on actionlib's ActionClient: a behaviour that was started by another touch goes on being followed when the
+    next one replaces it. `name`: of the action.
     """
 
     def __init__(self, name: str = SERVER) -> None:

@@ -51,8 +51,7 @@ class NaoTactile(NaoBasic):
     ) -> None:
         """Start the server; arguments as NaoBasic takes them, but for one.
 
-        Args:
-            runner: Runs behaviours, where not the server NaoBehavior.
+        `runner`: runs behaviours, where not the server NaoBehavior.
         """
         if runner is None:
             from .runner import BehaviorClient

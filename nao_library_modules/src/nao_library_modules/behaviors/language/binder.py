@@ -105,9 +105,7 @@ class _Binder:
     def behavior(self, behavior: Behavior, values: Mapping[str, Any], prefix: PathParts, *boxes: str) -> SequenceNode:
         """The program of a behaviour, on its own or in a box.
 
-        Args:
-            prefix: Path of the box.
-            boxes: Names of the behaviours that it is in, itself the last.
+        `prefix`: path of the box. `boxes`: names of the behaviours that it is in, itself the last.
         """
         scope = _Scope(behavior.name, behavior.file, values, prefix, boxes)
         body = behavior.body

@@ -153,11 +153,7 @@ def preview_facts(
     given: Sequence[str] = (),
     ask: Ask | None = None,
 ) -> Facts:
-    """As `facts_of`, with what it would do.
-
-    Args:
-        ask: Has the servers check their goals, as `check_given` takes it.
-    """
+    """As `facts_of`, with what it would do. `ask`: has the servers check their goals, as `check_given` takes it."""
     behavior = None
     try:
         readable, wrong = _as_far_as_read(load)

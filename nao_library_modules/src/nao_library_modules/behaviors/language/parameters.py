@@ -120,9 +120,8 @@ def given_as_text(
 ) -> dict[str, Any]:
     """Name -> value of what is given as "name=value".
 
-    Args:
-        problems: Where to note what is unknown, comes twice, or has a value that will not do; that becomes `UNKNOWN`.
-        file: That declares the parameters.
+    `problems`: where to note what is unknown, comes twice, or has a value that will not do; that becomes `UNKNOWN`.
+    `file`: that declares the parameters.
     """
     given: dict[str, Any] = {}
     for text in texts:

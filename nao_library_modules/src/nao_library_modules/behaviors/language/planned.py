@@ -27,11 +27,7 @@ class PlannedStore:
 
     @classmethod
     def of(cls, store: BehaviorStore, context: dict[str, Any]) -> PlannedStore:
-        """The one that belongs to the check of a chain.
-
-        Args:
-            context: Lives as long as the check.
-        """
+        """The one that belongs to the check of a chain. `context`: lives as long as the check."""
         return context.setdefault(KEY, cls(store))
 
     def load(self, name: str) -> Behavior:
@@ -75,11 +71,7 @@ class PlannedStore:
         self._store.require_free(name, field)
 
     def put(self, name: str, text: str | None) -> None:
-        """A behaviour will be there.
-
-        Args:
-            text: None if it is recorded.
-        """
+        """A behaviour will be there. `text`: None if it is recorded."""
         self._changes[name] = _UNKNOWN if text is None else text
 
     def remove(self, name: str) -> None:

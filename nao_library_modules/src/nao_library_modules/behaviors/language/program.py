@@ -135,9 +135,8 @@ def walk_rounds(
 ) -> Iterator[Node]:
     """As `walk`, with all rounds of repetitions; those after the first one as plain nodes, which are quickly made.
 
-    Args:
-        left_out: Whether the repetition at a path is to be passed over with all its rounds.
-        rounds: Where in its path `node` has the number of a round that is not the first one, and that number.
+    `left_out`: whether the repetition at a path is to be passed over with all its rounds. `rounds`: where in its path
+    `node` has the number of a round that is not the first one, and that number.
     """
     here = _in_rounds(node, rounds)
     yield here

@@ -46,10 +46,7 @@ class FunctionTables:
 
     Functions of the servers of this package are read from their classes, each when it is asked for the first time. A
     server of another name, and a function that one of these does not have, is asked of the server that runs. Any thread
-    may ask; two that come at the same time do the same work.
-
-    Args:
-        describe: Has a server that runs describe its functions.
+    may ask; two that come at the same time do the same work. `describe`: has a server that runs describe its functions.
     """
 
     def __init__(self, describe: Describe = nobody_describes, running: Running = tuple) -> None:
@@ -62,11 +59,7 @@ class FunctionTables:
     def server(self, name: str, field: str = "step") -> ServerType:
         """The types of a server that steps may use.
 
-        Raises BadGoal if there is none of that name.
-
-        Args:
-            name: Its relative name.
-            field: What names it, for the error.
+        `name`: its relative name. `field`: what names it, for the error. Raises BadGoal if there is none of that name.
         """
         if name in NAMES:
             return server_type(name)
@@ -114,8 +107,7 @@ class FunctionTables:
     def check_goals(self, name: str, goals: Sequence[Any]) -> GoalCheck:
         """Check goals as their server would for a robot that is as all of its family are.
 
-        Args:
-            goals: In the order in which they would be sent.
+        `goals`: in the order in which they would be sent.
         """
         server = self.server(name)
         if not server.ours:

@@ -40,11 +40,7 @@ _FUNCTION = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)\.([A-Za-z_][A-Za-z0-9_]*)")
 
 
 class StepReader:
-    """Reads steps, and notes what is wrong with them.
-
-    Args:
-        parameters: Names that `${}` may use.
-    """
+    """Reads steps, and notes what is wrong with them. `parameters`: names that `${}` may use."""
 
     def __init__(self, parameters: Mapping[str, Any], problems: list[Problem]) -> None:
         self._names = dict.fromkeys(parameters)
@@ -64,9 +60,7 @@ class StepReader:
     def steps(self, content: list[Any], path: PathParts, separator: str = ".", timed: bool = False) -> tuple[Step, ...]:
         """The steps of a list. What cannot be read is noted, and nothing is known of it.
 
-        Args:
-            separator: Between that path and their numbers.
-            timed: Whether they are entries of a timeline.
+        `separator`: between that path and their numbers. `timed`: whether they are entries of a timeline.
         """
         steps = []
         for number, each in enumerate(content, start=1):

@@ -20,9 +20,7 @@ SUFFIX = ".yaml"
 class BehaviorStore:
     """Behaviours by name. One of the user's counts instead of one of the library's.
 
-    Args:
-        folder: Of the user; made when the first one is saved.
-        shipped: Of the library; never written to.
+    `folder`: of the user; made when the first one is saved. `shipped`: of the library; never written to.
     """
 
     def __init__(self, folder: Path, shipped: Path) -> None:

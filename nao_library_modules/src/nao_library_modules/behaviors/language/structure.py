@@ -87,9 +87,7 @@ def _times_of(timeline: Timeline) -> Iterator[Problem]:
 def _barriers(step: Step, home: Step | None) -> Iterator[Problem]:
     """Barriers have a meaning on timelines and in branches of a parallel, and there every branch meets them once.
 
-    Args:
-        step: Where to look.
-        home: The parallel that barriers inside belong to.
+    `step`: where to look. `home`: the parallel that barriers inside belong to.
     """
     if isinstance(step, Parallel):
         if all(each.whole for branch in step.steps for each in walk(branch)):

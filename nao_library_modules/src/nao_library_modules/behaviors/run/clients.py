@@ -60,8 +60,7 @@ class ServerClient(PlanActionClient):
 class Clients:
     """The clients, each made when it is needed first and then kept.
 
-    Args:
-        types: Gives the types of a server, or raises BadGoal.
+    `types`: gives the types of a server, or raises BadGoal.
     """
 
     def __init__(self, types: Callable[[str], ServerType]) -> None:
@@ -83,9 +82,8 @@ class GoalLog:
     ROS API:
         Subscribes to `SERVER/goal` and `SERVER/result` of all servers that it listens to.
 
-    Args:
-        node: With `subscribe` and `clock`, see `server_node`.
-        servers: The servers that it listens to from the beginning.
+    `node`: with `subscribe` and `clock`, see `server_node`. `servers`: the servers that it listens to from the
+    beginning.
     """
 
     def __init__(self, node: Any, servers: Iterable[ServerType]) -> None:

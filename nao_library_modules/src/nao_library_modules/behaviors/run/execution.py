@@ -91,8 +91,7 @@ class Execution:
     def _step(self, node: Node, due: float | None = None, begun: Callable[[], None] = lambda: None) -> None:
         """Run a step to its end, with the retries that it is allowed.
 
-        Args:
-            due: When it was to begin, s from the beginning of the behaviour; now if there is no such time.
+        `due`: when it was to begin, s from the beginning of the behaviour; now if there is no such time.
         """
         wanted = self.report.now() if due is None else due
         retries = node.policy.retries

@@ -22,11 +22,7 @@ class FifoLock:
 
     @contextmanager
     def of(self, server: str, now: float, path: PathParts) -> Iterator[None]:
-        """Have the turn with a server in a block; waits for it, in a plan.
-
-        Args:
-            now: Time of asking, s.
-        """
+        """Have the turn with a server in a block; waits for it, in a plan. `now`: time of asking, s."""
         queue = self._queues[server]
         ticket = (now, tuple(number for _, number in path), object())
 

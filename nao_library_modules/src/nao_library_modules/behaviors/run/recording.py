@@ -40,8 +40,7 @@ class HeardGoal:
 class BehaviorRecording:
     """A recording that goes on. Any thread may call its methods.
 
-    Args:
-        tell: Called with the server and each goal that counts, in the thread that it comes in.
+    `tell`: called with the server and each goal that counts, in the thread that it comes in.
     """
 
     def __init__(
@@ -59,11 +58,7 @@ class BehaviorRecording:
         self._lock = threading.Lock()
 
     def sent(self, server: str, goal_id: str, goal: Any, time: float) -> None:
-        """A goal was sent.
-
-        Args:
-            time: s of ROS time.
-        """
+        """A goal was sent. `time`: s of ROS time."""
         with self._lock:
             if server not in self._servers or goal_id in self._heard or len(self._heard) >= MOST_GOALS:
                 return
@@ -80,10 +75,7 @@ class BehaviorRecording:
     def timeline(self, check: Callable[[dict[str, Any]], None]) -> tuple[list[dict[str, Any]], list[str]]:
         """Entries of a timeline that begins with the first goal; and what was left out, and why.
 
-        Raises BadGoal if no goal came.
-
-        Args:
-            check: Raises NaoError for a step that could not be stored.
+        `check`: raises NaoError for a step that could not be stored. Raises BadGoal if no goal came.
         """
         with self._lock:
             heard = sorted(self._heard.values(), key=lambda each: each.time)

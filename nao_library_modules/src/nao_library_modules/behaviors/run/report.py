@@ -63,9 +63,7 @@ class StepEvent:
 class RunReport:
     """Keeps the records of one run. Branches write from threads of their own; the lock is held for bookkeeping only.
 
-    Args:
-        clock: Whose time it has.
-        tell: Gets every event, one after the other.
+    `clock`: whose time it has. `tell`: gets every event, one after the other.
     """
 
     def __init__(self, clock: Any, tell: Callable[[StepEvent], None]) -> None:
@@ -82,11 +80,7 @@ class RunReport:
         return self._clock.now() - self._zero
 
     def began(self, node: Node, late: float = 0.0) -> StepRecord:
-        """A step begins, perhaps once more.
-
-        Args:
-            late: s that it begins after its time.
-        """
+        """A step begins, perhaps once more. `late`: s that it begins after its time."""
         now = self.now()
         with self._lock:
             record = self._records.get(node.path)

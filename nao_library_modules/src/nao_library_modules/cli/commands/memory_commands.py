@@ -129,10 +129,8 @@ class _Watch:
     def next(self, limit: float | None) -> tuple[str, Any]:
         """The next name and value.
 
-        Raises queue.Empty if none came in time, click.ClickException if the robot went away.
-
-        Args:
-            limit: s to wait for it; None for ever.
+        `limit`: s to wait for it; None for ever. Raises queue.Empty if none came in time, click.ClickException if the
+        robot went away.
         """
         came = self._came.get(timeout=limit)
         if isinstance(came, Exception):

@@ -42,9 +42,8 @@ class SoundReceiver(ALModule):
     def __init__(self, name: str, take: Callable[[int, int, Any, bytes], None]) -> None:
         """Register with the newest broker.
 
-        Args:
-            name: Name at the robot.
-            take: Gets channels, frames, time ([s, us]) and sound of each block, in the thread of the module.
+        `name`: name at the robot. `take`: gets channels, frames, time ([s, us]) and sound of each block, in the thread
+        of the module.
         """
         self.__take = take
         super().__init__(name)

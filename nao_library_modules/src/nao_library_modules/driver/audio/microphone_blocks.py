@@ -37,9 +37,8 @@ GAP = 0.5
 def channel_map(channels: int, version: str) -> tuple[int, ...]:
     """Positions of the microphones that the channels of a block come from.
 
-    Args:
-        channels: 4, or 1 for the front one.
-        version: Version of the head or body, such as "6.0.0"; anything else counts as V6.
+    `channels`: 4, or 1 for the front one. `version`: version of the head or body, such as "6.0.0"; anything else counts
+    as V6.
     """
     major = version.lstrip("Vv").split(".")[0]
     older = major.isdigit() and int(major) < FIRST_OF_CORNERS

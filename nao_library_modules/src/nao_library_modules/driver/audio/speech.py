@@ -81,9 +81,8 @@ class RobotSpeech:
     def __init__(self, robot: Any, clock: Any, settings: Callable[[], SpeechSettings]) -> None:
         """Start with an empty queue; the robot need not be connected yet.
 
-        Args:
-            clock: The robot's time: `now()` and `wait(duration, interrupt)`.
-            settings: Gives the settings of the next text.
+        `clock`: the robot's time: `now()` and `wait(duration, interrupt)`. `settings`: gives the settings of the next
+        text.
         """
         self._robot = robot
         self._clock = clock

@@ -63,11 +63,9 @@ class Picture:
 def read_picture(image: Sequence[Any], camera: int) -> Picture:
     """A picture from an answer of getImageRemote.
 
-    Raises NaoError if it holds no picture, one of colours that ROS has no encoding for, or too few pixels.
-
-    Args:
-        image: [width, height, layers, colour space, s, us, pixels, camera, ...].
-        camera: Its camera, if the robot does not report it.
+    `image`: [width, height, layers, colour space, s, us, pixels, camera, ...]. `camera`: its camera, if the robot does
+    not report it. Raises NaoError if it holds no picture, one of colours that ROS has no encoding for, or too few
+    pixels.
     """
     if not isinstance(image, (list, tuple)) or len(image) < IMAGE_FIELDS:
         raise NaoError(f"the robot gave no picture but {str(image)[:100]}")

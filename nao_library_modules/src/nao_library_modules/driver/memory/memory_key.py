@@ -60,9 +60,8 @@ class WatchedKey:
     def open(self, value: Any, tell: Callable[[], None]) -> None:
         """Open the topic, or another one for values of another type; nothing happens while the type is unknown.
 
-        Args:
-            value: Gives the type, unless the rule does; None for no value.
-            tell: Called when somebody begins or ceases to listen.
+        `value`: gives the type, unless the rule does; None for no value. `tell`: called when somebody begins or ceases
+        to listen.
         """
         kind = self.rule.kind or ("" if value is None else kind_of(value))
         if not kind or kind == self.kind:

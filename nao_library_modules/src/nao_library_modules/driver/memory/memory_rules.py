@@ -87,12 +87,8 @@ class MemoryRules:
 def read_rules(entries: Any, parameter: str) -> list[MemoryRule]:
     """Rules from a parameter.
 
-    Raises NaoError if it is something else.
-
-    Args:
-        entries: A list of keys and patterns, or of {key: ..., rate: ..., type: ...}; or a text with keys between commas
-            or spaces.
-        parameter: Its name, for the text of an error.
+    `entries`: a list of keys and patterns, or of {key: ..., rate: ..., type: ...}; or a text with keys between commas
+    or spaces. `parameter`: its name, for the text of an error. Raises NaoError if it is something else.
     """
     if isinstance(entries, str):
         entries = entries.replace(",", " ").split()

@@ -107,9 +107,8 @@ def read_faces(value: Any) -> tuple[View, list[Face]] | None:
 def read_landmarks(value: Any) -> tuple[View, list[Landmark]] | None:
     """Landmarks from an event; None if there are none.
 
-    Args:
-        value: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in torso, camera in robot,
-            name of the camera], or [].
+    `value`: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in torso, camera in robot,
+    name of the camera], or [].
     """
     if not _is_list(value, 2) or not _is_list(value[1], 1):
         return None
@@ -128,9 +127,8 @@ class MovementReader:
     def read(self, value: Any) -> Movement | None:
         """Movement from the value in the robot's memory; None if there is none.
 
-        Args:
-            value: [[s, us], [[[alpha, beta], [x, y, width, height], share], ...], camera in torso, camera in robot,
-                camera]; of NAOqi before 2.0 [[centre, velocity, [point, ...], [velocity, ...]]].
+        `value`: [[s, us], [[[alpha, beta], [x, y, width, height], share], ...], camera in torso, camera in robot,
+        camera]; of NAOqi before 2.0 [[centre, velocity, [point, ...], [velocity, ...]]].
         """
         if _is_list(value, 1) and _is_list(value[0], 4):
             return _former_movement(value[0])

@@ -59,11 +59,8 @@ class JoyControl:
     def update(self, axes: Sequence[float], buttons: Sequence[int]) -> list[JoyRequest]:
         """Take the state of the gamepad.
 
-        Returns requests of buttons that were not pressed before. Those held in the very first state request nothing.
-
-        Args:
-            axes: Positions, -1 to 1.
-            buttons: 1 for those that are pressed.
+        `axes`: positions, -1 to 1. `buttons`: 1 for those that are pressed. Returns requests of buttons that were not
+        pressed before. Those held in the very first state request nothing.
         """
         settings = self._settings
         before = list(buttons) if self._buttons is None else self._buttons

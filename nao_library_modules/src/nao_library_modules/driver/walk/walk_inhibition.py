@@ -19,11 +19,8 @@ class WalkInhibition:
     """Holds on walking, by the node that put them on. Every method may be called from any thread.
 
     A node that inhibits walking means the others: one that follows a path keeps a joystick from interfering, and walks
-    itself.
-
-    Args:
-        kept: Where they are kept for the time after the death of this node.
-        own: Name of this node: holds of parts that died with it are gone.
+    itself. `kept`: where they are kept for the time after the death of this node. `own`: name of this node: holds of
+    parts that died with it are gone.
     """
 
     def __init__(self, kept: Kept, own: str = "") -> None:

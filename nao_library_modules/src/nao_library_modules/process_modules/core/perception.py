@@ -105,10 +105,8 @@ def go_to(desig: Designator) -> Place:
 def at_location(desig: Designator, body: Branch, position: AnyFluent, distance: float = 0.2, turn: float = 0.6) -> Any:
     """Do something at a location, in a plan: a robot that leaves it goes back and begins again.
 
-    Raises NavigationHighLevelFailure if the location was lost too often, or cannot be reached.
-
-    Args:
-        position: A fluent with the `Place` of the robot, in the frame of the location.
+    `position`: a fluent with the `Place` of the robot, in the frame of the location. Raises NavigationHighLevelFailure
+    if the location was lost too often, or cannot be reached.
     """
     if desig.kind != location:
         raise PlanError(f"at_location: {desig} is no location")

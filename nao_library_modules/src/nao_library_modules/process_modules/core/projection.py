@@ -32,10 +32,8 @@ def project(
 ) -> Trace:
     """Run the program of a plan on a simulated robot of its own; the trace of the plan, whether it succeeded or not.
 
-    Raises ProjectionFailed if the simulator does not come up, or there is no trace.
-
-    Args:
-        launch: Further arguments of nao_sim.launch.
+    `launch`: further arguments of nao_sim.launch. Raises ProjectionFailed if the simulator does not come up, or there
+    is no trace.
     """
     with tempfile.TemporaryDirectory(prefix="projection_") as folder:
         given = {"world": world, "speed": AS_FAST_AS_POSSIBLE, "record_dir": folder, **(launch or {})}

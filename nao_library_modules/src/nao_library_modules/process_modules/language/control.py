@@ -68,11 +68,9 @@ def top_level(
 ) -> Any:
     """Run a plan, in this thread; its answer.
 
-    Raises PlanFailure if the plan failed, or its root was evaporated; PlanError if this thread runs a plan already.
-
-    Args:
-        clock: See `nao_library_modules.base.clock`; default: the computer's.
-        observers: Called with each task of the tree at every change.
+    `clock`: see `nao_library_modules.base.clock`; default: the computer's. `observers`: called with each task of the
+    tree at every change. Raises PlanFailure if the plan failed, or its root was evaporated; PlanError if this thread
+    runs a plan already.
     """
     if here() is not None:
         raise PlanError("top_level inside of a plan: call the plan, or give it to seq or par")
@@ -179,10 +177,8 @@ def try_all(*branches: Branch) -> Any:
 def partial_order(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]) -> dict[str, Any]:
     """All at once, but some before others; the answers by name. Fails as `par`.
 
-    Raises PlanError if a name is unknown, or the order has a cycle.
-
-    Args:
-        order: Pairs (or longer chains) of names: each begins when the one before it has succeeded.
+    `order`: pairs (or longer chains) of names: each begins when the one before it has succeeded. Raises PlanError if a
+    name is unknown, or the order has a cycle.
     """
     before = _predecessors(branches, order)
 
@@ -209,8 +205,7 @@ def partial_order(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]
 def wait_for(fluent: AnyFluent, timeout: float | None = None) -> Any:
     """Wait until a fluent is true; its value, or False after the timeout.
 
-    Args:
-        timeout: s of the plan's clock; None for no limit.
+    `timeout`: s of the plan's clock; None for no limit.
     """
     seen: list[Any] = []
 

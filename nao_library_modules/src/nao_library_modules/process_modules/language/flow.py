@@ -118,9 +118,8 @@ def set_here(flow: Flow | None) -> None:
 def wait_until(condition: Callable[[], Any], fluents: Iterable[AnyFluent] = (), timeout: float | None = None) -> bool:
     """Wait for a condition, in a plan; whether it came true.
 
-    Args:
-        condition: Evaluated now, and at every pulse of a fluent.
-        timeout: s of the plan's clock, without suspensions; None for no limit.
+    `condition`: evaluated now, and at every pulse of a fluent. `timeout`: s of the plan's clock, without suspensions;
+    None for no limit.
     """
     return _flow().wait(condition, fluents, timeout)
 

@@ -171,8 +171,7 @@ class Network(AnyFluent):
 class Pulsed(AnyFluent):
     """True from the pulse of a fluent until it is taken: no pulse is missed.
 
-    Args:
-        missed: Pulses before `take`: "never" forgets them, "once" leaves one, "always" leaves all.
+    `missed`: pulses before `take`: "never" forgets them, "once" leaves one, "always" leaves all.
     """
 
     def __init__(self, fluent: AnyFluent, missed: str = "once") -> None:

@@ -41,10 +41,8 @@ class _Give(BaseException):
 def with_failure_handling(body: Branch, handlers: Mapping[Kinds, Callable[[PlanFailure], Any]]) -> Any:
     """Run a body; on a failure, run the first handler that matches. The answer is the body's, or that of `give`.
 
-    Raises PlanFailure if no handler matches or it passes the failure up, or it fails itself.
-
-    Args:
-        handlers: By class of failures, or by a tuple of classes.
+    `handlers`: by class of failures, or by a tuple of classes. Raises PlanFailure if no handler matches or it passes
+    the failure up, or it fails itself.
     """
     for kinds in handlers:
         for kind in kinds if isinstance(kinds, tuple) else (kinds,):

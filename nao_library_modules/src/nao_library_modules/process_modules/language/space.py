@@ -53,9 +53,8 @@ def turned(point: Sequence[float], quaternion: Sequence[float]) -> tuple[float, 
 def head_angles(x: float, y: float, z: float, camera: Sequence[float]) -> tuple[float, float]:
     """HeadYaw and HeadPitch, positive to the left and down, of a head that looks at a point of the torso frame.
 
-    Args:
-        camera: (forward, up) of the camera from the neck joint, which yaw and pitch turn about; the height of that
-            joint in the torso frame; the angle by which the camera looks down.
+    `camera`: (forward, up) of the camera from the neck joint, which yaw and pitch turn about; the height of that joint
+    in the torso frame; the angle by which the camera looks down.
     """
     forward, up, neck, tilt = camera
     yaw = math.atan2(y, x)

@@ -50,10 +50,7 @@ class PlanActionClient:
     """Client of an action for plans; several goals may run at once.
 
     Based on actionlib's ActionClient: SimpleActionClient knows one goal at a time, and polls for its end every tenth of
-    a second.
-
-    Args:
-        timeout: Longest time a goal may take, s of the plan's clock; None for ever.
+    a second. `timeout`: longest time a goal may take, s of the plan's clock; None for ever.
     """
 
     def __init__(self, name: str, action: type, timeout: float | None = None) -> None:

@@ -25,9 +25,8 @@ class VisionFiles:
     def __init__(self, folder: str) -> None:
         """Remove what killed servers have left; nothing is made yet.
 
-        Args:
-            folder: "~" stands for the home of the user; relative to the working directory, which is ROS_HOME for a
-                node that a launch file started.
+        `folder`: "~" stands for the home of the user; relative to the working directory, which is ROS_HOME for a node
+        that a launch file started.
         """
         self.folder = Path(folder).expanduser().absolute()
         self._lock = threading.Lock()
@@ -49,11 +48,8 @@ class VisionFiles:
     def path(self, name: str, file_type: str) -> Path:
         """Path of a file that a goal names; its folder may have to be made.
 
-        Raises BadGoal if it leads out of the folder or cannot be a name.
-
-        Args:
-            name: Relative to the folder, or absolute and inside it, with or without a suffix.
-            file_type: Suffix where the name has none.
+        `name`: relative to the folder, or absolute and inside it, with or without a suffix. `file_type`: suffix where
+        the name has none. Raises BadGoal if it leads out of the folder or cannot be a name.
         """
         allowed = f"a name of a file in {self.folder}"
         bare = name.strip()

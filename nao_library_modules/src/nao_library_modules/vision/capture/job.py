@@ -125,8 +125,7 @@ class CaptureJob(ABC):
     def stop(self, at_once: bool = False) -> None:
         """End after the frames that have come; no effect on a job that does not run.
 
-        Args:
-            at_once: Whether not to wait for frames that are on their way.
+        `at_once`: whether not to wait for frames that are on their way.
         """
         with self._changed:
             if self._state == "running" and self.whole and not at_once:

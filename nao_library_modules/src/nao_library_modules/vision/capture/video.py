@@ -147,12 +147,9 @@ class VideoFile:
     def write(self, picture: np.ndarray, stamp: float) -> bool:
         """Add a frame.
 
-        Returns whether it has a place in the video. Raises VideoTrouble if it cannot be compressed, FileTrouble if it
-        cannot be written.
-
-        Args:
-            picture: (height, width, 3) uint8, blue, green, red. One of another size than the first is made to fit.
-            stamp: When it was taken, s.
+        `picture`: (height, width, 3) uint8, blue, green, red. One of another size than the first is made to fit.
+        `stamp`: when it was taken, s. Returns whether it has a place in the video. Raises VideoTrouble if it cannot be
+        compressed, FileTrouble if it cannot be written.
         """
         time = self._times.place(stamp)
         if time is None:

@@ -67,10 +67,8 @@ NOTHING = DetectionArray(None, None, None, None, ())
 def ball_detections(value: Any) -> DetectionArray:
     """A picture with a ball, from redBallDetected.
 
-    Raises ValueError if the value is something else.
-
-    Args:
-        value: [[s, us], [alpha, beta, radius, radius], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
+    `value`: [[s, us], [alpha, beta, radius, radius], camera in the torso, camera in FRAME_ROBOT, camera]; rad. Raises
+    ValueError if the value is something else.
     """
     return _read(value, "red ball", _ball)
 
@@ -78,11 +76,8 @@ def ball_detections(value: Any) -> DetectionArray:
 def landmark_detections(value: Any) -> DetectionArray:
     """A picture with landmarks, from LandmarkDetected.
 
-    Raises ValueError if the value is something else.
-
-    Args:
-        value: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in the torso, camera in
-            FRAME_ROBOT, camera]; rad.
+    `value`: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in the torso, camera in
+    FRAME_ROBOT, camera]; rad. Raises ValueError if the value is something else.
     """
     return _read(value, "landmarks", _landmarks)
 
@@ -91,11 +86,8 @@ def face_detections(value: Any) -> DetectionArray:
     """A picture with faces, from FaceDetected.
 
     The only face of a picture, if it has no name, gets that of the only person who was recognised for some time. Raises
-    ValueError if the value is something else.
-
-    Args:
-        value: [[s, us], [[[0, alpha, beta, width, height], [id, score, name, ...]], ..., recognised for some time],
-            camera in the torso, camera in FRAME_ROBOT, camera]; rad.
+    ValueError if the value is something else. `value`: [[s, us], [[[0, alpha, beta, width, height], [id, score, name,
+    ...]], ..., recognised for some time], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
     """
     return _read(value, "faces", _faces)
 
@@ -103,11 +95,9 @@ def face_detections(value: Any) -> DetectionArray:
 def movement_detections(value: Any) -> DetectionArray:
     """A picture with movements, from the key MovementDetection/MovementInfo.
 
-    Raises ValueError if the value is something else.
-
-    Args:
-        value: [[s, us], [[[alpha, beta], [left, top, width, height], [fraction of the picture's pixels, of the
-            region's], ...], ...], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
+    `value`: [[s, us], [[[alpha, beta], [left, top, width, height], [fraction of the picture's pixels, of the region's],
+    ...], ...], camera in the torso, camera in FRAME_ROBOT, camera]; rad. Raises ValueError if the value is something
+    else.
     """
     return _read(value, "movements", _movements)
 

@@ -60,9 +60,7 @@ class Neck:
     def __init__(self, motion: Callable[..., Any], speed: float) -> None:
         """Read the limits of the head.
 
-        Args:
-            motion: Calls a method of ALMotion.
-            speed: Greatest fraction of the head's top speed, 0..1.
+        `motion`: calls a method of ALMotion. `speed`: greatest fraction of the head's top speed, 0..1.
         """
         self._motion = motion
         self.speed = speed
@@ -194,9 +192,8 @@ class TrackingFunctions(Part):
     def _head(self, speed: float, revert: bool) -> Iterator[Neck]:
         """Have the head during a block; it is stiff, and stops at the end.
 
-        Args:
-            speed: Greatest fraction of its top speed, 0..1; 0 for a moderate one.
-            revert: Whether it goes back to where it was after the function's `time`.
+        `speed`: greatest fraction of its top speed, 0..1; 0 for a moderate one. `revert`: whether it goes back to where
+        it was after the function's `time`.
         """
         module = self._module
         proxy = module.robot.proxy(MOTION)
@@ -244,9 +241,7 @@ class Chase:
     def detections(self, end: float, patience: float) -> Iterator[tuple[LocalizedDetection, bool]]:
         """Each detection, and whether the head is as far as it can turn.
 
-        Args:
-            end: ROS time of the end, s.
-            patience: s without a detection after which it ends as well.
+        `end`: ROS time of the end, s. `patience`: s without a detection after which it ends as well.
         """
         clock = self._detectors.clock
         status = "looking"
