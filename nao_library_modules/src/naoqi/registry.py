@@ -23,7 +23,6 @@ class Registry:
     """Connections by address."""
 
     def __init__(self) -> None:
-        """Make an empty registry."""
         self._lock = threading.Lock()  # guards both tables
         self._connections: Dict[Tuple[str, int], Connection] = {}
         self._wanted: Dict[Connection, int] = {}

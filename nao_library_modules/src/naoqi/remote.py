@@ -97,7 +97,6 @@ class RemoteModule:
         return list(dict.fromkeys(each["name"] for each in self.descriptions()))
 
     def overloads(self, method: str) -> List[Dict[str, Any]]:
-        """The descriptions of one method."""
         return [each for each in self.descriptions() if each["name"] == method]
 
 
@@ -115,7 +114,6 @@ class RemoteMethod:
         self._bound: Any = None
 
     def __repr__(self) -> str:
-        """`Module.method`."""
         return f"{self.module.name}.{self.name}"
 
     def __call__(self, *arguments: Any) -> Any:

@@ -87,7 +87,6 @@ class Connection:
 
     @property
     def state(self) -> State:
-        """Where the connection stands."""
         return self._state
 
     def add_listener(self, listener: Listener) -> None:

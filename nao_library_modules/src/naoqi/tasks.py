@@ -20,7 +20,6 @@ class TaskTable:
     """The calls posted over one connection. A call that is finished leaves; only its error stays a while."""
 
     def __init__(self) -> None:
-        """Make an empty table."""
         self._lock = threading.Lock()  # guards all below; never held while a call is asked anything
         self._last_id = 0
         self._error_level = logging.ERROR

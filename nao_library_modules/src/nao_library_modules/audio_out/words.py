@@ -101,7 +101,6 @@ class SpokenWords:
         self._events.renew()
 
     def close(self) -> None:
-        """Unsubscribe."""
         self.stop()
         self._events.close()
 

@@ -52,7 +52,6 @@ class CancellationToken:
                 self._event.clear()
 
     def is_set(self) -> bool:
-        """Whether it is triggered."""
         return self._event.is_set()
 
     def check(self) -> None:

@@ -31,7 +31,6 @@ def read_colours(path: Path) -> Mapping[str, Colour]:
 
 @lru_cache(maxsize=None)
 def named_colours() -> Mapping[str, Colour]:
-    """The colours that have a name."""
     return read_colours(config_file("colours.json"))
 
 
@@ -56,7 +55,6 @@ def parse_colour(text: str, field: str = "str_param") -> Colour:
 
 
 def is_colour(text: str) -> bool:
-    """Whether a text is a colour."""
     try:
         parse_colour(text)
     except BadGoal:

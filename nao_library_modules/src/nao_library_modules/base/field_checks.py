@@ -123,7 +123,6 @@ def require_known(field: str, value: str, known: Sequence[str], kind: str = "") 
 
 
 def require_text(field: str, value: str, what: str) -> str:
-    """Text with something in it."""
     if not value.strip():
         raise BadGoal(field, value, what, problem="it is empty")
     return value.strip()

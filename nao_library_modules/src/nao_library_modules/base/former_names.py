@@ -26,11 +26,9 @@ class Former:
         sys.meta_path.append(cls({f"{package}.{old}": f"{package}.{new}" for old, new in modules.items()}))
 
     def find_spec(self, name: str, _path: Sequence[str] | None, _target: ModuleType | None = None) -> ModuleSpec | None:
-        """The specification of a module that had this name."""
         return ModuleSpec(name, self) if name in self._modules else None
 
     def create_module(self, spec: ModuleSpec) -> Any:
-        """The module as it is called now."""
         module = import_module(self._modules[spec.name])
         self._specs[spec.name] = module.__spec__
         return module

@@ -57,5 +57,4 @@ def split_line(line: str) -> tuple[list[str], str]:
 
 
 def register() -> None:
-    """Use it for bash."""
     add_completion_class(LineComplete)

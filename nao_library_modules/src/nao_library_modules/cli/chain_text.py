@@ -126,7 +126,6 @@ class Angle(click.ParamType):
     name = "angle"
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
-        """As click does."""
         try:
             return in_rad(value)
         except ValueError as error:
@@ -137,11 +136,9 @@ class Number(click.types.FloatParamType):
     """A number within the declared bounds of its kind, see `limits`."""
 
     def __init__(self, kind: str) -> None:
-        """Keep the kind."""
         self._limit = limit(kind)
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> float:
-        """As click does."""
         number = super().convert(value, parameter, context)
         lowest, highest, unit = self._limit
         if not lowest <= number <= highest:

@@ -10,7 +10,6 @@ from .settings import CliSettings, quietly
 
 @quietly
 def servers(settings: CliSettings, start: str) -> list[str]:
-    """Names of servers."""
     return settings.stack.servers()
 
 
@@ -63,7 +62,6 @@ def behaviors(settings: CliSettings, start: str) -> list[str]:
 
 @quietly
 def parameters(settings: CliSettings, start: str, behavior: str) -> list[str]:
-    """Parameters of a behaviour."""
     return [f"{p['name']}=" for found in settings.stack.behaviors(behavior) for p in found["parameters"]]
 
 

@@ -47,7 +47,6 @@ class GoalEnd:
 
     @property
     def succeeded(self) -> bool:
-        """Whether all was done."""
         return self.state == "succeeded"
 
 
@@ -222,7 +221,6 @@ def function_message(settings: CliSettings, server: str, **fields: Any) -> Any:
 
 
 def message_class(kind: str) -> Any:
-    """Class of a message by its type."""
     package, _, name = kind.partition("/")
     try:
         return getattr(import_module(f"{package}.msg"), name)

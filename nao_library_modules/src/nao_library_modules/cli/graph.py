@@ -50,7 +50,6 @@ class Graph:
         return self._system()[0]
 
     def topic_types(self) -> dict[str, str]:
-        """Topic -> type of its messages."""
         return dict(self._ask("getTopicTypes")[2])
 
     def subscribed(self) -> dict[str, list[str]]:

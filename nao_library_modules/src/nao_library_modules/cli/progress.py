@@ -40,7 +40,6 @@ class Progress:
         self._thread: threading.Thread | None = None
 
     def feedback(self, message: Any) -> None:
-        """Show a feedback message."""
         fields = plain(message)
         function = fields.get("function", "")
         text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {self._called.get(function, function)}"

@@ -49,7 +49,6 @@ class DirectRobot:
             raise CommandFailed(str(error)) from None
 
     def memory(self, method: str, *arguments: Any) -> Any:
-        """Call a method of the memory."""
         return self.call(MEMORY, method, *arguments)
 
     def value(self, key: str) -> Any:
@@ -67,7 +66,6 @@ class DirectRobot:
         return sorted({*self.memory("getDataListName"), *self.memory("getEventList")})
 
     def events(self) -> list[str]:
-        """All events."""
         return list(self.memory("getEventList"))
 
     def matching(self, patterns: Sequence[str]) -> list[str]:

@@ -67,7 +67,6 @@ def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
 
 @quietly
 def robots(settings: CliSettings, start: str) -> list[str]:
-    """Namespaces of robots."""
     return [name.strip("/") or "/" for name in settings.stack.robots()]
 
 
@@ -108,7 +107,6 @@ class OneOf(click.Choice):
     """One of several words; another one is told with those that look like it."""
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
-        """As click does."""
         from ..base.suggestion import of_those
 
         if value not in self.choices:

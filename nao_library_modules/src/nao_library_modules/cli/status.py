@@ -115,7 +115,6 @@ def _number(level: Any) -> int:
 
 
 def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
-    """The status for people."""
     stiffness = found["stiffness"]
     rows = [
         ("robot", f"{found['robot']} at {found['address']}, {'connected' if found['connected'] else 'NOT REACHED'}"),

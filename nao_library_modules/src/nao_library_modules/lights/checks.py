@@ -55,7 +55,6 @@ def check_colours(
 
 
 def check_readable_colours(module: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> None:
-    """Coloured lights."""
     require_coloured(_names(module, lights, context), lights)
 
 
@@ -73,7 +72,6 @@ def check_fade_list(
 
 
 def check_rotation(_self: object, i_values: Sequence[float], str_param: str) -> None:
-    """One colour."""
     one_colour(i_values, str_param)
 
 

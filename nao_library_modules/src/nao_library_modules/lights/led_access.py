@@ -124,5 +124,4 @@ class LedAccess:
 
     @property
     def proxy(self) -> Any:
-        """The proxy of ALLeds."""
         return self._robot.proxy(LEDS)

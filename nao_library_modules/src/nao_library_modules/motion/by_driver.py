@@ -59,7 +59,6 @@ class ProxyByDriver:
         self._ways = ways
 
     def call_async(self, method: str, *args: Any) -> Any:
-        """Begin a call."""
         way = self._ways.get(method)
         call = way(*args) if way is not None and self._driver.there() else None
         if call is None:

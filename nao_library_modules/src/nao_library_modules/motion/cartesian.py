@@ -28,7 +28,6 @@ POSE, TRANSFORM = 6, 12
 
 
 def _rows(values: Sequence[float], count: int, size: int) -> list[list[float]]:
-    """Numbers as `count` rows of `size`."""
     require_count("values", values, count * size, f"{size} for each of {count}")
     return [list(values[i * size : (i + 1) * size]) for i in range(count)]
 

@@ -125,7 +125,6 @@ class MotionPlan:
         self.moved |= frozenset(goals)
 
     def limp(self, joints: Iterable[str]) -> list[str]:
-        """Which of the joints have no stiffness by then."""
         return [joint for joint in joints if not self.stiffnesses[joint] > 0.0]
 
     def require_stiff(self, joints: Sequence[str], stiffness: float) -> None:
@@ -257,7 +256,6 @@ class WalkPlan:
 
     @property
     def walking(self) -> bool:
-        """Whether the robot walks by then."""
         if self._walking is None:
             self._walking = self._read_walking()
         return self._walking

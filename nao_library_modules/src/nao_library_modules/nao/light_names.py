@@ -41,7 +41,6 @@ class UnknownLight(NaoError):  # noqa: N818  named like the errors of the proxy 
 
 
 def plain_words(groups: Container[str]) -> list[str]:
-    """Plain words for the groups that a robot has."""
     return [word for word, group in PLAIN_WORDS.items() if group in groups]
 
 

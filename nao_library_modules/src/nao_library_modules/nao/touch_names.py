@@ -66,7 +66,6 @@ BY_EVENT = {sensor.event: sensor for sensor in SENSORS}
 
 
 def names_of(sensors: Iterable[Sensor]) -> list[str]:
-    """Their short names."""
     return [sensor.name for sensor in sensors]
 
 

@@ -158,7 +158,6 @@ class DriverAction(rospy.SubscribeListener):
 
     @property
     def running(self) -> list[GoalCall]:
-        """Goals that have not ended."""
         with self._lock:
             self._running = [call for call in self._running if not call.done()]
             return list(self._running)

@@ -52,7 +52,6 @@ class NodeInterface:
         return rospy.get_param(self.resolve(name), default)
 
     def has_param(self, name: str) -> bool:
-        """Whether a parameter is set."""
         return rospy.has_param(self.resolve(name))
 
     def publisher(self, name: str, kind: type, **options: Any) -> rospy.Publisher:
@@ -103,7 +102,6 @@ class NodeInterface:
         self.service(name, kind, serve)
 
     def caller(self, name: str, kind: type) -> rospy.ServiceProxy:
-        """What calls a service."""
         return rospy.ServiceProxy(self.resolve(name), kind)
 
     def action(self, name: str, kind: type, goals: Any) -> None:

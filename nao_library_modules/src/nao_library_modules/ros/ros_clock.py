@@ -13,7 +13,6 @@ class RosClock:
 
     @property
     def simulated(self) -> bool:
-        """Whether it is the time on /clock."""
         return not is_wallclock()
 
     def now(self) -> float:

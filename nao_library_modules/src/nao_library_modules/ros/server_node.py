@@ -51,7 +51,6 @@ class ServerNode:
 
     @property
     def namespace(self) -> str:
-        """Namespace of the node."""
         return rospy.get_namespace()
 
     def frame_prefix(self) -> str:
@@ -96,7 +95,6 @@ class ServerNode:
     def publish_diagnostics(
         self, hardware_id: str, reports: Mapping[str, Callable[[], Report]]
     ) -> DiagnosticsPublisher:
-        """Begin to publish reports."""
         return DiagnosticsPublisher(hardware_id, reports)
 
     def serve_description(self, name: str, answer: Callable[[Any], Any]) -> None:

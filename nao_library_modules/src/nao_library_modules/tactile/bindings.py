@@ -119,7 +119,6 @@ class TouchBindings:
             return list(self._entries)
 
     def states(self) -> list[tuple[Binding, BindingState]]:
-        """All bindings and what became of them."""
         with self._lock:
             return [
                 (each.binding, BindingState(each.running, each.runs, each.last, each.text, each.touched))

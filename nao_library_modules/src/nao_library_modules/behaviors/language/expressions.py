@@ -50,7 +50,6 @@ class BadExpression(BadGoal):
     """An expression cannot be read or worked out."""
 
     def __init__(self, text: str, problem: str, allowed: str = GRAMMAR) -> None:
-        """Compose the text."""
         super().__init__("${" + text + "}", text, allowed, problem=problem)
 
 

@@ -101,7 +101,6 @@ class Wait(Step):
 
     @property
     def what(self) -> str:
-        """What it is."""
         return "wait"
 
 
@@ -113,7 +112,6 @@ class Barrier(Step):
 
     @property
     def what(self) -> str:
-        """What it is."""
         return f"barrier {self.name}"
 
 
@@ -125,7 +123,6 @@ class Composite(Step):
 
     @property
     def parts(self) -> tuple[Step, ...]:
-        """Its steps."""
         return self.steps
 
 
@@ -135,7 +132,6 @@ class Sequence(Composite):
 
     @property
     def what(self) -> str:
-        """What it is."""
         return "sequence"
 
 
@@ -145,7 +141,6 @@ class Parallel(Composite):
 
     @property
     def what(self) -> str:
-        """What it is."""
         return "parallel"
 
 
@@ -155,7 +150,6 @@ class Timeline(Composite):
 
     @property
     def what(self) -> str:
-        """What it is."""
         return "timeline"
 
 
@@ -172,7 +166,6 @@ class Repeat(Composite):
 
     @property
     def what(self) -> str:
-        """What it is."""
         return "repeat"
 
 
@@ -185,7 +178,6 @@ class Box(Step):
 
     @property
     def what(self) -> str:
-        """What it is."""
         return f"behavior {self.name}"
 
 

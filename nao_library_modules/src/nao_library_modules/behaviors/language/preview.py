@@ -46,7 +46,6 @@ class Preview:
 
 
 def preview_of(program: SequenceNode, tables: FunctionTables) -> Preview:
-    """Look at a program."""
     nodes = [node for part in program.parts for node in walk(part)]
     boxes = dict.fromkeys(node.box for node in nodes if isinstance(node, SequenceNode) and node.box)
     return Preview(

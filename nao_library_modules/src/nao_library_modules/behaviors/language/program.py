@@ -83,7 +83,6 @@ class Group(Node):
 
     @property
     def parts(self) -> tuple[Node, ...]:
-        """Its nodes."""
         return self.nodes
 
 

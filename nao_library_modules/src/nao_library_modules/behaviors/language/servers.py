@@ -37,7 +37,6 @@ Running = Callable[[], Iterable[str]]
 
 
 def nobody_describes(_server: str, _functions: Sequence[str] | None) -> DescribeFunctionsResponse:
-    """A `Describe` for where no servers are."""
     raise NotDescribed("no server was asked")
 
 

@@ -57,7 +57,6 @@ class BehaviorStore:
         return read(self._read(path), name, str(path))
 
     def exists(self, name: str) -> bool:
-        """Whether there is one of that name."""
         return self.of_user(name) or self.is_shipped(name)
 
     def is_shipped(self, name: str) -> bool:
@@ -65,7 +64,6 @@ class BehaviorStore:
         return (self.shipped / f"{require_name(name)}{SUFFIX}").is_file()
 
     def of_user(self, name: str) -> bool:
-        """Whether there is one of that name in the folder of the user."""
         return self.path(name).is_file()
 
     def users_of(self, name: str) -> list[str]:

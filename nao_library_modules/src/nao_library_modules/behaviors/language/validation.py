@@ -33,7 +33,6 @@ class Validation:
 
 
 def ask_nobody(_server: str, _goals: Sequence[Any]) -> GoalCheck:
-    """An `Ask` for where no servers are."""
     raise NotValidated("no server was asked")
 
 

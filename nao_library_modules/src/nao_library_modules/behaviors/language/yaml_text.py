@@ -155,6 +155,5 @@ def dump(value: Any) -> str:
 
 
 def dump_line(value: Any) -> str:
-    """A value as YAML in one line."""
     text = yaml.dump(value, Dumper=_Dumper, default_flow_style=True, sort_keys=False, width=10**9, allow_unicode=True)
     return text.replace("\n...\n", "").strip()

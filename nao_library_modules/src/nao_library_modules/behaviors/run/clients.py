@@ -97,7 +97,6 @@ class GoalLog:
             self.listen(server)
 
     def listen(self, server: ServerType) -> None:
-        """Listen to a server from now on."""
         with self._lock:
             if server.name in self._heard:
                 return

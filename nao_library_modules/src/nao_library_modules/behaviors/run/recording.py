@@ -66,7 +66,6 @@ class BehaviorRecording:
         self._tell(server, goal)
 
     def ended(self, goal_id: str, status: int, time: float) -> None:
-        """A goal ended."""
         with self._lock:
             heard = self._heard.get(goal_id)
             if heard is not None and heard.ended is None:

@@ -28,7 +28,6 @@ def to_face(face: Face, view: View, header: Header) -> FaceDetected:
 
 
 def to_landmarks(marks: Sequence[Landmark], view: View, header: Header) -> LandmarkDetected:
-    """Landmarks of one picture."""
     message = LandmarkDetected(header=header)
     message.mark_ids = [Int32(mark.number) for mark in marks]
     message.shape_alpha = [Float32(mark.shape.alpha) for mark in marks]

@@ -196,7 +196,6 @@ def the(kind: str, **description: Any) -> Designator:
 
 
 def all_(kind: str, **description: Any) -> Designator:
-    """All matches."""
     return Designator(kind, description, "all")
 
 
@@ -250,7 +249,6 @@ def _lisp_value(value: Any) -> Any:
 
 
 def plain_key(key: str) -> str:
-    """The key with _ for -."""
     return key.replace("-", "_")
 
 

@@ -42,7 +42,6 @@ def anything() -> Pattern:
 
 
 def text() -> Pattern:
-    """A text that is not blank."""
 
     def take(value: Any) -> str:
         if not isinstance(value, str) or not value.strip():
@@ -53,7 +52,6 @@ def text() -> Pattern:
 
 
 def number(lowest: float = SETTING.lowest, highest: float = SETTING.highest, unit: str = "") -> Pattern:
-    """A number in a range."""
     ends = "" if (lowest, highest) == SETTING[:2] else f" from {lowest:g} to {highest:g}"
 
     def take(value: Any) -> float:
@@ -94,7 +92,6 @@ def one_of(*values: Any) -> Pattern:
 
 
 def described(kind: str) -> Pattern:
-    """A designator of that kind."""
 
     def take(value: Any) -> Designator:
         if not isinstance(value, Designator) or value.kind != kind:

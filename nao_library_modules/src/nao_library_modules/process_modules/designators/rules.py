@@ -75,7 +75,6 @@ class Rule:
 
     @property
     def exact(self) -> int:
-        """Specificity."""
         return sum(pattern.exact for pattern in self.patterns.values())
 
     def match(self, desig: Designator) -> dict[str, Any]:

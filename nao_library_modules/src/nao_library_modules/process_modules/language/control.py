@@ -298,7 +298,6 @@ def _as_step(branch: Branch) -> Step:
 
 
 def _first(tasks: Iterable[Task]) -> Task:
-    """The task that ended first."""
     return min(tasks, key=lambda task: task.ending)  # type: ignore[arg-type, return-value]
 
 

@@ -31,7 +31,6 @@ class TaskState(enum.Enum):
 
     @property
     def over(self) -> bool:
-        """Whether it is final."""
         return self in OVER
 
 

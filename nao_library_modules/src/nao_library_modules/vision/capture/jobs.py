@@ -85,6 +85,5 @@ def unknown(ident: str, known: object) -> BadGoal:
 
 
 def too_many(ident: str) -> BadGoal:
-    """The error for one job too many."""
     problem = "there are too many streams and recordings"
     return BadGoal("id", ident, f"up to {MOST_JOBS}: deleteThread makes room", problem=problem)

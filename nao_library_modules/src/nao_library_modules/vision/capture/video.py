@@ -63,7 +63,6 @@ class VideoTrouble(NaoError):  # noqa: N818  named like the errors of the proxy 
 
 
 def known_codecs(file_type: str) -> list[str]:
-    """Codecs that this computer has for a type of file."""
     return [name for name, codec in CODECS.items() if file_type in codec.file_types and _has(codec.encoder)]
 
 
