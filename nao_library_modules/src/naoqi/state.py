@@ -33,22 +33,14 @@ class Timing:
     A silent robot is given up `heartbeat_period + heartbeat_limit` after its last sign of life at the latest,
     so the defaults make calls under way fail within 2 s. Raise the limit where a slow network carries large
     images: the answer to a heartbeat has to wait behind them.
-
-    Attributes:
-        heartbeat_period: Pause between two heartbeats.
-        heartbeat_limit: A heartbeat must be answered within this time.
-        connect_limit: An attempt to connect is given up after this time.
-        first_delay: Pause after the first failed attempt; it doubles with each further one.
-        longest_delay: Longest pause between two attempts.
-        patience: A robot that has not been reached for so long is complained about in the log.
     """
 
-    heartbeat_period: float = 0.3
-    heartbeat_limit: float = 1.3
-    connect_limit: float = 5.0
-    first_delay: float = 0.2
-    longest_delay: float = 2.0
-    patience: float = 10.0
+    heartbeat_period: float = 0.3  # pause between two heartbeats
+    heartbeat_limit: float = 1.3  # a heartbeat must be answered within this time
+    connect_limit: float = 5.0  # an attempt to connect is given up after this time
+    first_delay: float = 0.2  # pause after the first failed attempt; it doubles with each further one
+    longest_delay: float = 2.0  # longest pause between two attempts
+    patience: float = 10.0  # a robot that has not been reached for so long is complained about in the log
 
 
 Listener = Callable[[State], None]

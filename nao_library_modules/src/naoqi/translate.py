@@ -45,25 +45,15 @@ CONNECT_REASONS: Sequence[Tuple[str, Reason]] = (
 
 @dataclass(frozen=True)
 class CallSite:
-    """What is known about a call that failed.
+    """What is known about a call that failed."""
 
-    Attributes:
-        host: Name or address of the robot.
-        port: TCP port of NAOqi.
-        module: Name of the module.
-        method: Name of the method.
-        arguments: As they were sent.
-        overloads: Asked only when needed: the signatures of the method, in words.
-        methods: Asked only when needed: names of the methods of the module.
-    """
-
-    host: str
-    port: int
-    module: str
-    method: str
-    arguments: Tuple[Any, ...]
-    overloads: Callable[[], List[str]]
-    methods: Callable[[], List[str]]
+    host: str  # name or address of the robot
+    port: int  # TCP port of NAOqi
+    module: str  # name of the module
+    method: str  # name of the method
+    arguments: Tuple[Any, ...]  # as they were sent
+    overloads: Callable[[], List[str]]  # asked only when needed: the signatures of the method, in words
+    methods: Callable[[], List[str]]  # asked only when needed: names of the methods of the module
 
 
 def connect_reason(text: str) -> Reason:

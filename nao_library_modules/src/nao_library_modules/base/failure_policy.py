@@ -15,15 +15,10 @@ MOST_RETRIES = limit("retries").highest
 
 @dataclass(frozen=True)
 class FailurePolicy:
-    """How often a function that fails is tried again, and whether the chain goes on without it afterwards.
+    """How often a function that fails is tried again, and whether the chain goes on without it afterwards."""
 
-    Attributes:
-        retries: How often it is tried again.
-        skip: True: the chain goes on with the next function; False: the goal is aborted.
-    """
-
-    retries: int = 0
-    skip: bool = False
+    retries: int = 0  # how often it is tried again
+    skip: bool = False  # True: the chain goes on with the next function; False: the goal is aborted
 
     @classmethod
     def of(cls, text: str) -> FailurePolicy:

@@ -7,17 +7,11 @@ from typing import NamedTuple
 
 
 class Place(NamedTuple):
-    """A point on the floor and a heading; also the way that leads there from the origin.
+    """A point on the floor and a heading; also the way that leads there from the origin."""
 
-    Attributes:
-        x: m.
-        y: m.
-        yaw: rad, positive to the left.
-    """
-
-    x: float
-    y: float
-    yaw: float
+    x: float  # m
+    y: float  # m
+    yaw: float  # rad, positive to the left
 
     def then(self, way: Place) -> Place:
         """Where `way`, which is told in the frame of this place, leads."""

@@ -30,20 +30,13 @@ LOOK_PERIOD = 1.0
 
 @dataclass(frozen=True)
 class GoalEnd:
-    """How a goal ended.
+    """How a goal ended."""
 
-    Attributes:
-        server: Relative name of the action.
-        state: succeeded, aborted, preempted, ...
-        result: Its fields as plain values.
-        elapsed: s of this computer.
-    """
-
-    server: str
-    state: str
+    server: str  # relative name of the action
+    state: str  # succeeded, aborted, preempted, ..
     text: str
-    result: dict[str, Any]
-    elapsed: float
+    result: dict[str, Any]  # its fields as plain values
+    elapsed: float  # s of this computer
 
     @property
     def succeeded(self) -> bool:

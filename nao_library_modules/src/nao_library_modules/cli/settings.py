@@ -19,21 +19,13 @@ QUICK = 1.0
 
 @dataclass
 class CliSettings:
-    """Of one run.
+    """Of one run."""
 
-    Attributes:
-        json: Whether answers are JSON.
-        namespace: Of the robot; None: none was chosen.
-        timeout: s of this computer that a goal may take; None for ever.
-        completing: Whether the shell asks how a word can go on.
-        described_offline: Whether it was told that the answers come from the code.
-    """
-
-    json: bool = False
-    namespace: str | None = None
-    timeout: float | None = None
-    completing: bool = False
-    described_offline: bool = False
+    json: bool = False  # whether answers are JSON
+    namespace: str | None = None  # of the robot; None: none was chosen
+    timeout: float | None = None  # s of this computer that a goal may take; None for ever
+    completing: bool = False  # whether the shell asks how a word can go on
+    described_offline: bool = False  # whether it was told that the answers come from the code
     _stack: Stack | None = field(default=None, repr=False)
 
     @property

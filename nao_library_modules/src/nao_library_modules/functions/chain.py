@@ -64,21 +64,13 @@ def checked_by(check: Callable[..., None]) -> Callable[[Function], Function]:
 
 @dataclass(frozen=True)
 class ChainStep:
-    """One function of a chain, ready to run.
+    """One function of a chain, ready to run."""
 
-    Attributes:
-        position: Place in the chain, counted from 1.
-        function: Name in the function table.
-        args: Arguments in the order of the function's parameters.
-        sleep_time: s to wait afterwards.
-        policy: What becomes of the chain when it fails.
-    """
-
-    position: int
-    function: str
-    args: tuple[Any, ...]
-    sleep_time: float
-    policy: FailurePolicy = FailurePolicy()
+    position: int  # place in the chain, counted from 1
+    function: str  # name in the function table
+    args: tuple[Any, ...]  # arguments in the order of the function's parameters
+    sleep_time: float  # s to wait afterwards
+    policy: FailurePolicy = FailurePolicy()  # what becomes of the chain when it fails
 
 
 def seconds(duration: Any) -> float:

@@ -17,21 +17,13 @@ from .server_types import ACTIONS, server_type
 
 @dataclass(frozen=True)
 class OfflineServer:
-    """An action server as it would present itself.
+    """An action server as it would present itself."""
 
-    Attributes:
-        name: Relative name of the action.
-        action: Its type.
-        kind: Class of the module behind it.
-        table: NAOqi function name -> plain function of the class.
-        service: What would answer NAME/describe.
-    """
-
-    name: str
-    action: type
-    kind: type
-    table: Mapping[str, Callable[..., Any]]
-    service: DescribeService
+    name: str  # relative name of the action
+    action: type  # its type
+    kind: type  # class of the module behind it
+    table: Mapping[str, Callable[..., Any]]  # NAOqi function name -> plain function of the class
+    service: DescribeService  # what would answer NAME/describe
 
 
 def offline_servers() -> list[OfflineServer]:

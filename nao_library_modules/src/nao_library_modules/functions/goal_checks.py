@@ -23,21 +23,13 @@ WRONG_GOAL = (BadGoal, UnknownFunction)
 
 @dataclass(frozen=True)
 class GoalProblem:
-    """What is wrong with a function message of a goal, or what could not be told of it.
+    """What is wrong with a function message of a goal, or what could not be told of it."""
 
-    Attributes:
-        goal: Which of the goals, counted from 0.
-        index: Place of the function in it, counted from 0; -1: the goal as a whole.
-        function: Its name.
-        field: The field that is wrong; empty if it is none alone.
-        text: What is wrong, and what would be right.
-    """
-
-    goal: int
-    index: int
-    function: str
-    field: str
-    text: str
+    goal: int  # which of the goals, counted from 0
+    index: int  # place of the function in it, counted from 0; -1: the goal as a whole
+    function: str  # its name
+    field: str  # the field that is wrong; empty if it is none alone
+    text: str  # what is wrong, and what would be right
 
     def __str__(self) -> str:
         return f"function {self.index + 1} ({self.function}): {self.text}" if self.index >= 0 else self.text
@@ -45,15 +37,10 @@ class GoalProblem:
 
 @dataclass(frozen=True)
 class GoalCheck:
-    """What came of a check.
+    """What came of a check."""
 
-    Attributes:
-        problems: All that is wrong, in the order of the goals and their functions.
-        unchecked: Functions whose checks could not be finished, and why.
-    """
-
-    problems: Sequence[GoalProblem] = ()
-    unchecked: Sequence[GoalProblem] = ()
+    problems: Sequence[GoalProblem] = ()  # all that is wrong, in the order of the goals and their functions
+    unchecked: Sequence[GoalProblem] = ()  # functions whose checks could not be finished, and why
 
 
 def check_goals(module: Any, goals: Sequence[Any], elsewhere: bool = False) -> GoalCheck:

@@ -13,17 +13,11 @@ _MORE = re.compile(r"\s+#\s*(?P<comment>.*)")
 
 @dataclass(frozen=True)
 class MessageField:
-    """A field of a message.
+    """A field of a message."""
 
-    Attributes:
-        name: Its name.
-        type: Its type as messages write it.
-        comment: What the definition says about it, in one line.
-    """
-
-    name: str
-    type: str
-    comment: str
+    name: str  # its name
+    type: str  # its type as messages write it
+    comment: str  # what the definition says about it, in one line
 
     @property
     def is_time(self) -> bool:

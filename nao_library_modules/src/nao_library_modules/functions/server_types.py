@@ -40,21 +40,13 @@ def those_in(space: str, names: Iterable[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class ServerType:
-    """Types of one server.
+    """Types of one server."""
 
-    Attributes:
-        name: Relative name of the server.
-        action: Type of its action, as NaoLedAction.
-        goal: Type of its goals; their first field is the list of function messages.
-        function: Type of the function messages, as LedFunction.
-        path: The class behind it, in this package: lights.NaoLights; empty if it is none of this package's servers.
-    """
-
-    name: str
-    action: type
-    goal: type
-    function: type
-    path: str
+    name: str  # relative name of the server
+    action: type  # type of its action, as NaoLedAction
+    goal: type  # type of its goals; their first field is the list of function messages
+    function: type  # type of the function messages, as LedFunction
+    path: str  # the class behind it, in this package: lights.NaoLights; empty if it is none of this package's servers
 
     @property
     def ours(self) -> bool:

@@ -14,17 +14,11 @@ FILE = "head.json"
 
 @dataclass(frozen=True)
 class CameraMount:
-    """A camera on the head.
+    """A camera on the head."""
 
-    Attributes:
-        ahead: Of the head's pitch axis, m, the head level.
-        above: That axis, m.
-        down: Angle below the head's X axis that it looks at, rad.
-    """
-
-    ahead: float
-    above: float
-    down: float
+    ahead: float  # of the head's pitch axis, m, the head level
+    above: float  # that axis, m
+    down: float  # angle below the head's X axis that it looks at, rad
 
 
 @dataclass(frozen=True)

@@ -56,14 +56,10 @@ class LightNames:
     A single light has a short name (`LeftFaceLed1`), or is one LED under its device name
     (`Face/Led/Red/Left/0Deg/Actuator/Value`). Groups are used like single lights everywhere, and so are the plain words
     for them: `Eyes` is `FaceLeds`.
-
-    Attributes:
-        lights: Short name -> device names.
-        groups: Name of a group -> single lights in it, groups in groups resolved.
     """
 
-    lights: Mapping[str, tuple[str, ...]]
-    groups: Mapping[str, tuple[str, ...]]
+    lights: Mapping[str, tuple[str, ...]]  # short name -> device names
+    groups: Mapping[str, tuple[str, ...]]  # name of a group -> single lights in it, groups in groups resolved
 
     @classmethod
     def from_listings(cls, lights: Mapping[str, Sequence[str]], groups: Mapping[str, Sequence[str]]) -> LightNames:

@@ -49,17 +49,11 @@ class UnknownPose(NaoError):  # noqa: N818  named like the errors of the proxy l
 
 @dataclass(frozen=True)
 class Pose:
-    """Angles that joints take together.
+    """Angles that joints take together."""
 
-    Attributes:
-        joints: Names of joints and chains.
-        positions: rad (hands: 0..1), one for each joint behind the names.
-        time: s to get there.
-    """
-
-    joints: tuple[str, ...]
-    positions: tuple[float, ...]
-    time: float
+    joints: tuple[str, ...]  # names of joints and chains
+    positions: tuple[float, ...]  # rad (hands: 0..1), one for each joint behind the names
+    time: float  # s to get there
 
 
 def pose_table(table: Any) -> dict[str, Pose]:

@@ -12,19 +12,12 @@ from .body_devices import sensor_key
 
 @dataclass(frozen=True)
 class Sensor:
-    """Something that can be touched.
+    """Something that can be touched."""
 
-    Attributes:
-        name: Its short name.
-        event: The event of the robot's memory that tells of it.
-        devices: Its switches or plates, by their names in the robot's memory.
-        groups: Groups that it is in.
-    """
-
-    name: str
-    event: str
-    devices: tuple[str, ...]
-    groups: tuple[str, ...]
+    name: str  # its short name
+    event: str  # the event of the robot's memory that tells of it
+    devices: tuple[str, ...]  # its switches or plates, by their names in the robot's memory
+    groups: tuple[str, ...]  # groups that it is in
 
     @property
     def keys(self) -> tuple[str, ...]:

@@ -34,17 +34,11 @@ class Replaced(Preempted):  # noqa: N818  a signal, like Preempted
 
 @dataclass
 class GoalOutcome:
-    """How a goal ended, as its executor tells it.
+    """How a goal ended, as its executor tells it."""
 
-    Attributes:
-        result: Result message.
-        preempted: Whether it was ended before time.
-        error: Why it failed, for goals whose result says more; empty if it did not.
-    """
-
-    result: Any
-    preempted: bool = False
-    error: str = ""
+    result: Any  # result message
+    preempted: bool = False  # whether it was ended before time
+    error: str = ""  # why it failed, for goals whose result says more; empty if it did not
 
 
 @dataclass(eq=False)

@@ -23,17 +23,11 @@ class Level(IntEnum):
 
 @dataclass(frozen=True)
 class Report:
-    """One line of diagnostics.
+    """One line of diagnostics."""
 
-    Attributes:
-        level: Severity.
-        message: What is the matter, in words.
-        values: Facts by name.
-    """
-
-    level: Level
-    message: str
-    values: dict[str, str] = field(default_factory=dict)
+    level: Level  # severity
+    message: str  # what is the matter, in words
+    values: dict[str, str] = field(default_factory=dict)  # facts by name
 
 
 class GoalCounter:

@@ -24,17 +24,11 @@ log = logging.getLogger(__name__)
 
 
 class Event(NamedTuple):
-    """An event of the robot's memory.
+    """An event of the robot's memory."""
 
-    Attributes:
-        name: Its name.
-        value: What it says.
-        arrived: ROS time of its arrival, s; `event_time` knows when it was raised.
-    """
-
-    name: str
-    value: Any
-    arrived: float
+    name: str  # its name
+    value: Any  # what it says
+    arrived: float  # ROS time of its arrival, s; `event_time` knows when it was raised
 
 
 class Events:

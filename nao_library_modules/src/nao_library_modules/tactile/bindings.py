@@ -25,42 +25,25 @@ IDLE_LOOK = 3600.0
 
 @dataclass(frozen=True)
 class Binding:
-    """A touch and what it starts.
+    """A touch and what it starts."""
 
-    Attributes:
-        name: What the link is called.
-        sensors: Any of them starts it.
-        wanted: What kind of touch.
-        behavior: Name of the behaviour.
-        parameters: Its parameters, each as name=value.
-        cooldown: s after its end in which touches do not count.
-    """
-
-    name: str
-    sensors: tuple[Sensor, ...]
-    wanted: WantedTouch
-    behavior: str
-    parameters: tuple[str, ...] = ()
-    cooldown: float = 0.0
+    name: str  # what the link is called
+    sensors: tuple[Sensor, ...]  # any of them starts it
+    wanted: WantedTouch  # what kind of touch
+    behavior: str  # name of the behaviour
+    parameters: tuple[str, ...] = ()  # its parameters, each as name=value
+    cooldown: float = 0.0  # s after its end in which touches do not count
 
 
 @dataclass(frozen=True)
 class BindingState:
-    """What became of a binding so far.
+    """What became of a binding so far."""
 
-    Attributes:
-        running: Whether its behaviour runs.
-        runs: How often it was started.
-        last: How it ended last; empty if it never has.
-        text: What was said about that.
-        touched: ROS time, s, of the first contact of the touch that started it last; 0 if none has.
-    """
-
-    running: bool = False
-    runs: int = 0
-    last: str = ""
-    text: str = ""
-    touched: float = 0.0
+    running: bool = False  # whether its behaviour runs
+    runs: int = 0  # how often it was started
+    last: str = ""  # how it ended last; empty if it never has
+    text: str = ""  # what was said about that
+    touched: float = 0.0  # ROS time, s, of the first contact of the touch that started it last; 0 if none has
 
 
 class BehaviorRunner(Protocol):

@@ -15,31 +15,19 @@ SWAPPED = 0.05
 
 @dataclass(frozen=True)
 class WantedTouch:
-    """A kind of touch.
+    """A kind of touch."""
 
-    Attributes:
-        kind: One of `KINDS`.
-        count: How many presses (count).
-        duration: s, how long a hold lasts, or within what time a count has to come.
-    """
-
-    kind: str = PRESS
-    count: int = 2
-    duration: float = 1.0
+    kind: str = PRESS  # one of `KINDS`
+    count: int = 2  # how many presses (count)
+    duration: float = 1.0  # s, how long a hold lasts, or within what time a count has to come
 
 
 class Contact(NamedTuple):
-    """One touch of a sensor.
+    """One touch of a sensor."""
 
-    Attributes:
-        name: Short name of the sensor.
-        begin: ROS time of the first contact, s.
-        end: That of the last one; 0 while it lasts.
-    """
-
-    name: str
-    begin: float
-    end: float = 0.0
+    name: str  # short name of the sensor
+    begin: float  # ROS time of the first contact, s
+    end: float = 0.0  # that of the last one; 0 while it lasts
 
 
 class TouchWatch:

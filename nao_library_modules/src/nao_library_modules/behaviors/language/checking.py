@@ -116,23 +116,15 @@ def _problems(error: NaoError) -> tuple[Problem, ...]:
 
 @dataclass(frozen=True)
 class Facts:
-    """What there is to know about a stored behaviour.
-
-    Attributes:
-        behavior: It; None if its file cannot be read.
-        problem: What is wrong with it, in one text that may be cut; empty if it can be run.
-        problems: All that is wrong with it, one by one; none if it can be run.
-        preview: What it would do; empty where nobody asked for that.
-        unvalidated: Servers that did not check their goals, and why.
-    """
+    """What there is to know about a stored behaviour."""
 
     name: str
-    behavior: Behavior | None
+    behavior: Behavior | None  # it; None if its file cannot be read
     servers: tuple[str, ...]
-    problem: str
-    problems: tuple[Problem, ...] = ()
-    preview: Preview = Preview()
-    unvalidated: tuple[str, ...] = ()
+    problem: str  # what is wrong with it, in one text that may be cut; empty if it can be run
+    problems: tuple[Problem, ...] = ()  # all that is wrong with it, one by one; none if it can be run
+    preview: Preview = Preview()  # what it would do; empty where nobody asked for that
+    unvalidated: tuple[str, ...] = ()  # servers that did not check their goals, and why
 
 
 def facts_of(name: str, library: Library, tables: FunctionTables) -> Facts:

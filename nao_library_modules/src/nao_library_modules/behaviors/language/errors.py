@@ -25,19 +25,12 @@ MOST_TOLD = 10
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong.
+    """One thing that is wrong."""
 
-    Attributes:
-        where: Path of the step, or the part of the file: "step 2.1", "parameters"; empty: the file as a whole.
-        text: What is wrong, and what is allowed.
-        line: Of the file, counted from 1; 0 if it is not known.
-        file: Path of the file; empty: a text of no file.
-    """
-
-    where: str
-    text: str
-    line: int = 0
-    file: str = ""
+    where: str  # path of the step, or the part of the file: "step 2.1", "parameters"; empty: the file as a whole
+    text: str  # what is wrong, and what is allowed
+    line: int = 0  # of the file, counted from 1; 0 if it is not known
+    file: str = ""  # path of the file; empty: a text of no file
 
     def __str__(self) -> str:
         if self.file:

@@ -26,25 +26,15 @@ def child(path: PathParts, number: int, separator: str = ".") -> PathParts:
 
 @dataclass(frozen=True)
 class Step(ABC):
-    """What all steps have.
+    """What all steps have."""
 
-    Attributes:
-        path: Where it stands.
-        line: Of the file; 0 if it is not known.
-        label: Its name on a timeline; may be empty.
-        policy: What happens when it fails.
-        limit: s after which it is ended and counts as done; None for no limit. May hold `${}`.
-        at: When it begins, on a timeline.
-        whole: Whether all of it could be read; what is inside of it does not count.
-    """
-
-    path: PathParts
-    line: int = 0
-    label: str = ""
-    policy: FailurePolicy = FailurePolicy()
-    limit: Any = None
-    at: At | None = None
-    whole: bool = True
+    path: PathParts  # where it stands
+    line: int = 0  # of the file; 0 if it is not known
+    label: str = ""  # its name on a timeline; may be empty
+    policy: FailurePolicy = FailurePolicy()  # what happens when it fails
+    limit: Any = None  # s after which it is ended and counts as done; None for no limit. May hold `${}`
+    at: At | None = None  # when it begins, on a timeline
+    whole: bool = True  # whether all of it could be read; what is inside of it does not count
 
     @property
     @abstractmethod
@@ -71,14 +61,10 @@ class Unreadable(Step):
 
 @dataclass(frozen=True)
 class Functions(Step):
-    """One goal for a server: a function, or a chain of them.
-
-    Attributes:
-        functions: Fields of each function message.
-    """
+    """One goal for a server: a function, or a chain of them."""
 
     server: str = ""
-    functions: Tuple[Mapping[str, Any], ...] = ()
+    functions: Tuple[Mapping[str, Any], ...] = ()  # fields of each function message
     chained: bool = False
 
     @property
@@ -91,13 +77,9 @@ class Functions(Step):
 
 @dataclass(frozen=True)
 class Wait(Step):
-    """Let time pass.
+    """Let time pass."""
 
-    Attributes:
-        duration: s of ROS time.
-    """
-
-    duration: Any = 0.0
+    duration: Any = 0.0  # s of ROS time
 
     @property
     def what(self) -> str:
@@ -155,14 +137,10 @@ class Timeline(Composite):
 
 @dataclass(frozen=True)
 class Repeat(Composite):
-    """A sequence several times.
-
-    Attributes:
-        variable: Parameter that has the number of the round, counted from 1; may be empty.
-    """
+    """A sequence several times."""
 
     count: Any = 1
-    variable: str = ""
+    variable: str = ""  # parameter that has the number of the round, counted from 1; may be empty
 
     @property
     def what(self) -> str:
@@ -183,17 +161,11 @@ class Box(Step):
 
 @dataclass(frozen=True)
 class Behavior:
-    """A behaviour.
-
-    Attributes:
-        help: What it does, in a line.
-        tags: What it is filed under.
-        file: Path of its file; empty if it is none.
-    """
+    """A behaviour."""
 
     name: str
-    help: str
+    help: str  # what it does, in a line
     parameters: Mapping[str, Parameter]
     body: Sequence
-    tags: Tuple[str, ...] = ()
-    file: str = ""
+    tags: Tuple[str, ...] = ()  # what it is filed under
+    file: str = ""  # path of its file; empty if it is none

@@ -31,22 +31,16 @@ def kind_of(value: Any) -> str | None:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a behaviour.
-
-    Attributes:
-        default: Value where none is given; its kind is that of the parameter. `UNKNOWN`: the file is wrong about it.
-        choices: Values that it may have; empty: any.
-        line: Of its file, where it is declared; 0 if it is not known.
-    """
+    """A parameter of a behaviour."""
 
     name: str
-    default: Any
+    default: Any  # value where none is given; its kind is that of the parameter. `UNKNOWN`: the file is wrong about it
     help: str
-    choices: tuple[Any, ...] = ()
+    choices: tuple[Any, ...] = ()  # values that it may have; empty: any
     lowest: float = -math.inf
     highest: float = math.inf
     unit: str = ""
-    line: int = 0
+    line: int = 0  # of its file, where it is declared; 0 if it is not known
 
     @property
     def kind(self) -> str:

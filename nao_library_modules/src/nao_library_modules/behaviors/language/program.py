@@ -13,27 +13,17 @@ from .times import At
 
 @dataclass(frozen=True)
 class Node:
-    """A step that can run.
+    """A step that can run."""
 
-    Attributes:
-        path: Where it stands, boxes and rounds included.
-        behavior: File that it is in.
-        policy: What happens when it fails.
-        limit: s after which it is ended and counts as done; None for no limit.
-        at: When it begins, on a timeline.
-        file: Path of the file; empty: a text of no file.
-        line: Of the file; 0 if it is not known.
-    """
-
-    path: PathParts
-    behavior: str
+    path: PathParts  # where it stands, boxes and rounds included
+    behavior: str  # file that it is in
     label: str
     what: str
-    policy: FailurePolicy = FailurePolicy()
-    limit: float | None = None
-    at: At = At()
-    file: str = ""
-    line: int = 0
+    policy: FailurePolicy = FailurePolicy()  # what happens when it fails
+    limit: float | None = None  # s after which it is ended and counts as done; None for no limit
+    at: At = At()  # when it begins, on a timeline
+    file: str = ""  # path of the file; empty: a text of no file
+    line: int = 0  # of the file; 0 if it is not known
 
     @property
     def where(self) -> str:
@@ -63,16 +53,11 @@ class Pause(Node):
 
 @dataclass(frozen=True)
 class BarrierNode(Node):
-    """A barrier.
-
-    Attributes:
-        home: Path of the parallel whose branches meet here; None on a timeline.
-        branch: Number of the branch that it is in, counted from 1.
-    """
+    """A barrier."""
 
     name: str = ""
-    home: PathParts | None = None
-    branch: int = 0
+    home: PathParts | None = None  # path of the parallel whose branches meet here; None on a timeline
+    branch: int = 0  # number of the branch that it is in, counted from 1
 
 
 @dataclass(frozen=True)
@@ -88,13 +73,9 @@ class Group(Node):
 
 @dataclass(frozen=True)
 class SequenceNode(Group):
-    """One after the other.
+    """One after the other."""
 
-    Attributes:
-        box: Behaviour that runs here, of a box; empty of what is none.
-    """
-
-    box: str = ""
+    box: str = ""  # behaviour that runs here, of a box; empty of what is none
 
 
 class ParallelNode(Group):
@@ -107,14 +88,10 @@ class OnTimeline(Group):
 
 @dataclass(frozen=True)
 class RepeatNode(Node):
-    """A sequence several times.
-
-    Attributes:
-        round: The sequence of a round, counted from 1.
-    """
+    """A sequence several times."""
 
     count: int = 0
-    round: Callable[[int], Node] = lambda number: Node((), "", "", "")
+    round: Callable[[int], Node] = lambda number: Node((), "", "", "")  # the sequence of a round, counted from 1
 
     @property
     def parts(self) -> tuple[Node, ...]:

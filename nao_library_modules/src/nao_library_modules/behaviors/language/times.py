@@ -15,17 +15,11 @@ ALLOWED = "s from the beginning of the timeline, LABEL, LABEL.end, or one of the
 
 @dataclass(frozen=True)
 class At:
-    """When an entry begins.
+    """When an entry begins."""
 
-    Attributes:
-        offset: s, >= 0, from the beginning of the timeline or from the label; may hold `${}`.
-        label: Entry or barrier that it depends on; empty: the beginning of the timeline.
-        of_end: Whether it is the end of that entry that counts, not its beginning.
-    """
-
-    offset: Any = 0.0
-    label: str = ""
-    of_end: bool = False
+    offset: Any = 0.0  # s, >= 0, from the beginning of the timeline or from the label; may hold `${}`
+    label: str = ""  # entry or barrier that it depends on; empty: the beginning of the timeline
+    of_end: bool = False  # whether it is the end of that entry that counts, not its beginning
 
 
 def at_of(value: Any) -> At:

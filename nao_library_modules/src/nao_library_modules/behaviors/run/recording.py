@@ -22,19 +22,13 @@ MOST_GOALS = 10_000
 
 @dataclass
 class HeardGoal:
-    """A goal that was sent.
-
-    Attributes:
-        time: When it was sent, s.
-        ended: When it ended; None if that did not come.
-        status: How it ended, of GoalStatus.
-    """
+    """A goal that was sent."""
 
     server: str
     goal: Any
-    time: float
-    ended: float | None = None
-    status: int = GoalStatus.PENDING
+    time: float  # when it was sent, s
+    ended: float | None = None  # when it ended; None if that did not come
+    status: int = GoalStatus.PENDING  # how it ended, of GoalStatus
 
 
 class BehaviorRecording:

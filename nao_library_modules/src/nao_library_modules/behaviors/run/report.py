@@ -46,18 +46,12 @@ class StepRecord:
 
 @dataclass(frozen=True)
 class StepEvent:
-    """Something that happened to a step.
-
-    Attributes:
-        state: One of the constants of this module.
-        time: s from the beginning of the behaviour.
-        text: Why, by how much, or what its server told.
-    """
+    """Something that happened to a step."""
 
     node: Node
-    state: str
-    time: float
-    text: str = ""
+    state: str  # one of the constants of this module
+    time: float  # s from the beginning of the behaviour
+    text: str = ""  # why, by how much, or what its server told
 
 
 class RunReport:

@@ -193,17 +193,11 @@ def behavior(context: click.Context, name: str, seconds: float | None, overwrite
 
 @dataclass(frozen=True)
 class Recorded:
-    """How a recording ended.
+    """How a recording ended."""
 
-    Attributes:
-        end: Of its goal.
-        by_hand: Whether it went on until Ctrl-C, as it was to.
-        interruption: What this program ended it for, otherwise.
-    """
-
-    end: GoalEnd
-    by_hand: bool = False
-    interruption: click.ClickException | None = None
+    end: GoalEnd  # of its goal
+    by_hand: bool = False  # whether it went on until Ctrl-C, as it was to
+    interruption: click.ClickException | None = None  # what this program ended it for, otherwise
 
     @property
     def as_asked(self) -> bool:

@@ -26,22 +26,15 @@ SAME = 0.15
 
 @dataclass(frozen=True)
 class KnownObject:
-    """A thing in the world.
-
-    Attributes:
-        position: The middle of its box.
-        size: (length, width, height) of its box, m; (0, 0, 0) if unknown.
-        yaw: Rotation of the box, rad, in the frame of the position.
-        seen: When it was seen last, s of the observer's clock; None if never.
-    """
+    """A thing in the world."""
 
     name: str
     type: str
-    position: Point3
-    size: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    yaw: float = 0.0
+    position: Point3  # the middle of its box
+    size: tuple[float, float, float] = (0.0, 0.0, 0.0)  # (length, width, height) of its box, m; (0, 0, 0) if unknown
+    yaw: float = 0.0  # rotation of the box, rad, in the frame of the position
     facts: Mapping[str, Any] = field(default_factory=dict)
-    seen: float | None = None
+    seen: float | None = None  # when it was seen last, s of the observer's clock; None if never
 
     def distance_to(self, x: float, y: float) -> float:
         """From a point on the floor to the edge of its box, m; 0 inside. In the frame of its position."""

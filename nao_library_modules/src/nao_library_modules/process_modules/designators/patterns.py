@@ -19,18 +19,12 @@ class Mismatch(Exception):  # noqa: N818  caught by the matcher
 
 @dataclass(frozen=True)
 class Pattern:
-    """A pattern for a value.
-
-    Attributes:
-        take: Converts the value to what the rule receives; raises Mismatch.
-        default: For an absent key; a key without a default is required.
-        exact: Specificity: more specific rules are tried first.
-    """
+    """A pattern for a value."""
 
     wanted: str
-    take: Callable[[Any], Any]
-    default: Any = ...
-    exact: int = 1
+    take: Callable[[Any], Any]  # converts the value to what the rule receives; raises Mismatch
+    default: Any = ...  # for an absent key; a key without a default is required
+    exact: int = 1  # specificity: more specific rules are tried first
 
     def or_else(self, default: Any) -> Pattern:
         """The same pattern, for an optional key."""

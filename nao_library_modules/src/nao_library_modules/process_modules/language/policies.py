@@ -29,22 +29,14 @@ PERIOD = 0.1
 
 @dataclass(frozen=True)
 class Policy:
-    """A condition to watch while a body runs.
-
-    Attributes:
-        check: A fluent, or a function that is polled; the body ends when it is true.
-        init: Runs first; the body does not begin when it returns False.
-        recover: Runs when the condition has come true, after the end of the body.
-        clean_up: Runs at the end in any case, uninterrupted.
-        period: Between two polls, s.
-    """
+    """A condition to watch while a body runs."""
 
     name: str
-    check: Union[AnyFluent, Callable[[], Any]]
-    init: Callable[[], Any] | None = None
-    recover: Callable[[], Any] | None = None
-    clean_up: Callable[[], Any] | None = None
-    period: float = PERIOD
+    check: Union[AnyFluent, Callable[[], Any]]  # a fluent, or a function that is polled; the body ends when it is true
+    init: Callable[[], Any] | None = None  # runs first; the body does not begin when it returns False
+    recover: Callable[[], Any] | None = None  # runs when the condition has come true, after the end of the body
+    clean_up: Callable[[], Any] | None = None  # runs at the end in any case, uninterrupted
+    period: float = PERIOD  # between two polls, s
     failure: Type[PolicyCheckConditionMet] = PolicyCheckConditionMet
 
 

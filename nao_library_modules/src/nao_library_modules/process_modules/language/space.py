@@ -24,17 +24,12 @@ class Point3(NamedTuple):
 
 
 class Position(NamedTuple):
-    """Where something is meant to be, as plans write it: `Position(2, 3)`. A point without a heading.
-
-    Attributes:
-        z: None for the default height: the eyes for the head, the floor for walking.
-        frame: Of /tf; empty for the default: torso for arms and head, odom for walking.
-    """
+    """Where something is meant to be, as plans write it: `Position(2, 3)`. A point without a heading."""
 
     x: float
     y: float
-    z: float | None = None
-    frame: str = ""
+    z: float | None = None  # None for the default height: the eyes for the head, the floor for walking
+    frame: str = ""  # of /tf; empty for the default: torso for arms and head, odom for walking
 
 
 def turned(point: Sequence[float], quaternion: Sequence[float]) -> tuple[float, float, float]:

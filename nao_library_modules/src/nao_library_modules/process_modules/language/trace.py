@@ -22,25 +22,17 @@ LONGEST = 160
 
 @dataclass(frozen=True)
 class Record:
-    """One task, as it was when the record was taken.
+    """One task, as it was when the record was taken."""
 
-    Attributes:
-        number: In the order of creation, from 0.
-        parent: Number of the parent task; None at the root.
-        created: s since the creation of the root, as `began` and `ended`, which are None until then.
-        result: As text; empty for none.
-        failure: Class and text of the failure; or why it was evaporated or suspended.
-    """
-
-    number: int
-    parent: int | None
+    number: int  # in the order of creation, from 0
+    parent: int | None  # number of the parent task; None at the root
     name: str
     state: str
-    created: float
+    created: float  # s since the creation of the root, as `began` and `ended`, which are None until then
     began: float | None
     ended: float | None
-    result: str
-    failure: str
+    result: str  # as text; empty for none
+    failure: str  # class and text of the failure; or why it was evaporated or suspended
     facts: dict[str, str]
 
 

@@ -30,23 +30,15 @@ DETECTORS = {
 
 @dataclass(frozen=True)
 class SeenThing:
-    """Something that was seen.
-
-    Attributes:
-        name: Of a face, a landmark's number, a code's text; empty if unknown.
-        position: In odom; None if only the direction is known.
-        time: s of ROS time.
-        alpha: rad, positive to the left of the camera's axis.
-        beta: rad, positive below it.
-    """
+    """Something that was seen."""
 
     type: str
-    name: str
-    position: Point3 | None
-    time: float
+    name: str  # of a face, a landmark's number, a code's text; empty if unknown
+    position: Point3 | None  # in odom; None if only the direction is known
+    time: float  # s of ROS time
     confidence: float
-    alpha: float
-    beta: float
+    alpha: float  # rad, positive to the left of the camera's axis
+    beta: float  # rad, positive below it
 
 
 class Vision(RobotModule):

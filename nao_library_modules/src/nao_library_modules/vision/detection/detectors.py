@@ -75,21 +75,13 @@ DETECTORS = {
 
 @dataclass(frozen=True)
 class WantedDetection:
-    """What a function looks for.
+    """What a function looks for."""
 
-    Attributes:
-        kind: ball, face, landmark, code or movement.
-        name: Only the thing of this name; empty for all.
-        confidence: Least confidence, 0..1; a face with less is unknown, anything else does not count.
-        size: Real size, m; 0 for the usual one.
-        camera: Index of the camera; None for the active one.
-    """
-
-    kind: str
-    name: str = ""
-    confidence: float = 0.0
-    size: float = 0.0
-    camera: int | None = None
+    kind: str  # ball, face, landmark, code or movement
+    name: str = ""  # only the thing of this name; empty for all
+    confidence: float = 0.0  # least confidence, 0..1; a face with less is unknown, anything else does not count
+    size: float = 0.0  # real size, m; 0 for the usual one
+    camera: int | None = None  # index of the camera; None for the active one
 
     def picks(self, detection: Detection) -> Detection | None:
         """A detection as it counts; None if it does not."""
