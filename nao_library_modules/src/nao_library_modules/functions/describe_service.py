@@ -64,24 +64,9 @@ class DescribeService:
 
 
 def function_message(described: Described) -> FunctionDescription:
-    return FunctionDescription(
-        name=described.name,
-        help=described.help,
-        answers=described.answers,
-        shared=described.shared,
-        arguments=[argument_message(argument) for argument in described.arguments],
-    )
+    arguments = [argument_message(argument) for argument in described.arguments]
+    return FunctionDescription(**{**vars(described), "arguments": arguments})
 
 
 def argument_message(argument: Argument) -> ArgumentDescription:
-    return ArgumentDescription(
-        name=argument.name,
-        type=argument.type,
-        unit=argument.unit,
-        default=argument.default,
-        help=argument.help,
-        allowed=argument.allowed,
-        choices=list(argument.choices),
-        minimum=argument.minimum,
-        maximum=argument.maximum,
-    )
+    return ArgumentDescription(**{**vars(argument), "choices": list(argument.choices)})
