@@ -10,12 +10,7 @@ from almath.velocities import Velocity6D
 
 
 class Displacement:
-    """A translation and a rotation.
-
-    Attributes:
-        P: The translation, in m.
-        Q: The rotation.
-    """
+    """A translation and a rotation. `P`: the translation, in m. `Q`: the rotation."""
 
     def __init__(self, P: Position3D | None = None, Q: Quaternion | None = None) -> None:
         """Copy the parts; one that is left out is the identity."""
@@ -44,12 +39,7 @@ class Displacement:
 
 
 class TransformAndVelocity6D:
-    """Where a frame is and how it moves.
-
-    Attributes:
-        T: The frame.
-        V: Its velocity.
-    """
+    """Where a frame is and how it moves. `T`: the frame. `V`: its velocity."""
 
     def __init__(self, T: Transform | None = None, V: Velocity6D | None = None) -> None:
         """Copy the parts; without them the frame is the identity, at rest."""

@@ -33,8 +33,7 @@ class NaoError(RuntimeError):
 class RobotUnreachable(NaoError):
     """There is no connection to NAOqi at this address, and the call was not sent.
 
-    Attributes:
-        check: What to look at; may be empty.
+    `check`: what to look at; may be empty.
     """
 
     def __init__(self, host: str, port: int, reason: str, check: str = "") -> None:
@@ -46,11 +45,7 @@ class RobotUnreachable(NaoError):
 
 
 class ConnectionLost(RobotUnreachable):
-    """The connection broke during the call; whether the robot carried it out is unknown.
-
-    Attributes:
-        call: `Module.method`.
-    """
+    """The connection broke during the call, `Module.method`; whether the robot carried it out is unknown."""
 
     def __init__(self, host: str, port: int, reason: str, call: str) -> None:
         super().__init__(host, port, f"{call} was under way when the connection broke ({reason})")
@@ -60,9 +55,7 @@ class ConnectionLost(RobotUnreachable):
 class UnknownModule(NaoError):
     """The robot has no module of that name.
 
-    Attributes:
-        closest: Known names that look like it, best first.
-        modules: All names the robot knows.
+    `closest`: known names that look like it, best first. `modules`: all names the robot knows.
     """
 
     def __init__(self, module: str, address: str, closest: Sequence[str], modules: Sequence[str]) -> None:
@@ -76,9 +69,7 @@ class UnknownModule(NaoError):
 class UnknownMethod(NaoError, AttributeError):
     """The module has no method of that name; `hasattr(proxy, name)` is False for it.
 
-    Attributes:
-        closest: Known names that look like it, best first.
-        methods: All methods of the module.
+    `closest`: known names that look like it, best first. `methods`: all methods of the module.
     """
 
     def __init__(self, module: str, method: str, closest: Sequence[str], methods: Sequence[str]) -> None:
@@ -92,9 +83,8 @@ class UnknownMethod(NaoError, AttributeError):
 class BadArguments(NaoError):
     """The arguments of a call do not fit.
 
-    Attributes:
-        signatures: What the method accepts, in readable types, one text for each overload.
-        reason: What does not fit; may be empty.
+    `signatures`: what the method accepts, in readable types, one text for each overload. `reason`: what does not fit;
+    may be empty.
     """
 
     def __init__(
@@ -153,11 +143,7 @@ class RobotError(NaoError):
 
 
 class BrokerError(NaoError):
-    """An ALBroker is missing, has been shut down, or cannot serve what it was given.
-
-    Attributes:
-        broker: Its name; empty if there is none.
-    """
+    """An ALBroker is missing (then its name is empty), has been shut down, or cannot serve what it was given."""
 
     def __init__(self, broker: str, reason: str) -> None:
         super().__init__(f"broker {broker!r}: {reason}" if broker else reason)

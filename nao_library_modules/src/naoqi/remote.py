@@ -34,7 +34,6 @@ class RemoteModule:
     """
 
     def __init__(self, name: str, connection: Connection, timeout: Optional[float] = None) -> None:
-        """Name a module; nothing is sent yet."""
         self.name = name
         self.connection = connection
         self.timeout = timeout
@@ -106,7 +105,6 @@ class RemoteMethod:
     __slots__ = ("_bound", "_live", "_service", "module", "name")
 
     def __init__(self, module: RemoteModule, name: str) -> None:
-        """Name a method; nothing is sent yet."""
         self.module = module
         self.name = name
         self._live: Optional[Live] = None

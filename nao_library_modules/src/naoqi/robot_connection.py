@@ -77,7 +77,6 @@ class Connection:
         self._watcher.start()
 
     def __repr__(self) -> str:
-        """Address and state."""
         return f"<Connection {self.address} {self._state}>"
 
     @property

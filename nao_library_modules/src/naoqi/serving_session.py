@@ -26,8 +26,7 @@ NAME_IN_USE = "already registered"
 class ServingSession:
     """A listening session and the modules registered on it; can be opened again. Its owner guards it by a lock.
 
-    Attributes:
-        host: Address on which it listens, or has listened last.
+    `host`: address on which it listens, or has listened last.
     """
 
     def __init__(

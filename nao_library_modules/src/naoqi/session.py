@@ -76,9 +76,7 @@ class StartWatch:
 
     A robot that boots can be reached before; what comes then is the end of that start, and nothing is lost. Later ones
     come from a simulated robot only, whose NAOqi begins anew while its network stays: a real one goes with its NAOqi.
-
-    Attributes:
-        has_restarted: Whether it has started again.
+    `has_restarted`: whether it has started again.
     """
 
     def __init__(self, live: Live) -> None:

@@ -22,7 +22,6 @@ class State(str, enum.Enum):
     CLOSED = "closed"
 
     def __str__(self) -> str:
-        """The bare word."""
         return self.value
 
 

@@ -33,7 +33,6 @@ class EventSubscriptions:
     """
 
     def __init__(self, connection: Connection) -> None:
-        """Make an empty list for a connection."""
         self._connection = connection
         self._memory = RemoteModule(MEMORY, connection, RENEWAL_LIMIT)
         self._lock = threading.Lock()  # guards the table
@@ -43,7 +42,6 @@ class EventSubscriptions:
         connection.add_listener(self._on_state)
 
     def __len__(self) -> int:
-        """How many there are."""
         return len(self._arguments)
 
     def concerns(self, module: str, method: str) -> bool:

@@ -31,9 +31,7 @@ class ContextFunctions(Part):
     """Grammars. `str_param` names the context; further names are in `vocabulary`, in NAOqi's order.
 
     What a running recognition would refuse is done in a pause of it. Contexts stay until they are removed.
-
-    Attributes:
-        saved_sets: Names under which this server has saved contexts; NAOqi does not report which there are.
+    `saved_sets`: names under which this server has saved contexts; NAOqi does not report which there are.
     """
 
     left_by_goals = frozenset({"saved_sets"})

@@ -62,8 +62,7 @@ def _fields_of(words: Sequence[HeardWord]) -> dict[str, list[Any]]:
 class Hearing(ExtractorUse):
     """What the chain has heard, feedback, and how functions use NAOqi's extractors.
 
-    Attributes:
-        heard: What the chain heard so far; new for each goal.
+    `heard`: what the chain heard so far; new for each goal.
     """
 
     def __init__(self, module: NaoBasic, namespace: str) -> None:

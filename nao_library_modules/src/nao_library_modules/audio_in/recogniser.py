@@ -106,10 +106,7 @@ class WordTimes:
 
     A simulated robot knows them, and is asked for them when it has recognised something. Any other robot raises
     SpeechDetected when speech begins and ends, as soon as it has noticed it: its time less what that takes counts, for
-    all words of a value.
-
-    Attributes:
-        events: What the function is to subscribe for it.
+    all words of a value. `events`: what the function is to subscribe for it.
     """
 
     def __init__(self, hearing: Hearing, key: SimulatedKey, onset_delay: float, end_delay: float) -> None:

@@ -46,8 +46,7 @@ from .synthesiser import SPEECH
 class PlayerFunctions(Part):
     """Functions of ALAudioPlayer. Parameters are fields of AudioOutFunction.
 
-    Attributes:
-        loaded: Sounds that this server has loaded.
+    `loaded`: sounds that this server has loaded.
     """
 
     left_by_goals = frozenset({"loaded"})

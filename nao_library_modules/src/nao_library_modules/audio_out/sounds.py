@@ -42,11 +42,9 @@ class Sounding:
 class Sounds(Part):
     """Sounds of a module, each a call that ends with it, and account of the files that the chain played or wrote.
 
-    The thread that executes goals begins sounds; the end of the node silences them from another.
-
-    Attributes:
-        file_names: Files that the chain played or wrote, in order.
-        durations: How long each was to be heard, or of a file that was written, how long it is, s.
+    The thread that executes goals begins sounds; the end of the node silences them from another. `file_names`: files
+    that the chain played or wrote, in order. `durations`: how long each was to be heard, or of a file that was written,
+    how long it is, s.
     """
 
     def __init__(self, module: NaoBasic) -> None:

@@ -18,7 +18,6 @@ class CancellationToken:
     """
 
     def __init__(self) -> None:
-        """Start untriggered."""
         self._lock = threading.Lock()
         self._event = threading.Event()
         self._wakers: list[Callable[[], None]] = []

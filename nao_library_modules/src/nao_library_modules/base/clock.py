@@ -8,11 +8,7 @@ from .cancellation import CancellationToken
 
 
 class WallClock:
-    """Time of the computer.
-
-    Attributes:
-        simulated: Whether it is the time of a simulation.
-    """
+    """Time of the computer. `simulated`: whether it is the time of a simulation."""
 
     simulated = False
 

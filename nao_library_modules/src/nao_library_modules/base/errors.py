@@ -40,21 +40,10 @@ def cut(text: str) -> str:
 class BadGoal(NaoError):  # noqa: N818  named like the errors of the proxy layer
     """A field of a function message has a value that the function cannot take.
 
-    Attributes:
-        field: Name of the field.
-        value: What it holds.
-        allowed: What it may hold, in words.
+    `allowed`: what it may hold, in words. `problem`: what is wrong, where "<value> is not allowed" says too little.
     """
 
     def __init__(self, field: str, value: object, allowed: str, problem: str = "") -> None:
-        """Compose the text from the facts.
-
-        Args:
-            field: Name of the field.
-            value: What it holds.
-            allowed: What it may hold, in words.
-            problem: What is wrong, where "<value> is not allowed" says too little.
-        """
         problem = problem or f"{value!r} is not allowed"
         super().__init__(f"field {field}: {problem}{';' if problem.endswith('?') else ':'} {allowed}")
         self.field = field
@@ -65,19 +54,11 @@ class BadGoal(NaoError):  # noqa: N818  named like the errors of the proxy layer
 class UnknownFunction(NaoError):  # noqa: N818  named like the errors of the proxy layer
     """A goal names a function that the module does not have.
 
-    Attributes:
-        name: The name that was asked for.
-        known: The names there are, sorted.
+    Tells the closest names, and where all are to be seen, or all of them where there is no `server`: the name of the
+    action whose functions they are.
     """
 
     def __init__(self, name: str, known: Iterable[str], server: str = "") -> None:
-        """Compose the text: the closest names, and where all are to be seen, or all of them where there is no server.
-
-        Args:
-            name: The name that was asked for.
-            known: The names there are.
-            server: Name of the action whose functions they are; empty if it has none.
-        """
         self.name = name
         self.known = sorted(known)
         hint = did_you_mean(name, self.known)
@@ -86,16 +67,9 @@ class UnknownFunction(NaoError):  # noqa: N818  named like the errors of the pro
 
 
 class FunctionFailed(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A function of a chain is wrong or failed; the text opens with its place and name.
-
-    Attributes:
-        position: Place in the chain, counted from 1.
-        function: Name of the function.
-        cause: What was wrong.
-    """
+    """A function of a chain is wrong or failed; the text opens with its place, counted from 1, and its name."""
 
     def __init__(self, position: int, function: str, cause: Exception) -> None:
-        """Put place and name before the text of the cause."""
         problem = str(cause) if isinstance(cause, NaoError) else f"{type(cause).__name__}: {cause}"
         super().__init__(cut(f"function {position} ({function}): {problem}"))
         self.position = position
@@ -104,15 +78,9 @@ class FunctionFailed(NaoError):  # noqa: N818  named like the errors of the prox
 
 
 class RobotLost(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The connection to the robot broke while a goal was waiting.
-
-    Attributes:
-        address: `ip:port` of the robot.
-        reason: What the connection says about it.
-    """
+    """The connection to the robot at `ip:port` broke while a goal was waiting."""
 
     def __init__(self, address: str, reason: str) -> None:
-        """Compose the text."""
         super().__init__(f"the robot at {address} went away: {reason}")
         self.address = address
         self.reason = reason
@@ -122,19 +90,16 @@ class RobotFell(NaoError):  # noqa: N818  named like the errors of the proxy lay
     """The robot fell while a goal moved it; its motors are off."""
 
     def __init__(self) -> None:
-        """Compose the text."""
         super().__init__("the robot fell and its motors are off: goToPosture gets it up again")
 
 
 class MotionStopped(NaoError):  # noqa: N818  named like the errors of the proxy layer
     """A motion ended and joints are not where it should have brought them.
 
-    Attributes:
-        joints: Joint -> where it was to go and where it is told to be, rad.
+    `joints`: joint -> where it was to go and where it is told to be, rad.
     """
 
     def __init__(self, joints: Mapping[str, tuple[float, float]]) -> None:
-        """Compose the text: every joint that is off."""
         off = ", ".join(f"{joint} got to {now:.3f} instead of {goal:.3f}" for joint, (goal, now) in joints.items())
         super().__init__(
             f"the motion was stopped: {off}. Another client, a protection of the robot or a limit did that"
@@ -152,7 +117,6 @@ class WalkStopped(MotionStopped):
     """
 
     def __init__(self, goal: Place | None, reached: Place, cause: str = "") -> None:
-        """Compose the text: what stopped it, and how far it got."""
         instead = f" instead of {_way(goal)}" if goal is not None else ""
         stopped = cause or "another client, a protection of the robot or a limit did that"
         NaoError.__init__(self, f"the walk was stopped ({stopped}): the robot got to {_way(reached)}{instead}")
@@ -163,14 +127,9 @@ class WalkStopped(MotionStopped):
 
 
 class NotReady(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The robot cannot do something as it is now.
-
-    Attributes:
-        problem: Why.
-    """
+    """The robot cannot do something as it is now: why, and what to do about it."""
 
     def __init__(self, problem: str, remedy: str) -> None:
-        """Compose the text. `problem`: why it cannot. `remedy`: what to do about it."""
         super().__init__(f"{problem}: {remedy}")
         self.problem = problem
 
@@ -184,14 +143,9 @@ class NotFit(NotReady):
 
 
 class PutToRest(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The robot put a chain to rest to protect it while a goal moved it.
-
-    Attributes:
-        chains: Their names; Body for all of it.
-    """
+    """The robot put chains (Body: all of it) to rest to protect them while a goal moved them."""
 
     def __init__(self, chains: Iterable[str]) -> None:
-        """Compose the text."""
         self.chains = list(chains)
         super().__init__(
             f"the robot put {', '.join(self.chains)} to rest: a motor is too hot or broken, or the battery is empty"

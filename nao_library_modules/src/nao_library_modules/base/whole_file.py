@@ -24,14 +24,9 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 class NoPlaceForFile(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A file cannot be written where it is wanted.
-
-    Attributes:
-        path: The file.
-    """
+    """A file cannot be written where it is wanted. `path`: the file."""
 
     def __init__(self, path: Path, problem: str) -> None:
-        """Compose the text."""
         super().__init__(f"{path} {problem}")
         self.path = path
 
@@ -40,7 +35,6 @@ class FileIsThere(NoPlaceForFile):
     """A file is not replaced unless that is asked for."""
 
     def __init__(self, path: Path) -> None:
-        """Compose the text."""
         super().__init__(path, "is there already: another name, or --overwrite")
 
 
@@ -48,7 +42,6 @@ class FileTrouble(NoPlaceForFile):
     """A file cannot be written; the text names it, and the room that is left where there is too little."""
 
     def __init__(self, path: Path, error: OSError) -> None:
-        """Compose the text of what the system says."""
         reason = error.strerror or str(error)
         if error.errno in FULL:
             with suppress(OSError):

@@ -228,11 +228,8 @@ class FunctionTable(ChainMap):
 class FunctionChain:
     """Reads chains of function messages for one function table.
 
-    A binding is kept only as long as the table holds the same callable.
-
-    Attributes:
-        table: NAOqi function name -> callable; anybody may change it at any time.
-        server: Name of the action that serves it, for texts; it may be set later.
+    A binding is kept only as long as the table holds the same callable. `table`: NAOqi function name -> callable;
+    anybody may change it at any time. `server`: name of the action that serves it, for texts; it may be set later.
     """
 
     def __init__(self, function_table: Mapping[str, Callable[..., Any]], server: str = "") -> None:

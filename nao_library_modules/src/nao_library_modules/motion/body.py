@@ -33,8 +33,7 @@ DEFAULT_SPEED = 0.3
 class RobotBody(Part):
     """The joints of the robot, and what the chain of a goal does with them.
 
-    Attributes:
-        plan: What the chain that is checked, or runs, does; new for each goal.
+    `plan`: what the chain that is checked, or runs, does; new for each goal.
     """
 
     def __init__(self, module: NaoBasic) -> None:

@@ -41,9 +41,8 @@ APPROACH = 0.5
 class MotionRecording(BodyPart):
     """Recorded motions.
 
-    Attributes:
-        store: Recorded motions by name.
-        cut_short: What recordings that were interrupted have left, for the result of the chain.
+    `store`: recorded motions by name. `cut_short`: what recordings that were interrupted have left, for the result of
+    the chain.
     """
 
     left_by_goals = frozenset({"store"})

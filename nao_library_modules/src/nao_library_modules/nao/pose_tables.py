@@ -20,28 +20,17 @@ XAP_TIME = 2.0
 
 
 class BadPose(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The table of poses has an entry that is no pose.
-
-    Attributes:
-        name: Name of the pose.
-    """
+    """The table of poses has an entry that is no pose. `name`: name of the pose."""
 
     def __init__(self, name: str, problem: str) -> None:
-        """Compose the text."""
         super().__init__(f"pose {name!r}: {problem}; a pose has {', '.join(FIELDS)}")
         self.name = name
 
 
 class UnknownPose(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """Nobody knows a pose of that name.
-
-    Attributes:
-        name: The name.
-        known: The names there are.
-    """
+    """Nobody knows a pose of that name. `name`: the name. `known`: the names there are."""
 
     def __init__(self, name: str, known: Iterable[str], what: str = "pose") -> None:
-        """Compose the text."""
         self.name = name
         self.known = sorted(known)
         super().__init__(f"unknown {what} {name!r}{did_you_mean(name, self.known)}; known are {', '.join(self.known)}")

@@ -21,15 +21,9 @@ HANDS = ("LHand", "RHand")
 
 
 class BadPoseFile(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A pose library cannot be read.
-
-    Attributes:
-        path: The file.
-        problem: What is wrong with it.
-    """
+    """A pose library cannot be read. `path`: the file. `problem`: what is wrong with it."""
 
     def __init__(self, path: Path, problem: str) -> None:
-        """Compose the text."""
         super().__init__(f"pose library {path}: {problem}")
         self.path = path
         self.problem = problem

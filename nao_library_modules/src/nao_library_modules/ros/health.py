@@ -34,7 +34,6 @@ class GoalCounter:
     """Counts goals by how they ended. Written by the thread that executes goals, read by the diagnostics."""
 
     def __init__(self) -> None:
-        """Begin at zero."""
         self._lock = threading.Lock()
         self._counts = {"succeeded": 0, "preempted": 0, "aborted": 0}
         self._last_error = ""

@@ -23,7 +23,6 @@ class AlreadyOffered(NaoError):  # noqa: N818  named like the errors of the prox
     """Another node that is alive offers a service."""
 
     def __init__(self, service: str, node: str) -> None:
-        """Compose the text."""
         super().__init__(f"{node} offers {service} already: leave the part out there (~parts of nao_driver), or here")
 
 
@@ -31,10 +30,7 @@ class NodeInterface:
     """The side to ROS of something that has a name of its own: a node, or one of several parts of a node.
 
     Names are as everywhere in ROS: "speech" is relative to the namespace of the part, "~rate" is the part's own.
-
-    Attributes:
-        name: Full name.
-        namespace: That the name is in, with a slash at both ends.
+    `name`: full name. `namespace`: that the name is in, with a slash at both ends.
     """
 
     def __init__(self, name: str = "") -> None:

@@ -75,8 +75,7 @@ class Events:
 class ExtractorUse(Part):
     """How the functions of one server use extractors.
 
-    Attributes:
-        subscriber: What NAOqi knows this server by: of each robot's clients no two have the same name.
+    `subscriber`: what NAOqi knows this server by: of each robot's clients no two have the same name.
     """
 
     def __init__(self, module: NaoBasic, subscriber: str) -> None:

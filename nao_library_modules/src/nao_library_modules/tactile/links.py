@@ -40,11 +40,7 @@ log = logging.getLogger(__name__)
 
 
 class LinkFunctions(Part):
-    """Parameters are fields of TactileFunction.
-
-    Attributes:
-        bindings: Which touch starts which behaviour.
-    """
+    """Parameters are fields of TactileFunction. `bindings`: which touch starts which behaviour."""
 
     left_by_goals = frozenset({"bindings"})
 

@@ -52,9 +52,8 @@ SONAR_START = 0.35
 class Senses(ExtractorUse):
     """What the robot feels now, and what the chain has felt.
 
-    Attributes:
-        measurements: What the chain has felt so far; new for each goal.
-        sonar_on: Whether a goal has switched the sonars on for longer.
+    `measurements`: what the chain has felt so far; new for each goal. `sonar_on`: whether a goal has switched the
+    sonars on for longer.
     """
 
     def __init__(self, module: NaoBasic, namespace: str) -> None:

@@ -48,9 +48,8 @@ def place(file: str, line: int) -> str:
 class BehaviorError(NaoError):
     """A behaviour cannot be run.
 
-    Attributes:
-        problems: What is wrong, in the order of the file.
-        readable: The `model.Behavior` with all that could be read of its file; None if nothing is known of that.
+    `problems`: what is wrong, in the order of the file. `readable`: the `model.Behavior` with all that could be read of
+    its file; None if nothing is known of that.
     """
 
     def __init__(self, name: str, problems: Sequence[Problem], readable: Any = None) -> None:
@@ -63,14 +62,9 @@ class BehaviorError(NaoError):
 
 
 class NoSuchBehavior(NaoError):
-    """Nothing is stored under a name.
-
-    Attributes:
-        known: Names there are, sorted.
-    """
+    """Nothing is stored under a name. `known`: names there are, sorted."""
 
     def __init__(self, name: str, known: Iterable[str]) -> None:
-        """Compose the text."""
         self.name = name
         self.known = sorted(known)
         there = f"there are {', '.join(self.known)}" if self.known else "none is stored"

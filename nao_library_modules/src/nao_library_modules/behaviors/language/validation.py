@@ -21,10 +21,8 @@ Ask = Callable[[str, Sequence[Any]], GoalCheck]
 class Validation:
     """What came of asking.
 
-    Attributes:
-        unvalidated: Servers that did not check their goals, and why.
-        unchecked: Path of a step and its function, for all that nobody could check to the end and all that would be
-            skipped.
+    `unvalidated`: servers that did not check their goals, and why. `unchecked`: path of a step and its function, for
+    all that nobody could check to the end and all that would be skipped.
     """
 
     problems: Sequence[Problem] = ()

@@ -21,12 +21,7 @@ WIDTH = 110
 
 
 class Mapping(dict):  # type: ignore[type-arg]
-    """A mapping of a file.
-
-    Attributes:
-        line: Where it begins, counted from 1.
-        lines: Key -> its line.
-    """
+    """A mapping of a file. `line`: where it begins, counted from 1. `lines`: key -> its line."""
 
     line = 0
     lines: dict[Any, int] = {}
@@ -35,9 +30,7 @@ class Mapping(dict):  # type: ignore[type-arg]
 class Items(list):  # type: ignore[type-arg]
     """A list of a file.
 
-    Attributes:
-        line: Where it begins, counted from 1.
-        lines: Position, counted from 0 -> line of what stands there.
+    `line`: where it begins, counted from 1. `lines`: position, counted from 0 -> line of what stands there.
     """
 
     line = 0

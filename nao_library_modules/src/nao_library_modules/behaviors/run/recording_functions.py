@@ -38,9 +38,8 @@ LONGEST_NAMES = 200
 class BehaviorRecordingFunctions(Part):
     """Functions that record behaviours. Parameters are fields of BehaviorFunction.
 
-    Attributes:
-        recording: The one that goes on; None if none does.
-        cut_short: What a recording that was interrupted has left, for the result of the chain.
+    `recording`: the one that goes on; None if none does. `cut_short`: what a recording that was interrupted has left,
+    for the result of the chain.
     """
 
     def __init__(self, module: NaoBasic, store: BehaviorStore, tables: FunctionTables, goals: GoalLog) -> None:

@@ -44,9 +44,8 @@ def _behavior(load: Library, str_param: str, text: str, file: str) -> Behavior:
 class RunningFunctions(Part):
     """Functions that run and show behaviours. Parameters are fields of BehaviorFunction.
 
-    Attributes:
-        steps: What became of the steps of behaviours that this goal has run.
-        shown: Behaviours that this goal has asked for.
+    `steps`: what became of the steps of behaviours that this goal has run. `shown`: behaviours that this goal has asked
+    for.
     """
 
     def __init__(self, module: NaoBasic, store: BehaviorStore, tables: FunctionTables, clients: Any) -> None:

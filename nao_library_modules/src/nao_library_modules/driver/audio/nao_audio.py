@@ -53,7 +53,6 @@ class NaoAudioServices:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         sensitivity = node.param("~sensitivity", ROBOTS_OWN)
         sensitivity = number_parameter("~sensitivity", sensitivity, limit("share"), also=ROBOTS_OWN)
         self._interrupt = CancellationToken()

@@ -33,7 +33,6 @@ class NaoMicrophone:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._use_ros_time = True
         self._frame = frame_parameter(node, "~frame_id", "Head")
         self._microphone = Microphone(robot, name_for_robot(node.name), RosClock(), self._publish)

@@ -39,7 +39,8 @@ def run_driver(
     A launched node whose name another node takes comes back when that one has ended.
 
     Args:
-        make: Makes the node's object for a robot and a side to ROS: it has `close()`, and `reports()` for /diagnostics.
+        make: Makes the node's object for a robot, which need not be there yet, and a side to ROS: it has `close()`, and
+            `reports()` for /diagnostics. Raises NaoError for a wrong parameter.
         name: Default name of the node.
         description: The text of `--help`.
         argv: Arguments, those of the process by default.

@@ -42,7 +42,6 @@ class NaoCamera:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._cameras: dict[str, CameraTopics] = {}
         alone = next((name for name in reversed(ALONE) if node.has_param(f"~{name}")), None)
         if alone is None:

@@ -57,7 +57,6 @@ class NaoJointStates:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         rate = node.param("~sensor_rate", node.param("~torso_odom_rate", DEFAULT_RATE))
         rate = number_parameter("~sensor_rate", rate, limit("reading rate"))
         self._base = frame_parameter(node, "~base_frame_id", "base_link")

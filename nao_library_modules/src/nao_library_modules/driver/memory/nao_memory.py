@@ -75,7 +75,6 @@ class NaoMemory:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._node = node
         largest = self._node.param("~max_topics", MOST_TOPICS)
         largest = int(number_parameter("~max_topics", largest, limit("topics")))

@@ -64,7 +64,6 @@ class NaoPathFollower:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._node = node
         self._settings = FollowerSettings.read(node.param)
         self._base = frame_parameter(node, "~base_frame_id", "base_footprint")

@@ -60,7 +60,6 @@ class NaoDiagnosticUpdater:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._node = node
         self._robot = robot
         self._period = 1.0 / _number(node, "~update_rate", DEFAULT_RATE, RATE)

@@ -32,7 +32,6 @@ class NaoSonar:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._prefix = tf_prefix()
         rate = rate_parameter(node, "~sonar_rate", DEFAULT_RATE)
         self._sonars = Sonars(robot, name_for_robot(node.name), rate, RosClock(), self._publish)

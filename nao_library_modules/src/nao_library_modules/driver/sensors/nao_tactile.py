@@ -40,7 +40,6 @@ class NaoTactileNode:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError for a wrong parameter. The robot need not be connected yet."""
         self._robot = robot
         self._head = node.publisher("tactile_touch", TactileTouch, queue_size=QUEUE)
         self._head_too = node.publisher("head_touch", HeadTouch, queue_size=QUEUE)

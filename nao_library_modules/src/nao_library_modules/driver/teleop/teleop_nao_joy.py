@@ -39,7 +39,6 @@ class TeleopNaoJoy:
     """
 
     def __init__(self) -> None:
-        """Raises NaoError for a wrong parameter."""
         self._control = JoyControl(read_settings())
         rate = number_parameter(RATE, rospy.get_param(RATE, DEFAULT_RATE), limit("teleop rate"))
         self._timeout = number_parameter(TIMEOUT, rospy.get_param(TIMEOUT, 0.0), limit("timeout"))

@@ -43,7 +43,6 @@ class NaoFootsteps:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._node = node
         self._robot = robot
         self._init_stiffness = InitialStiffness(JointController(robot), node.param)

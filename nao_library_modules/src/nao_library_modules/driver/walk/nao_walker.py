@@ -64,7 +64,6 @@ class NaoWalker:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        """Raises NaoError if a parameter is wrong; the robot need not be there yet."""
         self._node = node
         self._robot = robot
         timeout = number_parameter("~cmd_vel_timeout", self._node.param("~cmd_vel_timeout", 0.5), limit("timeout"))

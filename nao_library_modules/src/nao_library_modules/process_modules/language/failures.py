@@ -157,9 +157,8 @@ class ManipulationLowLevelFailure(LowLevelFailure):
 class ManipulationPoseUnreachable(ManipulationLowLevelFailure):
     """The hand cannot get there.
 
-    Attributes:
-        nearest: The closest point in reach, (x, y, z) in m, in the frame of the target.
-        distance: From there to the target, m.
+    `nearest`: the closest point in reach, (x, y, z) in m, in the frame of the target. `distance`: from there to the
+    target, m.
     """
 
 

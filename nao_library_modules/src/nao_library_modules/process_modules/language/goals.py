@@ -54,9 +54,7 @@ class Occasion:
 class Goal:
     """A kind of occasion; a call with arguments returns one.
 
-    Attributes:
-        check: Whether an occasion holds; None for unknown.
-        plans: Patterns and their plans, the most specific first.
+    `check`: whether an occasion holds; None for unknown. `plans`: patterns and their plans, the most specific first.
     """
 
     name: str

@@ -261,9 +261,7 @@ class Task:
 class TaskTree:
     """All tasks of one run of a plan.
 
-    Attributes:
-        lock: Held for bookkeeping only.
-        observers: Called with a task at every change, in the thread of the change.
+    `lock`: held for bookkeeping only. `observers`: called with a task at every change, in the thread of the change.
     """
 
     def __init__(self, name: str, body: Callable[[], Any], clock: Any) -> None:

@@ -74,9 +74,8 @@ class LatchedTopic:
 class RobotLink:
     """A robot as process modules know it: names are relative to the namespace of the node.
 
-    Attributes:
-        joints: A fluent with the last joint states: name -> angle, rad.
-        held: Side of a hand that was closed last -> how far it stayed open, 0..1.
+    `joints`: a fluent with the last joint states: name -> angle, rad. `held`: side of a hand that was closed last ->
+    how far it stayed open, 0..1.
     """
 
     def __init__(self, settings: Settings | None = None) -> None:
