@@ -48,5 +48,5 @@ class LazyTopic(rospy.SubscribeListener):
 
 
 def listeners(publisher: rospy.Publisher) -> list[str]:
-    """Full names of the nodes that listen to a topic."""
-    return [node for _, node, *_ in publisher.impl.get_stats_info()]
+    """Full names of the nodes that listen to a topic; none to one that was taken back."""
+    return [node for _, node, *_ in publisher.impl.get_stats_info()] if publisher.impl else []
