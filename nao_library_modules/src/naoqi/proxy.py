@@ -106,14 +106,8 @@ class ALProxy:
     def wait(self, task: int, timeout_ms: int = 0) -> bool:
         """Wait for the end of a posted call.
 
-        Returns True if the limit was reached first.
-
-        Args:
-            task: The number that `post.method()` returned.
-            timeout_ms: Limit in ms; 0 waits for ever.
-
-        Raises:
-            NaoError: The error of the call, if it failed.
+        `task`: the number that `post.method()` returned. `timeout_ms`: limit in ms; 0 waits for ever. Returns True if
+        the limit was reached first. Raises NaoError: the error of the call, if it failed.
         """
         tasks = self._remote.connection.tasks
         if self._is_the_robots(task, "wait"):

@@ -47,14 +47,8 @@ class TaskTable:
     def wait(self, task: int, timeout: Optional[float]) -> bool:
         """Wait for the end of a call; one that was stopped has ended like any other.
 
-        Returns whether the limit was over first.
-
-        Args:
-            task: Its number.
-            timeout: Limit in s, or None.
-
-        Raises:
-            NaoError: The error of the call, if it failed.
+        `task`: its number. `timeout`: limit in s, or None. Returns whether the limit was over first. Raises NaoError:
+        the error of the call, if it failed.
         """
         call = self._call(task)
         if call is None:

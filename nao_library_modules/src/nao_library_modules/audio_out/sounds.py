@@ -72,7 +72,8 @@ class Sounds(Part):
     ) -> float:
         """Begin a sound, and wait until it is over; preemption silences it.
 
-        Returns how long it sounded, s; 0 in the background.
+        Returns how long it sounded, s; 0 in the background. Raises NaoError if the call fails; Preempted, or whatever
+        reason the interrupt has.
 
         Args:
             module: NAOqi module.
@@ -81,10 +82,6 @@ class Sounds(Part):
             duration: s after which the sound is ended, if it is still there; 0: never.
             background: Whether it is not waited for.
             ended: Called when a sound in the background is over, from a thread of libqi.
-
-        Raises:
-            NaoError: If the call fails.
-            Preempted: Or whatever reason the interrupt has.
         """
         self._module.interrupt.check()
         call = self._module.robot.proxy(module).call_async(method, *args)
@@ -109,9 +106,7 @@ class Sounds(Part):
     def wait_for_background(self) -> None:
         """Wait until nothing sounds that goals of this server have left in the background.
 
-        Raises:
-            NaoError: Of a sound that failed.
-            Preempted: Or whatever reason the interrupt has.
+        Raises NaoError of a sound that failed; Preempted, or whatever reason the interrupt has.
         """
         with self._lock:
             background = [*self._left, *self._begun]

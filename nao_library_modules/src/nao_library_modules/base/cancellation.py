@@ -54,11 +54,7 @@ class CancellationToken:
         return self._event.is_set()
 
     def check(self) -> None:
-        """Raise the reason if triggered.
-
-        Raises:
-            Preempted: Or another reason that was given to `trigger`.
-        """
+        """Raise the reason if triggered. Raises Preempted, or another reason that was given to `trigger`."""
         if self._event.is_set():
             with self._lock:
                 reason = self._reason

@@ -76,9 +76,7 @@ def show(settings: CliSettings, end: GoalEnd) -> None:
 def fail(settings: CliSettings, end: GoalEnd) -> None:
     """Tell that a goal did not succeed, with what was done until then.
 
-    Raises:
-        StackMissing: The robot is not there.
-        CommandFailed: Otherwise.
+    Raises StackMissing: the robot is not there; CommandFailed: otherwise.
     """
     show(settings, end)
     if end.state == "aborted" and not settings.stack.connected(end.server):

@@ -184,8 +184,7 @@ class BoundFunction:
     def check_fields(self, message: Any) -> None:
         """See that each field that the function declares holds what it may hold.
 
-        Raises:
-            BadGoal: Names the first field that does not.
+        Raises BadGoal, which names the first field that does not.
         """
         for name, field in self.fields.items():
             value = getattr(message, name)
@@ -240,9 +239,8 @@ class FunctionChain:
     def look_up(self, name: str) -> Callable[..., Any]:
         """The callable of a name.
 
-        Raises:
-            UnknownFunction: With the closest names, or the list of all.
-            NaoError: What the table has there cannot be called.
+        Raises UnknownFunction with the closest names, or the list of all; NaoError: what the table has there cannot be
+        called.
         """
         if not name:
             raise BadGoal("function", name, "the name of a function", problem="it is empty")
@@ -254,13 +252,9 @@ class FunctionChain:
     def read(self, messages: Sequence[Any], before_check: Callable[[int], None] = lambda _: None) -> list[ChainStep]:
         """Check a whole chain and bind it; nothing runs.
 
-        Args:
-            messages: Function messages with at least the fields `function` and `time`.
-            before_check: Called with the place of each function, counted from 1, before it is checked.
-
-        Raises:
-            BadGoal: If the chain is empty or too long.
-            FunctionFailed: Names the first function that is wrong and says why.
+        `messages`: function messages with at least the fields `function` and `time`. `before_check`: called with the
+        place of each function, counted from 1, before it is checked. Raises BadGoal if the chain is empty or too long;
+        FunctionFailed, which names the first function that is wrong and says why.
         """
         context: dict[str, Any] = {}
         # Two passes: what can be told without the robot is told without it.
@@ -306,11 +300,8 @@ class FunctionChain:
     def bind(self, messages: Sequence[Any]) -> list[BoundFunction]:
         """Look at what concerns no robot: names of functions, times, failure policies, what fields declare.
 
-        Returns for each message what is to be called; its `run_check` runs the check.
-
-        Raises:
-            BadGoal: If the chain is empty or too long.
-            FunctionFailed: Names the first function that is wrong and says why.
+        Returns for each message what is to be called; its `run_check` runs the check. Raises BadGoal if the chain is
+        empty or too long; FunctionFailed, which names the first function that is wrong and says why.
         """
         _require_some(messages)
         return [self._guarded(i, message, self.bind_one) for i, message in enumerate(messages, start=1)]

@@ -109,14 +109,13 @@ class KeyFrames:
 def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False, field: str = "trajectory") -> KeyFrames:
     """Check a trajectory and bring it into one shape.
 
+    Raises BadGoal, which names the field that is wrong, what it holds and what is allowed.
+
     Args:
         trajectory: A trajectory_msgs/JointTrajectory.
         chains: Chain -> its joints on this robot; "Body" tells what joints there are.
         relative: Whether positions are added to the present ones.
         field: What errors call the trajectory.
-
-    Raises:
-        BadGoal: Names the field that is wrong, what it holds and what is allowed.
     """
     names = [str(name) for name in trajectory.joint_names]
     joints = expand_names(names, chains, f"{field}.joint_names")
@@ -193,8 +192,7 @@ def one_each(values: Sequence[float], names: Sequence[str], chains: Chains, fiel
 def check_range(frames: KeyFrames, low: float, high: float, field: str = "trajectory") -> None:
     """See that all values are within a range, as stiffnesses are.
 
-    Raises:
-        BadGoal: Names the joint, the value and the range.
+    Raises BadGoal, which names the joint, the value and the range.
     """
     for joint, values in zip(frames.joints, frames.values):
         for value in values:

@@ -302,9 +302,7 @@ class WalkFunctions(BodyPart):
     def _stopped(self, goal: Place | None, before: Place) -> None:
         """Say that the walk was stopped by somebody else, who may walk on with the robot: that is left alone.
 
-        Raises:
-            WalkStopped: With how far it got.
-            NaoError: If something else is known to have stopped it: a fall.
+        Raises WalkStopped with how far it got; NaoError if something else is known to have stopped it: a fall.
         """
         self._walk_begun = False
         wait_for_call(self._module.robot.proxy(MOTION).call_async(WAIT), self._module.interrupt, STANDING_LIMIT)

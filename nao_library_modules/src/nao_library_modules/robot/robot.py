@@ -79,11 +79,8 @@ def _error_of(call: Any) -> NaoError | None:
 def wait_for_calls(calls: Sequence[Any], interrupt: CancellationToken) -> list[Any]:
     """Wait until all calls are done, one fails, or an interrupt comes; then cancel those still running.
 
-    Returns the results, in order.
-
-    Raises:
-        NaoError: Of the first call that failed.
-        Preempted: Or whatever reason the interrupt has.
+    Returns the results, in order. Raises NaoError of the first call that failed; Preempted, or whatever reason the
+    interrupt has.
     """
     if not calls:
         return []

@@ -22,11 +22,8 @@ def run_task(call: Any, interrupt: CancellationToken, stop: Callable[[], None]) 
     """Wait for a call; an interrupt cancels it, and stops what it started if that is not enough.
 
     `stop` stops by other means what the call started, for robots whose calls cannot be cancelled; it may raise
-    NaoError. The result of a call that has ended by the time of the interrupt counts.
-
-    Raises:
-        NaoError: If the call failed.
-        Preempted: Or whatever reason the interrupt has.
+    NaoError. The result of a call that has ended by the time of the interrupt counts. Raises NaoError if the call
+    failed; Preempted, or whatever reason the interrupt has.
     """
     if not call.wait(QUICK_ANSWER):  # quicker than to set up the wait for both
         wait_for_call(call, interrupt)

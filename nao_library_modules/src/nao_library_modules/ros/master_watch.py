@@ -52,9 +52,7 @@ class Api:
     def ask(self, method: str, *arguments: Any, caller: str = "") -> Any:
         """Call a method.
 
-        Raises:
-            Refused: The answer is that it is not so.
-            OSError: And others of `GONE`: there is no answer.
+        Raises Refused: the answer is that it is not so; OSError: and others of `GONE`: there is no answer.
         """
         code, text, value = getattr(self._proxy, method)(caller or self._caller, *arguments)
         if code != 1:

@@ -51,11 +51,7 @@ class Events:
     def until(self, end: float) -> Iterator[Event]:
         """Events as they come.
 
-        Args:
-            end: ROS time of the end, s.
-
-        Raises:
-            Preempted: Or whatever reason the interrupt has.
+        `end`: ROS time of the end, s. Raises Preempted, or whatever reason the interrupt has.
         """
         while True:
             self._interrupt.check()

@@ -46,13 +46,9 @@ def bind(
 ) -> SequenceNode:
     """Make a program of a behaviour. Nothing is asked of servers or robot.
 
-    Args:
-        values: Name -> value of some or all of its parameters.
-        tables: Functions of the servers; without them only messages and fields are checked.
-
-    Raises:
-        BehaviorError: With everything that is wrong.
-        BadGoal: A value for a parameter will not do.
+    `values`: name -> value of some or all of its parameters. `tables`: functions of the servers; without them only
+    messages and fields are checked. Raises BehaviorError with everything that is wrong; BadGoal: a value for a
+    parameter will not do.
     """
     program, problems = bind_what_can_be(behavior, values, library, tables)
     if problems:

@@ -26,16 +26,13 @@ def check(
 ) -> SequenceNode:
     """Check a behaviour as a whole, without servers: functions, fields, boxes, times, and names that all robots have.
 
-    Returns what would run.
+    Returns what would run. Raises BehaviorError with everything that is wrong; BadGoal: a value for a parameter will
+    not do.
 
     Args:
         library: Gives the behaviours of its boxes by name.
         values: Of its parameters; the defaults for those that are not named.
         tables: Functions of the servers, if they are known already.
-
-    Raises:
-        BehaviorError: With everything that is wrong.
-        BadGoal: A value for a parameter will not do.
     """
     tables = tables or FunctionTables()
     program, problems = bind_what_can_be(behavior, values or {}, library, tables)
@@ -53,14 +50,13 @@ def check_given(
 ) -> tuple[SequenceNode, Validation]:
     """What would run with values as "name=value", if nothing is wrong.
 
+    Raises BehaviorError with everything that is wrong.
+
     Args:
         behavior: The behaviour.
         library: Gives the behaviours of its boxes by name.
         given: Values of its parameters.
         ask: Has the servers check their goals; None: only what is true of any robot is looked at.
-
-    Raises:
-        BehaviorError: With everything that is wrong.
     """
     problems = [*read_wrong]
     values = given_as_text(behavior.parameters, given, problems, behavior.file)

@@ -28,12 +28,8 @@ PARAMETER_KEYS = ("default", "help", "choices", "min", "max", "unit")
 def read(text: str, name: str, file: str = "") -> Behavior:
     """Read a behaviour. Nothing is known here of servers, functions, fields and other behaviours: see `check`.
 
-    Args:
-        text: YAML, see docs/behaviors.md.
-        file: Path of the file that the text is from, for errors.
-
-    Raises:
-        BehaviorError: With everything that is wrong, and the behaviour as far as it could be read.
+    `text`: YAML, see docs/behaviors.md. `file`: path of the file that the text is from, for errors. Raises
+    BehaviorError with everything that is wrong, and the behaviour as far as it could be read.
     """
     problems: list[Problem] = []
     behavior = None

@@ -224,9 +224,7 @@ class CameraStream:
     def _look(self, subscription: CameraSubscription) -> None:
         """Pass on pictures until something goes wrong.
 
-        Raises:
-            NaoError: What went wrong.
-            Preempted: When the subscription ends.
+        Raises NaoError: what went wrong; Preempted when the subscription ends.
         """
         device, last = self._robot.proxy(DEVICE), None
         while True:

@@ -154,9 +154,8 @@ class TrajectoryClient:
     def take(self, pose: Pose, interrupt: CancellationToken) -> None:
         """Take a pose, unless the interrupt ends it.
 
-        Raises:
-            NaoError: If there is no server, or it does not get there in time.
-            Preempted: Or whatever reason the interrupt has.
+        Raises NaoError if there is no server, or it does not get there in time; Preempted, or whatever reason the
+        interrupt has.
         """
         if not self._client.wait_for_server(rospy.Duration(SERVER_LIMIT)):
             raise NaoError(f"there is no server for {rospy.resolve_name(ACTION)}: is nao_controller running?")

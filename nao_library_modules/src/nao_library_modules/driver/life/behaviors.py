@@ -31,9 +31,8 @@ class Behaviors:
     def run(self, name: str, interrupt: CancellationToken) -> None:
         """Run one, to its end or to the interrupt, which stops it.
 
-        Raises:
-            NaoError: If it is not installed, the robot refuses or is lost.
-            Preempted: Or whatever reason the interrupt has.
+        Raises NaoError if it is not installed, the robot refuses or is lost; Preempted, or whatever reason the
+        interrupt has.
         """
         if not self._ask("isBehaviorInstalled", name):
             known = self.installed()

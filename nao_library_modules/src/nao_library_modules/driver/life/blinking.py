@@ -57,9 +57,7 @@ class Blinks:
 def fade(robot: Any, light: str, colour: Colour, duration: float, interrupt: CancellationToken) -> None:
     """Fade a light or a group to a colour in `duration` s, and wait for the end.
 
-    Raises:
-        NaoError: If the robot refuses or is lost.
-        Preempted: Or whatever reason the interrupt has.
+    Raises NaoError if the robot refuses or is lost; Preempted, or whatever reason the interrupt has.
     """
     call = robot.proxy(LEDS).call_async("fadeRGB", light, *(float(part) for part in colour), float(duration))
     run_task(call, interrupt, lambda: None)  # a robot that cannot cancel ends the fade by itself

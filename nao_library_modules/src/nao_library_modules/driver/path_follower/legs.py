@@ -55,9 +55,8 @@ class WalkTopics:
     def prepare(self, interrupt: CancellationToken) -> None:
         """Get ready to walk: the robot takes the pose for it, if it does not walk already.
 
-        Raises:
-            NaoError: If it cannot, or nobody passes commands on to it.
-            Preempted: Or whatever reason the interrupt has.
+        Raises NaoError if it cannot, or nobody passes commands on to it; Preempted, or whatever reason the interrupt
+        has.
         """
         if not self._commands.get_num_connections():
             self._heard.wait(LISTENER_LIMIT)

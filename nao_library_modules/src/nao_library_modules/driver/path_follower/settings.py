@@ -17,8 +17,7 @@ from ...base.limits import limit
 class FollowerSettings:
     """How a robot follows targets and paths; the names are those of the parameters.
 
-    Raises:
-        NaoError: With the first value that will not do.
+    Raises NaoError with the first value that will not do.
     """
 
     controller_frequency: float = 10.0  # rounds a second, Hz

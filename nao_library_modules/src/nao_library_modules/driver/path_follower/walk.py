@@ -132,11 +132,8 @@ def lead(
     """Walk until the course ends; `report` gets in every round the place of the robot, and its aim.
 
     `locate` gives the place of the robot in the frame of the course. The legs are not stopped when an error ends the
-    walk.
-
-    Raises:
-        NaoError: If the robot cannot walk, cannot be located or is stuck.
-        Preempted: Or whatever reason the interrupt has.
+    walk. Raises NaoError if the robot cannot walk, cannot be located or is stuck; Preempted, or whatever reason the
+    interrupt has.
     """
     rate = Rate(clock, 1.0 / settings.controller_frequency, FASTEST_ROUND, interrupt)
     stuck = StuckWatch(settings.stuck_time)

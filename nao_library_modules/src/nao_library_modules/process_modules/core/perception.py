@@ -38,16 +38,13 @@ def perceive(
     """Look for the object that a designator describes, in a plan. Its type: ball, face, person, landmark or code.
 
     Returns a designator equated to the given one, which stands for what was seen; with "all" a list of designators.
+    Raises PerceptionObjectNotFound: it was not seen; AmbiguousPerception: several were seen that a description fits
+    which means one; PlanError: it is no object, or has no type.
 
     Args:
         quantifier: "a" for the one seen best, "the" for the only one, "all" and "currently-visible" for all.
         timeout: s to look.
         search: Whether the head turns to find it.
-
-    Raises:
-        PerceptionObjectNotFound: It was not seen.
-        AmbiguousPerception: Several were seen that a description fits which means one.
-        PlanError: It is no object, or has no type.
     """
     wanted = quantifier or desig.quantifier
     if wanted not in QUANTIFIERS:

@@ -284,10 +284,8 @@ def execute_on(module: ProcessModule, command: Command, designator: Designator |
     """Have a module carry out a command, in a plan: waits until that is over.
 
     An offline module is waited for, with a warning. When the calling task is ended, the command is cancelled and its
-    end awaited; a suspension cancels it, and it is sent again when the task is woken.
-
-    Raises:
-        PlanFailure: What the module failed with.
+    end awaited; a suspension cancels it, and it is sent again when the task is woken. Raises PlanFailure: what the
+    module failed with.
     """
 
     def once() -> Any:

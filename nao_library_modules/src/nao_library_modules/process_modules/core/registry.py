@@ -151,9 +151,7 @@ def available_process_module(name: Named) -> bool:
 def pm_execute(module: Named, desig: Union[Designator, Command]) -> Any:
     """Have a module do what a designator describes, in a plan: waits until it is done. See `execute_on`.
 
-    Raises:
-        DesignatorError: It has no solution that a module could carry out.
-        PlanFailure: What the module failed with.
+    Raises DesignatorError: it has no solution that a module could carry out; PlanFailure: what the module failed with.
     """
     target = get_process_module(module)
     if isinstance(desig, Command):
@@ -164,9 +162,7 @@ def pm_execute(module: Named, desig: Union[Designator, Command]) -> Any:
 def pm_execute_matching(desig: Designator) -> Any:
     """Have the matching module do what a designator describes.
 
-    Raises:
-        NoMatchingProcessModule: The module does not run.
-        PlanFailure: What the module failed with.
+    Raises NoMatchingProcessModule: the module does not run; PlanFailure: what the module failed with.
     """
     command = _command_of(desig)
     if not available_process_module(command.module):
@@ -207,8 +203,7 @@ def perform(desig: Union[Designator, Command]) -> Any:
 def monitor_process_module(module: Named, *desigs: Union[Designator, Command]) -> Any:
     """Wait, in a plan, for the next end of a command of a module, or of one of `desigs`; its result.
 
-    Raises:
-        PlanFailure: What it failed with.
+    Raises PlanFailure: what it failed with.
     """
     target = get_process_module(module)
     ended = Fluent(f"what {target.name} has done", None)

@@ -23,15 +23,14 @@ QUANTIFIERS = {"a": "a", "an": "a", "the": "the", "all": "all"}
 def read_lisp(text: str, values: int, levels: int) -> dict[str, Any]:
     """Keys and values of a designator: the kind under `type` with its pairs, or as one key with a mapping.
 
+    Raises PlanError: brackets are missing or too many, it has another form, or there is too much of it.
+
     Args:
         values: The most words, numbers and brackets allowed.
         levels: The deepest nesting of brackets allowed.
 
     Returns:
         `{"quantifier": "a", "kind": "action", "pairs": {...}}`; quantifier and kind are empty where there are none.
-
-    Raises:
-        PlanError: Brackets are missing or too many, it has another form, or there is too much of it.
     """
     forms = _read(text, values, levels)
     if len(forms) != 1 or not isinstance(forms[0], list):

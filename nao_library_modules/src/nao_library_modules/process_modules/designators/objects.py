@@ -128,9 +128,7 @@ BELIEFS = Beliefs()
 def known(desig: Designator) -> Iterator[KnownObject]:
     """Known objects that match. `the` allows only one; `all` gives one list of them.
 
-    Raises:
-        DesignatorError: Nothing known matches.
-        AmbiguousPerception: Several match a description that means one.
+    Raises DesignatorError: nothing known matches; AmbiguousPerception: several match a description that means one.
     """
     fit = BELIEFS.fitting(desig)
     if not fit:

@@ -91,9 +91,7 @@ class Manipulation(RobotModule):
     def close_gripper(self, side: str, grasp: bool = False) -> Grip:
         """Close a hand, around something or not; returns its opening, 0..1, and whether it holds something.
 
-        Raises:
-            GripperClosedCompletely: With `grasp`: there is nothing in it.
-            GripperGoalNotReached: It does not move.
+        Raises GripperClosedCompletely with `grasp`: there is nothing in it; GripperGoalNotReached: it does not move.
         """
         settings = self.robot.settings
         closed, tolerance = settings.gripper["closed"], settings.gripper_tolerance

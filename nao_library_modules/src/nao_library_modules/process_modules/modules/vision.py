@@ -55,14 +55,12 @@ class Vision(RobotModule):
     ) -> list[SeenThing]:
         """Look for things of a type in `DETECTORS` for `timeout` s; returns those seen.
 
+        Raises PerceptionObjectNotFound: nothing was seen in time; PerceptionLowLevelFailure: looking failed.
+
         Args:
             name: Only that one: a face's name, a landmark's number, a code's text.
             search: Whether the head turns to find them.
             size: Of the real thing, m; 0 for what is usual.
-
-        Raises:
-            PerceptionObjectNotFound: Nothing was seen in time.
-            PerceptionLowLevelFailure: Looking failed.
         """
         if type not in DETECTORS:
             raise PerceptionLowLevelFailure(f"there is no detector for {type!r}{of_those(type, DETECTORS)}")

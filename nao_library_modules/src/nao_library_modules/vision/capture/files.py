@@ -81,8 +81,7 @@ class VisionFiles:
     def plan(self, path: Path, overwrite: bool, planned: set[Path]) -> None:
         """Check that a file may be written after the planned ones, and add it to these.
 
-        Raises:
-            BadGoal: As `require_free`, or if an earlier function of the chain writes it.
+        Raises BadGoal as `require_free`, or if an earlier function of the chain writes it.
         """
         self.require_free(path, overwrite)
         if path in planned and not overwrite:

@@ -69,13 +69,8 @@ class Frames:
     def next(self, since: float, timeout: float) -> Frame:
         """The next frame that is not older than a time, or comes after OLD_FRAMES older ones.
 
-        Args:
-            since: ROS time, s.
-            timeout: s to wait for it.
-
-        Raises:
-            NoPicture: None came.
-            Preempted: Or whatever reason the interrupt has.
+        `since`: ROS time, s. `timeout`: s to wait for it. Raises NoPicture: None came; Preempted, or whatever reason
+        the interrupt has.
         """
         end = self._clock.now() + timeout
         while True:

@@ -98,15 +98,14 @@ class VideoFile:
     def __init__(self, file: WholeFile, file_type: str, codec: str, width: int, height: int) -> None:
         """Open the video; the file is closed with it.
 
+        Raises VideoTrouble: FFmpeg cannot make such a video.
+
         Args:
             file: Open for writing.
             file_type: One of VIDEO_TYPES.
             codec: One of `known_codecs`.
             width: Pixels of the first picture; an odd one is left out.
             height: Pixels, likewise.
-
-        Raises:
-            VideoTrouble: FFmpeg cannot make such a video.
         """
         self.width, self.height = max(2, width - width % 2), max(2, height - height % 2)
         self.frames = self.dropped = 0

@@ -118,9 +118,7 @@ class Watch:
     def until(self, end: float) -> Iterator[list[LocalizedDetection]]:
         """The detections that count, as they come: a list for each picture that has one, until a ROS time (s).
 
-        Raises:
-            Preempted: Or whatever reason the interrupt has.
-            NaoError: If the robot cannot be asked.
+        Raises Preempted, or whatever reason the interrupt has; NaoError if the robot cannot be asked.
         """
         module = self._detectors.module
         for event in self._events.until(end):
