@@ -38,12 +38,8 @@ def as_numbers(values: object, what: str) -> list[float]:
 def require(value: object, kind: type, where: str) -> None:
     """Check the class of an argument.
 
-    Raises AlmathError if `value` is not of that class.
-
-    Args:
-        value: The argument.
-        kind: The class it must have.
-        where: Function or class that takes it, for the error text.
+    `kind`: the class it must have. `where`: function or class that takes it, for the error text. Raises AlmathError if
+    `value` is not of that class.
     """
     if not isinstance(value, kind):
         raise AlmathError(f"{where} takes a {kind.__name__}, got {value!r}")
@@ -245,10 +241,7 @@ class Placed(Components):
 def fill(out: _Value, value: _Value, where: str) -> None:
     """Write a result over the object that the caller passed for it.
 
-    Args:
-        out: What to overwrite.
-        value: The result.
-        where: Function that answers, for the error text.
+    `out`: what to overwrite. `where`: function that answers, for the error text.
     """
     require(out, type(value), where)
     out._assign(value._values())
@@ -257,11 +250,7 @@ def fill(out: _Value, value: _Value, where: str) -> None:
 def asking(method: str, kinds: tuple[type, ...], text: str, name: str = "") -> Callable[..., Any]:
     """A function that has a method of its first argument answer, which has to be of one of some classes.
 
-    Args:
-        method: Name of the method.
-        kinds: The classes.
-        text: Docstring of the function.
-        name: Its name, if that is another one.
+    `kinds`: the classes. `text`: docstring of the function. `name`: its name, if that is another one.
     """
     name = name or method
 
@@ -292,10 +281,7 @@ def in_place(function: Callable[..., Components]) -> Callable[..., None]:
 def answer(value: _Value, out: _Value | None, where: str) -> _Value | None:
     """Return a result, or write it over an object that the caller passed for it, as the SDK's functions do.
 
-    Args:
-        value: The result.
-        out: What to overwrite, or None to have the result returned.
-        where: Function that answers, for the error text.
+    `out`: what to overwrite, or None to have the result returned. `where`: function that answers, for the error text.
     """
     if out is None:
         return value

@@ -72,10 +72,7 @@ def _bent(v: _matrix.Triple, angular: _matrix.Triple, across: float, along: floa
 def transformMean(start: Transform, end: Transform, share: float = 0.5) -> Transform:
     """Transform on the screw motion from one to another.
 
-    Args:
-        start: Where the motion begins.
-        end: Where it ends.
-        share: How much of it is done, in [0, 1].
+    `start`: where the motion begins. `share`: how much of it is done, in [0, 1].
     """
     require(start, Transform, "transformMean")
     require(end, Transform, "transformMean")

@@ -66,13 +66,8 @@ def weightedMeanAngle(angles: list[float], weights: list[float]) -> float:
 def clipData(minimum: float, maximum: float, values: Clippable) -> bool:
     """Clip the numbers of a list, or of a list of lists, in place.
 
-    Returns True if a number had to change. Raises AlmathError if `values` is a number: Python numbers cannot change,
-    use `min(max(value, minimum), maximum)`.
-
-    Args:
-        minimum: Smallest value allowed.
-        maximum: Largest value allowed.
-        values: What to clip.
+    `minimum`: smallest value allowed. `maximum`: largest value allowed. Returns True if a number had to change. Raises
+    AlmathError if `values` is a number: Python numbers cannot change, use `min(max(value, minimum), maximum)`.
     """
     if not isinstance(values, MutableSequence):
         raise AlmathError(f"clipData takes a list to clip in place, got {values!r}")

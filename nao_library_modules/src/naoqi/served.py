@@ -41,11 +41,7 @@ def public_methods(module: Any, base: type) -> List[str]:
 def served_object(module: Any, name: str, methods: Sequence[str], worker: Worker) -> Any:
     """An object for `qi.Session.registerService`.
 
-    Args:
-        module: Whose methods are called, looked up at each call.
-        name: Name of the module.
-        methods: Names of the methods to serve.
-        worker: Calls them, one at a time and in order.
+    `module`: whose methods are called, looked up at each call. `worker`: calls them, one at a time and in order.
     """
     namespace = {each: _served_method(module, name, each, worker) for each in methods}
     namespace["__doc__"] = inspect.getdoc(module)

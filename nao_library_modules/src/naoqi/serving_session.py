@@ -41,7 +41,6 @@ class ServingSession:
 
         Args:
             broker: Name of the broker, for texts.
-            connection: The connection to the robot.
             listen_ip: Address on which to listen, see `listening_address`.
             down: Set when the broker is shut down; ends all waiting.
             on_break: Called in a thread of libqi when the session breaks.
@@ -153,7 +152,6 @@ def listening_address(wanted: str, host: str, port: int) -> str:
     Args:
         wanted: An own address. Empty: the one that the robot sees, which may be another after a change of networks.
             `0.0.0.0`: all; but for a robot on this computer the loopback address alone.
-        host: Name or address of the robot.
         port: TCP port of NAOqi.
     """
     if wanted not in ("", ANY_ADDRESS):

@@ -78,7 +78,6 @@ class Sounds(Part):
         Args:
             module: NAOqi module.
             method: Its method that takes as long as the sound.
-            args: Its arguments.
             duration: s after which the sound is ended, if it is still there; 0: never.
             background: Whether it is not waited for.
             ended: Called when a sound in the background is over, from a thread of libqi.

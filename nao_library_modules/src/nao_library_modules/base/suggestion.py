@@ -17,12 +17,8 @@ def closest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
 
     Of equally close ones those come first that end in a number if the name does, and in none if it does not: `FaceLed`
     rather means `FaceLeds` than `FaceLed0`. Then the longer common beginning counts, then the length, then the order in
-    `known`. Upper and lower case do not matter: `setcolor` is as close to `setColor` as can be.
-
-    Args:
-        name: The name as typed.
-        known: Names to choose from.
-        count: How many to return at most.
+    `known`. Upper and lower case do not matter: `setcolor` is as close to `setColor` as can be. `name`: the name as
+    typed. `known`: names to choose from. `count`: how many to return at most.
     """
     matcher = difflib.SequenceMatcher(b=name.lower())
     scored = []

@@ -223,12 +223,8 @@ def write_whole(path: Path, content: str | bytes, numbered: bool = False) -> Pat
 def move_whole(path: Path, target: Path, overwrite: bool = False) -> Path:
     """Move a file, also to another disk. Until it is whole at its new place it is at the former one.
 
+    `overwrite`: whether it replaces one that is there; else it becomes name-2.end, name-3.end, ... beside that one.
     Returns where it is now. Raises FileTrouble if it cannot be moved; nothing has changed.
-
-    Args:
-        path: Where it is.
-        target: Where it is to be.
-        overwrite: Whether it replaces one that is there; else it becomes name-2.end, name-3.end, ... beside that one.
     """
     draft = target.parent / f".{os.getpid()}{DRAFT}"
     try:

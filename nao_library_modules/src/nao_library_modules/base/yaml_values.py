@@ -50,12 +50,8 @@ class ShallowLoader(yaml.SafeLoader):
 def load_within(text: str, budget: Budget, loader: type[ShallowLoader] = ShallowLoader) -> Any:
     """The value of a text.
 
-    Raises yaml.YAMLError if it is no YAML, or stands for too much.
-
-    Args:
-        text: YAML.
-        budget: How much it may stand for.
-        loader: What reads it.
+    `text`: YAML. `budget`: how much it may stand for. `loader`: what reads it. Raises yaml.YAMLError if it is no YAML,
+    or stands for too much.
     """
     try:
         reader = loader(text)

@@ -193,10 +193,8 @@ class BoundFunction:
     def run_check(self, message: Any, context: dict[str, Any], stand_in: StandIn = lambda owner: owner) -> None:
         """Run the check, if there is one.
 
-        Args:
-            message: The function message.
-            context: What the checks of a chain share.
-            stand_in: Owner of the function -> what takes its place in the check.
+        `context`: what the checks of a chain share. `stand_in`: owner of the function -> what takes its place in the
+        check.
         """
         if self.check is None:
             return
@@ -280,7 +278,6 @@ class FunctionChain:
         Raises BadGoal if the chain is empty or too long.
 
         Args:
-            messages: Function messages.
             before_check: As `read` takes it.
             context: What the checks share, with those of the chains before.
             stand_in: As `Binding.run_check` takes it.

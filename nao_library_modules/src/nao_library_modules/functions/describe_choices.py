@@ -43,10 +43,7 @@ class Choices:
     def of(self, function: str, field: str, asked: Sequence[Question]) -> tuple[str, ...]:
         """Words that a field of a function may hold; none where nobody has a say or the robot cannot be asked.
 
-        Args:
-            function: Its name.
-            field: The name of the field.
-            asked: What the field declares to ask the robot.
+        `field`: the name of the field. `asked`: what the field declares to ask the robot.
         """
         own = self._own(function, field)
         if own:

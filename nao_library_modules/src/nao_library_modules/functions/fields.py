@@ -113,7 +113,6 @@ def numbers(
     """A list of numbers, each as `number` takes it.
 
     Args:
-        bounds: Of each.
         meaning: The help.
         unit: As `number` takes it.
         zero: As `number` takes it.
@@ -156,7 +155,6 @@ def word(choices: Sequence[str], meaning: str, kind: str = "", empty: str | None
     """One of several words.
 
     Args:
-        choices: They.
         meaning: The help.
         kind: What they name, in words: "voice".
         empty: What no word stands for, where that is allowed: "the default"; None: it is not.

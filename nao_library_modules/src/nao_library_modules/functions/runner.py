@@ -62,11 +62,6 @@ class FunctionRunner:
         """Call a method several times at once and wait for all, as `call` does for one.
 
         Returns the results, in the order of the arguments.
-
-        Args:
-            proxy: Proxy of the module.
-            method: Name of the method.
-            arguments: Arguments of each call.
         """
         interrupt = getattr(self._asking, "interrupt", self.interrupt)
         interrupt.check()

@@ -231,7 +231,6 @@ class NaoLights(NaoBasic):
             lights: Lights and groups that change.
             revert: Whether they go back afterwards.
             method: Method of ALLeds.
-            arguments: Arguments of each call.
             together: Whether the calls run at the same time. Calls that take no time are made in order, so
                 that of two that set the same LED the later one counts.
         """

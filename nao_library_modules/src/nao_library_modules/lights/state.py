@@ -52,12 +52,8 @@ def _mean(numbers: Sequence[float]) -> float:
 def restoring_calls(names: LightNames, lights: Iterable[str], values: Values) -> list[Call]:
     """Calls of ALLeds that give single lights the values they had.
 
-    Returns method and arguments of each call. They may be made in any order: no two touch the same light.
-
-    Args:
-        names: Names of the robot.
-        lights: Lights and groups to restore.
-        values: Values of all their LEDs.
+    `lights`: lights and groups to restore. `values`: values of all their LEDs. Returns method and arguments of each
+    call. They may be made in any order: no two touch the same light.
     """
     calls: list[Call] = []
     for light in names.expand(lights):

@@ -56,12 +56,8 @@ class MotionStore:
     def save(self, name: str, motion: RecordedMotion, numbered: bool = False) -> Path:
         """Write a motion; one of that name is replaced as a whole, never left half written.
 
-        Raises BadGoal if the name will not do, FileTrouble if the file cannot be written.
-
-        Args:
-            name: Its name.
-            motion: What to write.
-            numbered: Whether, where there is one of that name, it becomes name-2, name-3, ... and replaces none.
+        `motion`: what to write. `numbered`: whether, where there is one of that name, it becomes name-2, name-3, ...
+        and replaces none. Raises BadGoal if the name will not do, FileTrouble if the file cannot be written.
         """
         path = self.path(name)
         text = yaml.safe_dump(motion.to_content(), default_flow_style=None, sort_keys=False, width=10**6)

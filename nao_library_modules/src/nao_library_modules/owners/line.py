@@ -101,7 +101,6 @@ class OwnerLine:
 
         Args:
             key: Of it in this process; one that was just reported is not reported again.
-            what: Name of it.
             cure: The call that stops it: module, method, arguments.
             seconds: How long it goes on at most; 0: until `let_go`.
         """

@@ -91,7 +91,6 @@ def run_module(
     A launched node whose name another node takes comes back when that one has ended.
 
     Args:
-        module: Class of the module.
         name: Default name of the node.
         description: What `--help` says.
         argv: Arguments, those of the process by default.

@@ -101,13 +101,7 @@ class NodeInterface:
         return rospy.ServiceProxy(self.resolve(name), kind)
 
     def action(self, name: str, kind: type, goals: Any) -> None:
-        """Serve an action.
-
-        Args:
-            name: Name of the action.
-            kind: Its type.
-            goals: Takes goals and cancels: a ConcurrentActionServer.
-        """
+        """Serve an action. `kind`: its type. `goals`: takes goals and cancels: a ConcurrentActionServer."""
         server = ActionServer(self.resolve(name), kind, goals.on_goal, goals.on_cancel, auto_start=False)
         server.start()
         self._ends.append(server.stop)

@@ -88,10 +88,7 @@ class ExtractorUse(Part):
 
         Args:
             module: NAOqi module.
-            method: Its method.
-            args: Arguments of it.
             undo: The method that ends what it begins.
-            undo_args: Arguments of that.
 
         Raises:
             NaoError: If the call fails; then nothing has begun.

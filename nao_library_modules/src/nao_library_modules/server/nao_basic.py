@@ -389,12 +389,8 @@ class NaoBasic(FunctionRunner):
     def steps_to_run(self, goal: Any, steps: Sequence[ChainStep], outcomes: list[Outcome]) -> Sequence[ChainStep]:
         """What of a checked chain is to be run: all of it.
 
-        For modules whose goals can ask for less.
-
-        Args:
-            goal: The goal.
-            steps: The whole chain.
-            outcomes: Where answers go of what is not run.
+        For modules whose goals can ask for less. `steps`: the whole chain. `outcomes`: where answers go of what is not
+        run.
         """
         return steps
 

@@ -39,13 +39,8 @@ FITS: dict[str, Callable[[Any], bool]] = {
 def new_function(kind: type, function: str, *values: Any, **fields: Any) -> Any:
     """A function message.
 
-    Raises TypeError if there is no such field, or none is left for a value.
-
-    Args:
-        kind: Its class.
-        function: Name of the function.
-        values: Each for the next field of its kind.
-        fields: Fields by name.
+    `values`: each for the next field of its kind. Raises TypeError if there is no such field, or none is left for a
+    value.
     """
     message = kind(function=function)
     for name, value in fields.items():

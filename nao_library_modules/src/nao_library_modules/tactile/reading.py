@@ -67,11 +67,7 @@ class Senses(ExtractorUse):
     ) -> None:
         """Publish what is felt meanwhile. Called from the thread that executes goals.
 
-        Args:
-            status: What the function does.
-            touched: What is pressed.
-            sonar: m, left and right.
-            stamp: ROS time of the change, s; None for now.
+        `touched`: what is pressed. `sonar`: m, left and right. `stamp`: ROS time of the change, s; None for now.
         """
         self._publish_feedback(stamp=stamp, status=status, touched=list(touched), sonar=list(sonar))
 

@@ -86,10 +86,7 @@ class BlockClock:
     def take(self, stamp: Sequence[float], duration: float, now: float) -> BlockTime:
         """Time of the next block.
 
-        Args:
-            stamp: Robot's time of its first sample: [s, us].
-            duration: s.
-            now: ROS time of its arrival, s.
+        `stamp`: robot's time of its first sample: [s, us]. `duration`: s. `now`: ROS time of its arrival, s.
         """
         robot = stamp[0] + 1e-6 * stamp[1]
         since = 0.0 if self._expected is None else robot - self._expected

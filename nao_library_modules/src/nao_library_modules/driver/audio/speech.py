@@ -108,12 +108,8 @@ class RobotSpeech:
     ) -> Utterance:
         """Append a text to the queue.
 
+        `on_start`: called when the robot begins to say it. `on_failure`: called with the error if it could not be said.
         Raises NaoError if too many are waiting.
-
-        Args:
-            text: What to say.
-            on_start: Called when the robot begins to say it.
-            on_failure: Called with the error if it could not be said.
         """
         utterance = Utterance(text, on_start, on_failure)
         with self._news:

@@ -40,7 +40,6 @@ class LazySubscription:
             robot: Its connection, see `nao_library_modules.robot`.
             name: Of what is started, for the log.
             start: Starts it. It may have been started before, on a robot that was lost since.
-            stop: Stops it.
             alive: Whether it still works; if not, it is stopped and started. Asked once a second.
         """
         self._robot = robot

@@ -68,7 +68,6 @@ def serve(
     Returns the server; `update` changes values from within the node.
 
     Args:
-        node: Their node.
         fields: The parameters. Those that are set already keep their values.
         changed: Called with the values before and after each change, at once with an empty mapping before; gives the
             values that hold from then on. Called in the thread of the service. A NaoError refuses the change, and the

@@ -39,7 +39,6 @@ def path_of(url: str, name: str, package_folder: Callable[[str], str]) -> Path:
         url: `file:///folder/file.yaml` or `package://package/file.yaml`, with ${NAME} for the name of the camera and
             ${ROS_HOME} for the folder of ROS; empty: the default of the convention.
         name: Of the camera.
-        package_folder: Gives the folder of a package.
     """
     text = (url or DEFAULT_URL).replace("${NAME}", name).replace("${ROS_HOME}", str(ros_home()))
     kind = text[: text.find("://") + 3].lower()

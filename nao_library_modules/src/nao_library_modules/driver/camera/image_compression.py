@@ -19,13 +19,8 @@ FORMATS = {JPEG: "small, with losses", PNG: "large, without losses"}
 def compress(picture: Picture, kind: str, jpeg_quality: int, png_level: int) -> tuple[str, bytes]:
     """A picture as a file, and its format in sensor_msgs/CompressedImage.
 
+    `picture`: in colours or grey. `kind`: jpeg or png. `jpeg_quality`: 1 to 100. `png_level`: 1 (quick) to 9 (small).
     Raises NaoError for other encodings, or if OpenCV fails.
-
-    Args:
-        picture: In colours or grey.
-        kind: jpeg or png.
-        jpeg_quality: 1 to 100.
-        png_level: 1 (quick) to 9 (small).
     """
     pixels, colours = _as_opencv(picture)
     options: list[Any] = [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality]

@@ -76,7 +76,6 @@ class Walker:
         """Have something done, instead of what is done now. Returns at once; `answer` of the order is its end.
 
         Args:
-            command: What to do.
             source: Where the command came from, for texts.
             watched: Whether a velocity ends when it is not renewed in time.
             to_the_end: Whether a step counts as carried out when it is made, and not when the robot has taken it.

@@ -74,7 +74,6 @@ class Beliefs:
         Args:
             type: Such as ball.
             name: That it is known by; empty if it has none: the type is made one.
-            position: Where it is.
             time: When it was seen, s.
             **facts: What else was seen of it, by key.
         """

@@ -51,13 +51,7 @@ class SettingFunctions(Part):
     """Settings of the cameras. Parameters are fields of VisionFunction."""
 
     def __init__(self, module: NaoBasic, cameras: Cameras, servers: Mapping[str, str]) -> None:
-        """Keep what the functions need.
-
-        Args:
-            module: Calls the robot.
-            cameras: The cameras of goals.
-            servers: Camera -> where its node takes dynamic_reconfigure.
-        """
+        """Keep what the functions need. `servers`: camera -> where its node takes dynamic_reconfigure."""
         self._module = module
         self._cameras = cameras
         self._servers = servers

@@ -98,10 +98,7 @@ class InUse(NaoError):
     def __init__(self, module: str, others: Sequence[str], how: str) -> None:
         """Compose the text.
 
-        Args:
-            module: NAOqi module.
-            others: Its other subscribers.
-            how: What it does for them that would have to change.
+        `module`: NAOqi module. `others`: its other subscribers. `how`: what it does for them that would have to change.
         """
         super().__init__(f"{module} {how} for {', '.join(others)}: it cannot be changed while they need it")
 
@@ -138,7 +135,6 @@ class Detectors(ExtractorUse):
         """Take what a module offers.
 
         Args:
-            module: Calls the robot.
             cameras: Has the active camera.
             results: Gets what is seen.
             subscriber: Begin of the names of subscriptions: of each robot's clients no two have the same.
