@@ -163,7 +163,8 @@ class ALBroker:
 
     def _restored(self) -> bool:
         """Reopen a lost session, with retries; True only if it was lost and is open again."""
-        delay = 0.2
+        timing = self.connection.timing
+        delay = timing.first_delay
         while not self._down.is_set() and self.connection.state is State.CONNECTED:
             with self._lock:
                 if self._session.is_healthy:
@@ -174,10 +175,10 @@ class ALBroker:
                     return True
                 except NaoError as error:
                     # At the first failure the connection is probably breaking too, which logs its own warning.
-                    level = logging.INFO if delay < 0.3 else logging.ERROR
+                    level = logging.INFO if delay == timing.first_delay else logging.ERROR
                     logger.log(level, "broker %s cannot serve again yet: %s", self._name, error)
             self._down.wait(delay)
-            delay = min(2.0 * delay, 2.0)
+            delay = min(2.0 * delay, timing.longest_delay)
         return False
 
     def _reopen(self) -> None:

@@ -13,8 +13,8 @@ from ..base.answers import Outcome
 from ..functions.memory_functions import MEMORY
 from ..processes.launcher import LaunchPath
 from ..server.nao_basic import NaoBasic
+from .binding_functions import BindingFunctions
 from .bindings import TouchBindings
-from .links import LinkFunctions
 from .measurements import Measurements
 from .reading import ReadingFunctions, Senses
 from .waiting import WaitingFunctions
@@ -30,7 +30,7 @@ class NaoTactile(NaoBasic):
 
     Attributes:
         senses: What the robot feels, and what the chain has felt so far.
-        links: Which touch starts which behaviour.
+        binding_functions: Which touch starts which behaviour.
 
     ROS API:
         Action `NaoTactile` (nao_library_actions/NaoTactileAction) and what NaoBasic offers. Client of the action
@@ -38,7 +38,7 @@ class NaoTactile(NaoBasic):
     """
 
     typed_answers = frozenset({"getSonar", "getFsr", "getTemperatures"})
-    part_types = (LinkFunctions, WaitingFunctions, ReadingFunctions)
+    part_types = (BindingFunctions, WaitingFunctions, ReadingFunctions)
 
     def __init__(
         self,
@@ -61,12 +61,12 @@ class NaoTactile(NaoBasic):
         self.senses = Senses(self, str(self._node.namespace))
         event_time = lambda event: self.robot_clock.event_time(self.call_now, *event)  # noqa: E731
         bindings = TouchBindings(lambda: self.robot.proxy(MEMORY), runner, self.clock, event_time)
-        self.links = LinkFunctions(self.robot, self.senses, bindings, self.kept)
-        self.add_parts(self.senses, self.links)
+        self.binding_functions = BindingFunctions(self.robot, self.senses, bindings, self.kept)
+        self.add_parts(self.senses, self.binding_functions)
         self.add_parts(WaitingFunctions(self, self.senses), ReadingFunctions(self, self.senses))
         self.serve("NaoTactile", NaoTactileAction)
-        if self.links.unrestored:
-            self.robot.connection.in_background(self.links.restore)
+        if self.binding_functions.unrestored:
+            self.robot.connection.in_background(self.binding_functions.restore)
 
     def begin_chain(self) -> None:
         self.senses.measurements = Measurements()
@@ -77,16 +77,20 @@ class NaoTactile(NaoBasic):
 
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
         """Names of the links that can be removed, for the description of the functions."""
-        return self.links.bindings.names if (function, field) == ("removeOnTouch", "str_param") else ()
+        return self.binding_functions.bindings.names if (function, field) == ("removeOnTouch", "str_param") else ()
 
     def shutdown_steps(self) -> list[Callable[[], Any]]:
         """As NaoBasic has them; touches start nothing any more, and the sonars are let go."""
-        return [*super().shutdown_steps(), self.links.bindings.close, self.with_robot(self.senses.drop_sonar)]
+        return [
+            *super().shutdown_steps(),
+            self.binding_functions.bindings.close,
+            self.with_robot(self.senses.drop_sonar),
+        ]
 
     def connected(self, again: bool) -> None:
-        self.links.restore()
+        self.binding_functions.restore()
         if again:
-            self.links.bindings.renew()
+            self.binding_functions.bindings.renew()
             try:
                 self.senses.renew_sonar()
             except NaoError as error:

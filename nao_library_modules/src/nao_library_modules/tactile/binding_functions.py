@@ -39,7 +39,7 @@ from .touch import WantedTouch
 log = logging.getLogger(__name__)
 
 
-class LinkFunctions(Part):
+class BindingFunctions(Part):
     """Parameters are fields of TactileFunction. `bindings`: which touch starts which behaviour."""
 
     left_by_goals = frozenset({"bindings"})
