@@ -131,11 +131,11 @@ def pose_of_description(desig: Designator) -> Iterator[Candidate]:
 
 
 def around_object(desig: Designator) -> Iterator[Candidate]:
-    """Places around a thing, facing it: near=..., with distance in m from its edge."""
+    """Places around a thing, facing it: near=..., with distance in m from its edge, or that of the settings."""
     thing = _thing(desig, "near")
     if thing is None:
         return
-    distance = desig.get("distance", 0.1)
+    distance = desig.get("distance", numbers_of_nao().near_distance)
     try:
         away = number().take(distance)
     except Mismatch:

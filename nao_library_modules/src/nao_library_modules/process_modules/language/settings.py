@@ -29,9 +29,7 @@ class Settings:
     head_speed: float  # rad/s
     head_tolerance: float
     camera: Dict[str, float]  # on the head, see `space.head_angles`: forward, up, neck, tilt
-    arm_targets: Dict[
-        str, Tuple[float, float, float]
-    ]  # points for the left hand by word, in the torso frame; mirrored for the right one
+    arm_targets: Dict[str, Tuple[float, float, float]]  # of the left hand by word, in the torso frame; right: mirrored
     arm_speed: float  # rad/s
     arm_tolerance: float  # of the hand
     shoulder: Tuple[float, float, float]  # the left one, in the torso frame
@@ -43,6 +41,7 @@ class Settings:
     robot_radius: float  # around the middle of the robot, has to be free
     robot_height: float  # above the floor, has to be free up to there
     eye_height: float  # above the floor, of a standing robot
+    near_distance: float  # from the edge of a thing that a place is near to
     seeing_distances: Tuple[float, ...]  # to look at things from, in order of preference
     steepest_look: float  # downward, of the top camera with the head fully bowed
     shoulder_height: float  # above the floor, of a standing robot
