@@ -277,9 +277,15 @@ def give_name(draft: Path, name: Path) -> bool:
 
 
 def _first_free(draft: Path, target: Path, mark: str = "-", first: int = 2) -> Path:
-    """Give a file the first name that is free: that of the target, or one with a number; which it is."""
-    others = (target.with_name(f"{target.stem}{mark}{number}{target.suffix}") for number in itertools.count(first))
-    return next(name for name in itertools.chain([target], others) if give_name(draft, name))
+    """Give a file the first of `numbered_names` that is free; which it is."""
+    return next(name for name in numbered_names(target, mark, first) if give_name(draft, name))
+
+
+def numbered_names(target: Path, mark: str = "-", first: int = 2) -> Iterator[Path]:
+    """A name, and after it those with a number: name-2, name-3, ..."""
+    yield target
+    for number in itertools.count(first):
+        yield target.with_name(f"{target.stem}{mark}{number}{target.suffix}")
 
 
 def _nobody_writes(path: Path) -> bool:

@@ -11,7 +11,7 @@ from pathlib import Path
 from ...base.errors import BadGoal
 from ...base.field_checks import CONTROL, LONGEST_NAME
 from ...base.suggestion import did_you_mean
-from ...base.whole_file import WholeFile, tidy
+from ...base.whole_file import WholeFile, numbered_names, tidy
 
 DEFAULT_RECORD_DIR = "~/.ros/nao_recordings"
 """As that of the simulator: beside a simulated robot on the same computer, its files and these are in one place."""
@@ -107,13 +107,11 @@ class VisionFiles:
             numbered: Whether this file becomes name-2, name-3, ... beside an existing one.
         """
         with self._lock:
-            free, number = path, 1
-            while free in self._open or (free.exists() and not overwrite):
-                if not numbered:
-                    problem = f"{path} is there already"
-                    raise BadGoal("str_param", path.name, "another name, or overwrite", problem=problem)
-                number += 1
-                free = path.with_name(f"{path.stem}-{number}{path.suffix}")
+            names = numbered_names(path) if numbered else [path]
+            free = next((n for n in names if n not in self._open and (overwrite or not n.exists())), None)
+            if free is None:
+                problem = f"{path} is there already"
+                raise BadGoal("str_param", path.name, "another name, or overwrite", problem=problem)
             file = WholeFile(free, numbered)
             self._open.add(free)
         return file
