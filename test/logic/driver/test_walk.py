@@ -20,7 +20,7 @@ from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.kept import Kept
 from nao_library_modules.base.places import Place
-from nao_library_modules.driver.base.rotation import from_roll_pitch_yaw, product, rotate
+from nao_library_modules.base.rotations import from_roll_pitch_yaw, product, rotate
 from nao_library_modules.driver.joints import state_messages as messages
 from nao_library_modules.driver.joints.feet import LEG_JOINTS, footprint, sole
 from nao_library_modules.driver.joints.joint_controller import InitialStiffness

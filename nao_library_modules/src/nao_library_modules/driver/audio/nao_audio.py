@@ -20,13 +20,13 @@ from nao_library_msgs.srv import (
 from ...base.cancellation import CancellationToken
 from ...base.field_checks import number_parameter
 from ...base.limits import limit
+from ...base.rotations import from_roll_pitch_yaw
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
 from ..base.node import name_for_robot, publish
-from ..base.rotation import from_roll_pitch_yaw
 from .audio_directions import Direction, SoundDirections
 from .audio_player import AudioPlayer
 from .audio_requests import CHANNELS, file_on_robot, read_recording, read_volume

@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Tuple
 
-from ..base.rotation import Quaternion, Vector, about, from_roll_pitch_yaw, inverse, product, rotate
+from ...base.rotations import Quaternion, Vector, about, from_roll_pitch_yaw, inverse, product, rotate
 
 HIP_Y, HIP_Z = 0.05, 0.085
 THIGH, TIBIA, FOOT = 0.1, 0.1029, 0.04519

@@ -13,8 +13,8 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ...base.paths import config_file
+from ...base.rotations import Vector
 from ...nao.joint_names import MOTION
-from ..base.rotation import Vector
 
 MEMORY = "ALMemory"
 DEVICE = "Device/SubDeviceList/{}/Value"

@@ -20,8 +20,8 @@ from ...base.errors import BadGoal
 from ...base.field_checks import require_length, require_within
 from ...base.limits import limit
 from ...base.places import Place, yaw_of_quaternion
+from ...base.rotations import from_roll_pitch_yaw, product, rotate
 from ...ros.robot_frames import seen_from_above
-from ..base.rotation import from_roll_pitch_yaw, product, rotate
 
 PLACE, PLACES = limit("place"), limit("places")
 PATIENCE = 2.0

@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 from rospy import Time
 from sensor_msgs.msg import Imu, JointState
 
-from ..base.rotation import from_roll_pitch_yaw, inverse, rotate
+from ...base.rotations import from_roll_pitch_yaw, inverse, rotate
 from .joint_sensors import Reading
 
 # Rough figures for filters that fuse sensors, on the diagonal: the robot publishes none.

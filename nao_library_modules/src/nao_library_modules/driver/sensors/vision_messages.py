@@ -9,8 +9,8 @@ from std_msgs.msg import Float32, Header, Int32
 
 from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetected
 
+from ...base.rotations import from_roll_pitch_yaw
 from ...nao.camera_facts import CAMERA_NAMES
-from ..base.rotation import from_roll_pitch_yaw
 from .vision_values import Face, Landmark, Movement, View
 
 

@@ -1,4 +1,4 @@
-"""Rotations as the driver needs them. Pure functions; quaternions are (x, y, z, w), angles in rad."""
+"""Rotations. Pure functions; quaternions are (x, y, z, w), angles in rad."""
 
 from __future__ import annotations
 
