@@ -32,19 +32,6 @@ class Position(NamedTuple):
     frame: str = ""  # of /tf; empty for the default: torso for arms and head, odom for walking
 
 
-def turned(point: Sequence[float], quaternion: Sequence[float]) -> tuple[float, float, float]:
-    """A point turned by a unit quaternion (x, y, z, w)."""
-    px, py, pz = point
-    x, y, z, w = quaternion
-    # v + 2 w (q x v) + 2 q x (q x v)
-    cx, cy, cz = y * pz - z * py, z * px - x * pz, x * py - y * px
-    return (
-        px + 2.0 * (w * cx + y * cz - z * cy),
-        py + 2.0 * (w * cy + z * cx - x * cz),
-        pz + 2.0 * (w * cz + x * cy - y * cx),
-    )
-
-
 def head_angles(x: float, y: float, z: float, camera: Sequence[float]) -> tuple[float, float]:
     """HeadYaw and HeadPitch, positive to the left and down, of a head that looks at a point of the torso frame.
 

@@ -12,13 +12,14 @@ import tf2_ros
 from sensor_msgs.msg import JointState
 
 from ...base.places import Place, yaw_of_quaternion
+from ...base.rotations import rotate
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..language.failures import LowLevelFailure
 from ..language.flow import sleep, wait_until
 from ..language.fluents import Fluent
 from ..language.settings import Settings, load_settings
-from ..language.space import Point3, turned
+from ..language.space import Point3
 from .action_client import PlanActionClient
 from .chains import Chain
 
@@ -145,7 +146,7 @@ class RobotLink:
             return point
         found = self._transform(frame, point.frame)
         turn, move = found.rotation, found.translation
-        x, y, z = turned((point.x, point.y, point.z), (turn.x, turn.y, turn.z, turn.w))
+        x, y, z = rotate((turn.x, turn.y, turn.z, turn.w), (point.x, point.y, point.z))
         return Point3(x + move.x, y + move.y, z + move.z, frame)
 
     def _transform(self, to: str, of: str) -> Any:
