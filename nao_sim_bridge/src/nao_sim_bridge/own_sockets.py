@@ -20,13 +20,13 @@ log = logging.getLogger("nao_sim.broker")
 # States of a socket in the tables of /proc, and the timer of one whose other end has no room for more.
 LISTENS, CONNECTED = "0A", "01"
 NO_ROOM = "04"
-# Where the kernel's tcp_info has the bytes that the other end has acknowledged.
-ACKNOWLEDGED = struct.Struct("@120xQ")
+# Where the kernel's tcp_info has the ms since data was sent last, and the bytes that the other end has acknowledged.
+SENT_AND_TAKEN = struct.Struct("@44xI72xQ")
 # A client that takes nothing for this time, s, though more waits than its system and ours can hold, is cut off: libqi
 # would keep all that comes meanwhile. libqi itself gives such a connection up after 30 s.
 STUCK = load_sizes().clients.stuck_s
+# s between two looks while a client takes nothing, and otherwise: a look takes the kernel some ms.
 LOOK_PERIOD, IDLE_PERIOD = 0.5, 2.0
-"""s between two looks, while a client takes nothing and else: the kernel takes its time for the table of sockets."""
 FOLDER = "/proc/self/fd"
 
 
@@ -66,7 +66,7 @@ class StuckClients:
 
     def __init__(self, port: int) -> None:
         self._port = port
-        self._since: dict[str, tuple[int, float]] = {}  # bytes that had been taken, and when that was seen first
+        self._since: dict[str, tuple[int, float]] = {}  # bytes that had been taken, and when the last ones were sent
         self._over = threading.Event()
         threading.Thread(target=self._run, name="watch of clients", daemon=True).start()
 
@@ -87,8 +87,8 @@ class StuckClients:
 
     def _look_at(self, row: _Row, now: float, known: int, since: float) -> None:
         for connection in _sockets(row.link):
-            (taken,) = ACKNOWLEDGED.unpack(connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 128))
-            self._since[row.link] = (taken, since if known == taken else now)
+            sent, taken = SENT_AND_TAKEN.unpack(connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 128))
+            self._since[row.link] = (taken, since if known == taken else now - min(0.001 * sent, IDLE_PERIOD))
             if known == taken and now - since >= STUCK:
                 log.warning("the client at %s has taken nothing for %.1f s: cut off", row.other_end, now - since)
                 connection.shutdown(socket.SHUT_RDWR)

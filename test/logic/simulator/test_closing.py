@@ -29,7 +29,7 @@ def test_a_client_that_closes_while_it_is_cut_off_does_not_end_the_watch(monkeyp
     monkeypatch.setattr(own_sockets, "LOOK_PERIOD", 0.001)
     cut, connections = threading.Event(), {"gone": MagicMock(), "there": MagicMock()}
     for connection in connections.values():
-        connection.getsockopt.return_value = own_sockets.ACKNOWLEDGED.pack(7)
+        connection.getsockopt.return_value = own_sockets.SENT_AND_TAKEN.pack(0, 7)
     connections["gone"].shutdown.side_effect = OSError("Transport endpoint is not connected")
     connections["there"].shutdown.side_effect = lambda _: cut.set()
     rows = [own_sockets._Row(name, 1, own_sockets.CONNECTED, own_sockets.NO_ROOM, name) for name in connections]
