@@ -9,9 +9,7 @@ instead of printing a warning and going on with another value. Plain lists do wh
 `vectorFloat` or `vectorPosition2D`.
 """
 
-from __future__ import annotations
-
-from types import ModuleType
+import types
 
 from almath.axes import (
     axisRotationProjection,
@@ -203,5 +201,4 @@ Transform_fromRotZ = Transform.fromRotZ
 Transform_from3DRotation = Transform.from3DRotation
 Transform_fromPosition = Transform.fromPosition
 
-__all__ = [name for name, value in globals().items() if not (name[0] == "_" or isinstance(value, ModuleType))]
-__all__ = [name for name in __all__ if name not in ("annotations", "ModuleType")]
+__all__ = [name for name, value in globals().items() if not (name[0] == "_" or isinstance(value, types.ModuleType))]

@@ -4,11 +4,9 @@ What plans are written with can be imported from here, and what starts the modul
 `low_level`, `nao_goals`, `plan_runner`, `modules` and `robot_link`.
 """
 
-from __future__ import annotations
+import types
 
-from types import ModuleType
-
-from ..base.doors import door
+from ..base import doors
 from .core.perception import at_location, examine, go_to, perceive
 from .core.process_module import AsynchronousProcessModule, ProcessModule, pm_cancel, pm_run, pm_status
 from .core.registry import (
@@ -91,7 +89,6 @@ _LATER = {
     "NavigationProcessModule": "modules.navigation:Navigation",
     "SpeechProcessModule": "modules.speech:Speech",
 }
-__getattr__ = door(__name__, _LATER)
-_OURS = ("annotations", "door", "ModuleType")
-__all__ = [name for name, value in globals().items() if not (name[0] == "_" or isinstance(value, ModuleType))]
-__all__ = [*_LATER, *(name for name in __all__ if name not in _OURS)]
+__getattr__ = doors.door(__name__, _LATER)
+__all__ = [name for name, value in globals().items() if not (name[0] == "_" or isinstance(value, types.ModuleType))]
+__all__ += _LATER
