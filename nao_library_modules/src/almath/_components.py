@@ -256,7 +256,8 @@ def asking(method: str, kinds: tuple[type, ...], text: str, name: str = "") -> C
 
     def ask(value: Any, *arguments: Any) -> Any:
         if not isinstance(value, kinds):
-            raise AlmathError(f"{name} takes one of {', '.join(kind.__name__ for kind in kinds)}, got {value!r}")
+            one_of = "a " if len(kinds) == 1 else "one of "
+            raise AlmathError(f"{name} takes {one_of}{', '.join(kind.__name__ for kind in kinds)}, got {value!r}")
         return getattr(value, method)(*arguments)
 
     ask.__name__ = ask.__qualname__ = name
