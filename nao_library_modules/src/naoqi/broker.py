@@ -165,6 +165,7 @@ class ALBroker:
         """Reopen a lost session, with retries; True only if it was lost and is open again."""
         timing = self.connection.timing
         delay = timing.first_delay
+        level = logging.INFO  # at first: the connection is probably breaking too, which logs its own warning
         while not self._down.is_set() and self.connection.state is State.CONNECTED:
             with self._lock:
                 if self._session.is_healthy:
@@ -174,9 +175,8 @@ class ALBroker:
                     self._reopen()
                     return True
                 except NaoError as error:
-                    # At the first failure the connection is probably breaking too, which logs its own warning.
-                    level = logging.INFO if delay == timing.first_delay else logging.ERROR
                     logger.log(level, "broker %s cannot serve again yet: %s", self._name, error)
+                    level = logging.ERROR
             self._down.wait(delay)
             delay = min(2.0 * delay, timing.longest_delay)
         return False
