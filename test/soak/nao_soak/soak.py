@@ -26,7 +26,7 @@ START_LIMIT = 120.0
 RECOVERY_LIMIT = 60.0
 SAMPLE_PERIOD = 2.0
 LOGS, SCREEN = "logs of the nodes", "what the nodes print"
-LOG_RATES = {LOGS: 16.0, SCREEN: 8.0}
+LOG_RATES = {LOGS: 12.0, SCREEN: 8.0}
 """kB a second that they may grow together: each goal that is refused leaves a line, and there are dozens a second; each
 message that is none leaves twenty lines of rospy's."""
 GARBAGE = Path(__file__).with_name("garbage.py")
