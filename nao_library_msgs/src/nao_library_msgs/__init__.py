@@ -18,8 +18,13 @@ def load_when_asked(package: str, kind: str, prefix: str = "") -> ModuleType:
         package: Its name; it is just being imported.
         kind: "msg" or "srv".
         prefix: What names have that are known without it as well.
+
+    Raises:
+        ImportError: It was not generated.
     """
     spec = importlib.util.find_spec(f"{package}.{kind}")
+    if spec is None:
+        raise ImportError(f"{package}.{kind} is not there: build {package} with catkin, and source its workspace")
     module = importlib.util.module_from_spec(spec)
     files = [file.stem[1:] for folder in spec.submodule_search_locations for file in Path(folder).glob("_[A-Za-z]*.py")]
     ends = ("", "Request", "Response") if kind == "srv" else ("",)

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import pytest
 from genpy import Duration
 
+import nao_library_msgs.msg
+import nao_library_msgs.srv
 from nao_library_actions import msg as actions
 from nao_library_modules.server import new_functions as new
 from nao_library_msgs.msg import AudioOutFunction, LedFunction, MotionFunction
@@ -39,3 +44,23 @@ def test_a_point_of_a_trajectory_has_its_time_first():
 
 def test_goals_have_the_short_names_of_the_paper_as_well():
     assert actions.LedGoal is actions.NaoLedGoal and actions.MotionAction is actions.NaoMotionAction
+
+
+def test_a_message_is_loaded_when_it_is_asked_for():
+    program = "import sys; from nao_library_actions.msg import NaoLedGoal; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    loaded = {name for name in run.stdout.split() if name.startswith("nao_library_") and "._" in name}
+    assert loaded == {"nao_library_actions.msg._NaoLedGoal"}
+
+
+def test_all_messages_and_services_are_there_by_the_names_of_genpy_and_no_others():
+    for module in (actions, nao_library_msgs.msg, nao_library_msgs.srv):
+        assert module.__all__ == dir(module) != []
+        for name in module.__all__:
+            assert getattr(module, name).__name__ in (name, f"Nao{name}")
+    service = nao_library_msgs.srv.SetTransform
+    assert service._request_class is nao_library_msgs.srv.SetTransformRequest
+    with pytest.raises(ImportError, match="cannot import name 'Bumpers'"):
+        from nao_library_msgs.msg import Bumpers  # noqa: F401
+    with pytest.raises(ImportError, match="build nao_library_msgs with catkin"):
+        nao_library_msgs.load_when_asked("nao_library_msgs", "action")

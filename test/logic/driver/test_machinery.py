@@ -10,10 +10,12 @@ import pytest
 from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import BadGoal, Preempted, RobotLost
+from nao_library_modules.driver.base import node as driver_node
 from nao_library_modules.driver.base import reconfigure
 from nao_library_modules.driver.base.lazy_topic import LazyTopic
 from nao_library_modules.driver.base.rate import Rate
 from nao_library_modules.driver.base.reconfigure import ReconfigureField
+from nao_library_modules.driver.joints.nao_joint_states import NaoJointStates
 from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, GoalOutcome
 from naoqi.errors import NaoError
 
@@ -218,3 +220,29 @@ def test_work_is_done_while_one_of_some_topics_has_a_listener_that_counts():
     ):
         topic.have(*nodes)
         assert told == listened, nodes
+
+
+def test_joints_are_wanted_by_who_listens_and_not_by_the_node_that_makes_frames_of_them_alone(monkeypatch):
+    monkeypatch.setattr(driver_node, "tf_prefix", lambda: "")
+    topics, robot = {}, MagicMock()
+    robot.connection.wait_connected.return_value = False
+    node = MagicMock(param=lambda _, default=None: default, resolve=lambda name: f"/nao1/{name}")
+    node.publisher = lambda name, *_, **__: topics.setdefault(name, ListenedTopic())
+    states = NaoJointStates(robot, node)
+
+    def wanted():
+        return states.reports()["readings"]().message != "nobody listens"
+
+    try:
+        assert not wanted()
+        topics["joint_states"].have("/nao1/robot_state_publisher")
+        assert not wanted()
+        for name in ("/tf", "imu", "odom", "~joint_stiffness"):
+            topics[name].have("/rviz")
+            assert wanted(), name
+            topics[name].have()
+            assert not wanted(), name
+        topics["joint_states"].have("/nao1/robot_state_publisher", "/plot")
+        assert wanted()
+    finally:
+        states.close()
