@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from ..base.field_checks import require_count, require_length
 from ..functions.chain import checked_by
@@ -50,35 +51,21 @@ class CartesianFunctions(BodyPart):
         self.body.plan.leave_to_robot(joints)
         return joints
 
-    def _check_poses(self, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
-        self._check_targets(names, values, POSE, stiffness)
+    # `size`: POSE or TRANSFORM, how many numbers there are for each effector.
 
-    def _check_transforms(self, names: Sequence[str], values: Sequence[float], stiffness: float) -> None:
-        self._check_targets(names, values, TRANSFORM, stiffness)
-
-    def _check_targets(self, names: Sequence[str], values: Sequence[float], size: int, stiffness: float) -> None:
+    def _check_targets(self, names: Sequence[str], values: Sequence[float], stiffness: float, size: int) -> None:
         self.body.plan.aim(self._check_move(names, stiffness))
         _rows(values, len(names), size)
 
-    def _check_pose_paths(
-        self, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float
-    ) -> None:
-        self._check_paths(names, values, POSE, times, stiffness)
-
-    def _check_transform_paths(
-        self, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float
-    ) -> None:
-        self._check_paths(names, values, TRANSFORM, times, stiffness)
-
     def _check_paths(
-        self, names: Sequence[str], values: Sequence[float], size: int, times: Sequence[float], stiffness: float
+        self, names: Sequence[str], values: Sequence[float], times: Sequence[float], stiffness: float, size: int
     ) -> None:
         self._check_move(names, stiffness)
         require_length("times", len(names) * len(times), POSES)
         _rows(values, len(names) * len(times), size)
         self.body.plan.takes(times[-1])
 
-    @checked_by(_check_poses)
+    @checked_by(partial(_check_targets, size=POSE))
     def set_position(
         self, names: Effectors, values: Poses, frame: Frame, axis_mask: AxisMask, speed: Speed, stiffness: Stiffness
     ) -> None:
@@ -86,7 +73,7 @@ class CartesianFunctions(BodyPart):
         rows = self._targets(names, values, POSE, stiffness)
         self.motion("setPositions", list(names), frame, rows, speed or DEFAULT_SPEED, axis_mask or POSITION)
 
-    @checked_by(_check_transforms)
+    @checked_by(partial(_check_targets, size=TRANSFORM))
     def set_transform(
         self,
         names: Effectors,
@@ -100,7 +87,7 @@ class CartesianFunctions(BodyPart):
         rows = self._targets(names, values, TRANSFORM, stiffness)
         self.motion("setTransforms", list(names), frame, rows, speed or DEFAULT_SPEED, axis_mask or POSITION)
 
-    @checked_by(_check_poses)
+    @checked_by(partial(_check_targets, size=POSE))
     def change_position(
         self,
         names: Effectors,
@@ -114,7 +101,7 @@ class CartesianFunctions(BodyPart):
         for name, change in zip(names, self._targets(names, values, POSE, stiffness)):
             self.motion("changePosition", name, frame, change, speed or DEFAULT_SPEED, axis_mask or POSITION)
 
-    @checked_by(_check_pose_paths)
+    @checked_by(partial(_check_paths, size=POSE))
     def position_interpolation(
         self,
         names: Effectors,
@@ -126,12 +113,11 @@ class CartesianFunctions(BodyPart):
         stiffness: Stiffness,
     ) -> None:
         """Move effectors through poses at given times, and wait for the end; all poses of the first one come first."""
-        paths = self._paths(names, values, POSE, times, stiffness)
+        paths, moments = self._paths(names, values, POSE, times, stiffness)
         masks = [axis_mask or POSITION] * len(names)
-        moments = [list(times)] * len(names)
         self.motion("positionInterpolations", list(names), frame, paths, masks, moments, not relative)
 
-    @checked_by(_check_transform_paths)
+    @checked_by(partial(_check_paths, size=TRANSFORM))
     def transform_interpolation(
         self,
         names: Effectors,
@@ -143,9 +129,8 @@ class CartesianFunctions(BodyPart):
         stiffness: Stiffness,
     ) -> None:
         """Move effectors through transforms (12 numbers each) at given times, and wait for the end."""
-        paths = self._paths(names, values, TRANSFORM, times, stiffness)
+        paths, moments = self._paths(names, values, TRANSFORM, times, stiffness)
         masks = [axis_mask or POSITION] * len(names)
-        moments = [list(times)] * len(names)
         self.motion("transformInterpolations", list(names), frame, paths, masks, moments, not relative)
 
     def get_com(self, frame: Frame, commanded: Commanded, names: SomeJoints) -> list[list[float]]:
@@ -163,11 +148,12 @@ class CartesianFunctions(BodyPart):
 
     def _paths(
         self, names: Sequence[str], values: Sequence[float], size: int, times: Sequence[float], stiffness: float
-    ) -> list[list[list[float]]]:
-        """Numbers of each effector at each time; the effectors are stiffened."""
+    ) -> tuple[list[list[list[float]]], list[list[float]]]:
+        """Numbers of each effector at each time, and the times of each; the effectors are stiffened."""
         self.body.stiffen(self._joints_of(names), stiffness)
         rows = _rows(values, len(names) * len(times), size)
-        return [rows[i * len(times) : (i + 1) * len(times)] for i in range(len(names))]
+        paths = [rows[i * len(times) : (i + 1) * len(times)] for i in range(len(names))]
+        return paths, [list(times)] * len(names)
 
     def _joints_of(self, names: Sequence[str]) -> list[str]:
         chains = self.body.facts.chains
