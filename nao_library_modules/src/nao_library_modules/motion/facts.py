@@ -16,11 +16,13 @@ ARMS = ("LArm", "RArm")
 
 @dataclass(frozen=True)
 class JointLimits:
-    """Range of one joint."""
-
     lower: float  # rad (hands 0..1)
     upper: float
     max_speed: float  # rad/s (hands 1/s)
+
+    def within(self, angle: float) -> float:
+        """The nearest angle to this one that the joint can have."""
+        return min(max(angle, self.lower), self.upper)
 
 
 @dataclass(frozen=True)

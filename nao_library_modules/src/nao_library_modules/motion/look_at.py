@@ -16,8 +16,6 @@ TORSO = 0
 
 
 class GazeFunctions(BodyPart):
-    """Looking at points."""
-
     def _check_look(self, duration: float, stiffness: float) -> None:
         self.body.plan.require_stiff(HEAD, stiffness)
         self.body.plan.leave_to_robot(HEAD, duration)
@@ -33,10 +31,7 @@ class GazeFunctions(BodyPart):
             wanted = look_at(head, head.cameras[str_param or CAMERA], point)
         except ValueError as error:
             raise BadGoal("values", list(values), f"a point in front of the head ({FRAMES[frame]}): {error}") from error
-        angles = []
-        for joint, angle in zip(HEAD, wanted):
-            limits = self.body.facts.limits[joint]
-            angles.append(min(max(angle, limits.lower), limits.upper))
+        angles = [self.body.facts.limits[joint].within(angle) for joint, angle in zip(HEAD, wanted)]
         self.body.stiffen(HEAD, stiffness)
         if duration > 0.0:
             self.motion("angleInterpolation", list(HEAD), [[angle] for angle in angles], [[duration]] * 2, True)

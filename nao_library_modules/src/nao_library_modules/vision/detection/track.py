@@ -38,7 +38,7 @@ from .fields import (
     wanted_thing,
 )
 from .space import LocalizedDetection, merged
-from .track_plan import MIDDLE, STILL, Angles, aim, fraction, off_axis, search_angles, the_one, travel_time, within
+from .track_plan import MIDDLE, STILL, Angles, aim, fraction, off_axis, search_angles, the_one, travel_time
 
 log = logging.getLogger(__name__)
 
@@ -88,7 +88,7 @@ class Neck:
             log.debug("%s: the head stays where it is", error)
             return True
         angle = off_axis(detection)
-        yaw, pitch = (within(joint, value) for joint, value in zip(self.ranges, wanted))
+        yaw, pitch = (joint.within(value) for joint, value in zip(self.ranges, wanted))
         if angle > STILL:
             self.turn((yaw, pitch), fraction(angle, self.ranges, self.speed))
         return (yaw, pitch) != wanted

@@ -39,11 +39,6 @@ def aim(detection: LocalizedDetection) -> Angles:
     return look_at(head, head.cameras[CAMERA_NAMES[detection.camera]], detection.in_torso)
 
 
-def within(joint: JointLimits, angle: float) -> float:
-    """An angle (rad) within the limits of a joint."""
-    return min(max(angle, joint.lower), joint.upper)
-
-
 def off_axis(detection: LocalizedDetection) -> float:
     """Angle of a detection off the camera's axis, rad."""
     x, y, z = detection.in_camera
@@ -68,7 +63,7 @@ def search_angles(kind: str, ranges: Sequence[JointLimits]) -> Iterator[Angles]:
     for column, yaw in enumerate(YAWS):
         # Down one column and up the next: shorter ways for the head.
         for pitch in rows if column % 2 == 0 else rows[::-1]:
-            places.append((within(ranges[0], yaw), within(ranges[1], pitch)))
+            places.append((ranges[0].within(yaw), ranges[1].within(pitch)))
     return cycle(places)
 
 
