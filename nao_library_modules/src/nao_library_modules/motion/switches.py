@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from ..base.errors import BadGoal
@@ -35,8 +36,6 @@ BALANCE_TIME = 2.0
 
 
 class MotionSwitches(BodyPart):
-    """Functions of ALMotion for what the robot does by itself."""
-
     # Life-like motion
 
     def set_breath_enabled(self, names: Chains, enable: Enable) -> None:
@@ -47,11 +46,11 @@ class MotionSwitches(BodyPart):
         """Whether chains breathe."""
         return self._each("getBreathEnabled", names)
 
-    def _check_breath(self, texts: Sequence[str], values: Sequence[float]) -> None:
+    def _check_settings(self, texts: Sequence[str], values: Sequence[float], known: str = "the names in texts") -> None:
         if not texts or len(values) != len(texts):
-            raise BadGoal("values", list(values), f"one for each of {', '.join(texts or BREATH_KEYS)}")
+            raise BadGoal("values", list(values), f"one for each of {', '.join(texts) or known}")
 
-    @checked_by(_check_breath)
+    @checked_by(partial(_check_settings, known=", ".join(BREATH_KEYS)))
     def set_breath_config(self, texts: BreathKeys, values: Settings) -> None:
         """How the robot breathes: Bpm (breaths a minute) and Amplitude (0..1)."""
         self.motion("setBreathConfig", [list(pair) for pair in zip(texts, values)])
@@ -174,11 +173,7 @@ class MotionSwitches(BodyPart):
 
     # Inside the motion
 
-    def _check_config(self, texts: Sequence[str], values: Sequence[float]) -> None:
-        if not texts or len(values) != len(texts):
-            raise BadGoal("values", list(values), f"one for each of {', '.join(texts) or 'the names in texts'}")
-
-    @checked_by(_check_config)
+    @checked_by(_check_settings)
     def set_motion_config(self, texts: MotionSwitch, values: SwitchValues) -> None:
         """Set switches of the motion by NAOqi's names, ENABLE_FOOT_CONTACT_PROTECTION and the like: 0 off, else on."""
         self.motion("setMotionConfig", [[name, bool(value)] for name, value in zip(texts, values)])
