@@ -6,9 +6,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.errors import BadGoal
+from ..base.field_checks import require_known
 from ..base.once_per_connection import OncePerConnection
-from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
 from .body import POSTURES, BodyPart, RobotBody
 from .facts import BODY
@@ -16,28 +15,13 @@ from .fields import POSTURE_SPEED, Posture, PostureSpeed, Stiffness, Tries
 from .plan import POSTURE_TIME
 
 
-class PostureNotReached(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The robot gave up on its way to a posture; `now` is the one that it is in, of a family of postures."""
-
-    def __init__(self, posture: str, now: str, family: str) -> None:
-        super().__init__(f"the robot did not reach {posture}: it is in posture {now} of the family {family}")
-        self.posture = posture
-        self.now = now
-        self.family = family
-
-
 class PostureFunctions(BodyPart):
-    """Functions of ALRobotPosture."""
-
     def __init__(self, body: RobotBody, robot: Any) -> None:
         super().__init__(body)
         self._known = OncePerConnection(robot, lambda: list(body.call(POSTURES, "getPostureList")))
 
     def _check_posture(self, str_param: str, speed: float) -> None:
-        name, known = str_param.strip(), self._known()
-        if name not in known:
-            problem = f"there is no posture {name!r}{did_you_mean(name, known)}"
-            raise BadGoal("str_param", name, f"one of {', '.join(known)}", problem=problem)
+        name = require_known("str_param", str_param, self._known(), "posture")
         self.body.plan.require_fit_legs()
         self.body.plan.change_posture(POSTURE_TIME / (speed or POSTURE_SPEED), name)
 
@@ -78,7 +62,8 @@ class PostureFunctions(BodyPart):
 
     def _reach(self, method: str, posture: str, speed: float) -> None:
         if not self._postures(method, posture, speed or POSTURE_SPEED):
-            raise PostureNotReached(posture, self.get_posture(), self.get_posture_family())
+            now, family = self.get_posture(), self.get_posture_family()
+            raise NaoError(f"the robot did not reach {posture}: it is in posture {now} of the family {family}")
 
     def _postures(self, method: str, *args: Any) -> Any:
         return self.body.call(POSTURES, method, *args)
