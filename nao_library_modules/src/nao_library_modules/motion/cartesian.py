@@ -34,8 +34,6 @@ def _rows(values: Sequence[float], count: int, size: int) -> list[list[float]]:
 
 
 class CartesianFunctions(BodyPart):
-    """Functions of ALMotion for effectors in space."""
-
     def get_position(self, names: Parts, frame: Frame, commanded: Commanded) -> list[list[float]]:
         """Pose of each effector, joint or sensor: x, y, z in m, wx, wy, wz in rad."""
         return [list(self.motion("getPosition", name, frame, not commanded)) for name in names]

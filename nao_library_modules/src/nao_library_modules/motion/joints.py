@@ -51,12 +51,6 @@ def _angles_of(facts: MotionFacts, names: Sequence[str], angles: Sequence[float]
     return dict(zip(joints, one_each(angles, joints, "angles")))
 
 
-def _fractions(joints: Sequence[str], speed: float, speeds: Sequence[float]) -> list[float]:
-    if not speeds:
-        return [speed or DEFAULT_SPEED] * len(joints)
-    return [value or DEFAULT_SPEED for value in one_each(speeds, joints, "speeds")]
-
-
 def _key_angles(
     facts: MotionFacts, names: Sequence[str], angles: Sequence[float], times: Sequence[float]
 ) -> dict[str, list[float]]:
@@ -93,8 +87,6 @@ def _key_frames(facts: MotionFacts, names: Sequence[str], trajectory: Any, relat
 
 
 class JointMotion(BodyPart):
-    """Functions of ALMotion for angles, and poses and trajectories."""
-
     left_by_goals = frozenset({"poses"})
 
     def __init__(self, module: NaoBasic, body: RobotBody, poses: NamedPoses, driver: NaoRobotDriver | None) -> None:
@@ -129,7 +121,8 @@ class JointMotion(BodyPart):
     ) -> None:
         """Give joints targets and go on at once; newer targets replace older ones."""
         wanted = _angles_of(self.body.facts, names, angles)
-        fractions = [self.body.careful(wanted, fraction) for fraction in _fractions(list(wanted), speed, speeds)]
+        given = one_each(speeds, list(wanted), "speeds") if speeds else [speed]
+        fractions = [self.body.careful(wanted, fraction or DEFAULT_SPEED) for fraction in given]
         self.body.stiffen(list(wanted), stiffness)
         if relative:
             now = self.motion("getAngles", list(wanted), False)

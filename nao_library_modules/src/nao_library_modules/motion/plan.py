@@ -108,9 +108,7 @@ class MotionPlan:
 
     def leave_to_robot(self, joints: Sequence[str], duration: float = 0.0) -> None:
         """Joints that the result names go where only the robot knows, in a time, s."""
-        self.touch(joints)
-        self.forget(joints)
-        self.takes(duration)
+        self.move(dict.fromkeys(joints), duration)
 
     def change_posture(self, duration: float, posture: str | None = None) -> None:
         """The whole robot moves as only it knows: it is stiff afterwards, and does not walk."""

@@ -12,20 +12,15 @@ from .fields import SomeJoints, Task
 
 
 class MotionState(BodyPart):
-    """Functions of ALMotion for facts and tasks."""
-
-    def _check_joints(self, names: Sequence[str]) -> None:
-        self._joints(names)
-
     def _joints(self, names: Sequence[str]) -> list[str]:
         return self.body.joints(names or [BODY])
 
-    @checked_by(_check_joints)
+    @checked_by(_joints)
     def get_body_names(self, names: SomeJoints) -> list[str]:
         """Joints behind chains, of the whole body if none is named."""
         return self._joints(names)
 
-    @checked_by(_check_joints)
+    @checked_by(_joints)
     def get_limits(self, names: SomeJoints) -> list[list[float]]:
         """Of each joint: lower and upper limit (rad), top speed (rad/s) and torque (N m)."""
         rows = dict(zip(self.body.joints([BODY]), self.motion("getLimits", BODY)))
@@ -55,7 +50,7 @@ class MotionState(BodyPart):
         """Tasks that run: name, number, broker, priority, resources."""
         return [list(task) for task in self.motion("getTaskList")]
 
-    @checked_by(_check_joints)
+    @checked_by(_joints)
     def are_resources_available(self, names: SomeJoints) -> bool:
         """Whether no task holds the joints."""
         return bool(self.motion("areResourcesAvailable", self._joints(names)))
@@ -64,7 +59,7 @@ class MotionState(BodyPart):
         """End a task by its number; tells whether there was one."""
         return bool(self.motion("killTask", int(values[0])))
 
-    @checked_by(_check_joints)
+    @checked_by(_joints)
     def kill_tasks_using_resources(self, names: SomeJoints) -> None:
         """End all tasks that hold the joints."""
         self.motion("killTasksUsingResources", self._joints(names))

@@ -14,8 +14,6 @@ from .plan import POSTURE_TIME
 
 
 class StiffnessFunctions(BodyPart):
-    """Functions of ALMotion for stiffness."""
-
     def _check_wake_up(self) -> None:
         self.body.plan.require_fit_legs()
         self.body.plan.change_posture(POSTURE_TIME)

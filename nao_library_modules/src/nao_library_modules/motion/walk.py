@@ -114,9 +114,8 @@ class WalkFunctions(BodyPart):
         plan.forget(joints)
 
     def _check_way(self, points: Sequence[Place], config: GaitPairs, duration: float = 0.0) -> None:
-        self._check_walk()
+        self._check_init()
         self.body.plan.takes(max(duration, walk_time(points, config, self._ranges())))
-        self.body.plan.walk.stands()
 
     # To places
 

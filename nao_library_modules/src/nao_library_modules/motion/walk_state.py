@@ -13,8 +13,6 @@ from .walk_fields import Enable, SecurityDistance, SwingingArms, WalkLimits
 
 
 class WalkState(BodyPart):
-    """Functions of ALMotion about the walk."""
-
     def get_robot_position(self, commanded: Commanded) -> list[float]:
         """Where the robot is in the world by its odometry: x, y (m), theta (rad)."""
         return list(self.motion("getRobotPosition", not commanded))
