@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from typing import Any, List
 
 from ..base.errors import BadGoal
-from ..base.field_checks import require_whole
 from ..base.suggestion import did_you_mean
 from ..functions.describe_choices import JOINTS, POSTURES
-from ..functions.fields import Annotated, Field, flag, free, moments, number, numbers
+from ..functions.fields import Annotated, Field, flag, free, moments, number, numbers, whole
 from ..nao.gaze import load_head
 from .body import DEFAULT_SPEED
 from .store import NAME_ALLOWED, require_name
@@ -29,6 +28,18 @@ MOST_TASKS = 2**31 - 1
 def each(field: Field, meaning: str) -> Field:
     """A list of what one field holds."""
     return field.but(help=meaning, check=lambda name, values: [field.require(name, value) for value in values])
+
+
+def single(field: Field, allowed: str = "") -> Field:
+    """A list with one of what a field holds; `allowed`: in words, where not those of the field."""
+    allowed = allowed or field.allowed
+
+    def check(name: str, values: Sequence[Any]) -> None:
+        if len(values) != 1:
+            raise BadGoal(name, list(values), allowed)
+        field.require(name, values[0])
+
+    return field.but(allowed=allowed, check=check)
 
 
 def _require_joints(name: str, names: Sequence[str]) -> None:
@@ -57,12 +68,6 @@ def _require_tries(name: str, values: Sequence[float]) -> None:
         raise BadGoal(name, list(values), f"one whole number from 1 to {MOST_TRIES}")
 
 
-def _require_task(name: str, values: Sequence[float]) -> None:
-    if len(values) != 1:
-        raise BadGoal(name, list(values), "the number of one task")
-    require_whole(name, values[0], 0, MOST_TASKS)
-
-
 def _require_point(name: str, values: Sequence[float]) -> None:
     if len(values) != 3:
         raise BadGoal(name, list(values), "x, y, z of a point in m")
@@ -73,12 +78,6 @@ def _require_camera(name: str, camera: str) -> None:
     if camera and camera not in CAMERAS:
         problem = f"there is no camera {camera!r}{did_you_mean(camera, CAMERAS)}"
         raise BadGoal(name, camera, f"{', '.join(CAMERAS)}, or nothing for {CAMERA}", problem=problem)
-
-
-def _require_new_name(name: str, texts: Sequence[str]) -> None:
-    if len(texts) != 1:
-        raise BadGoal(name, list(texts), "the new name, and nothing else")
-    require_name(name, texts[0])
 
 
 NAMES = free(
@@ -191,9 +190,7 @@ Camera = Annotated[
 
 Motion = Annotated[str, _MOTION]
 NewMotion = Annotated[str, _MOTION.but(help="name of the new motion", allowed=NAME_ALLOWED)]
-NewName = Annotated[
-    List[str], _MOTION.but(help="new name", allowed="the new name, and nothing else", check=_require_new_name)
-]
+NewName = Annotated[List[str], single(_MOTION.but(help="new name"), "the new name, and nothing else")]
 RecordingTime = Annotated[float, number("recording", "length of the recording")]
 SampleRate = Annotated[float, number("sampling rate", "rate of the samples", zero=f" for {RATE:g}")]
 ReplaySpeed = Annotated[
@@ -205,7 +202,4 @@ Overwrite = Annotated[bool, flag("whether a motion of that name may be replaced"
 
 # Tasks
 
-Task = Annotated[
-    List[float],
-    numbers((0, MOST_TASKS), "number of a task", allowed="the number of one task").but(check=_require_task),
-]
+Task = Annotated[List[float], single(whole(0, MOST_TASKS, "number of a task"), "the number of one task")]

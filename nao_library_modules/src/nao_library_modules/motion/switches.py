@@ -129,7 +129,7 @@ class MotionSwitches(BodyPart):
 
     def wb_foot_state(self, texts: FootState, str_param: Foot) -> None:
         """What a foot does under whole body control: Fixed, Plane or Free."""
-        self.motion("wbFootState", texts[0], str_param.strip())
+        self.motion("wbFootState", texts[0].strip(), str_param.strip())
 
     def wb_enable_balance_constraint(self, enable: Enable, str_param: BalanceLeg) -> None:
         """Keep the centre of mass over one foot or both, or stop it."""
@@ -153,7 +153,7 @@ class MotionSwitches(BodyPart):
 
     def wb_set_effector_control(self, names: BodyEffector, values: EffectorGoal) -> None:
         """Where an effector is to go, in FRAME_ROBOT: rotation of the head (rad), position of an arm (m)."""
-        self.motion("wbSetEffectorControl", names[0], list(values))
+        self.motion("wbSetEffectorControl", names[0].strip(), list(values))
 
     def wb_enable_effector_optimization(self, names: BodyEffectors, enable: Enable) -> None:
         """Let effectors use what whole body control leaves free, or stop it."""

@@ -11,7 +11,7 @@ from ..base.limits import Limit, limit
 from ..base.suggestion import did_you_mean
 from ..functions.fields import Annotated, Field, flag, free, moments, number, numbers, word
 from .facts import ARMS, LEGS
-from .fields import FRAME, NAMES
+from .fields import FRAME, NAMES, single
 from .gait import (
     CONFIGS,
     DEFAULT,
@@ -43,7 +43,6 @@ ANYWHERE, ANGLE = limit("place"), limit("angle")
 PACE, TURNING, SHARE = limit("walking speed"), limit("turning speed"), Limit(-1.0, 1.0, "")
 # m that sonars see.
 FARTHEST_SEEN = 2.5
-DISTANCE = f"one distance, 0 to {FARTHEST_SEEN:g} m"
 PARTS = "effectors, joints or sensors"
 GOAL_OF_EFFECTOR = "wx wy wz (Head), x y z or x y z wx wy wz (arms)"
 BOTH_ARMS, BOTH_LEGS = (*ARMS, "Arms"), (*LEGS, "Legs")
@@ -69,19 +68,6 @@ def _words(
                 raise BadGoal(name, each, allowed or f"one of {listed}", problem=problem)
 
     return free(meaning, allowed=allowed or f"one or more of {listed}", choices=choices, check=check)
-
-
-def _one_word(choices: Sequence[str], meaning: str) -> Field:
-    """One of several words, in a list."""
-    allowed = f"one of {', '.join(choices)}"
-    each = _words(choices, meaning, allowed=allowed)
-
-    def check(name: str, words: Sequence[str]) -> None:
-        if len(words) != 1:
-            raise BadGoal(name, list(words), allowed)
-        each.require(name, words)
-
-    return each.but(check=check)
 
 
 def _in_plane(along: Limit, turn: Limit) -> str:
@@ -132,11 +118,6 @@ def _require_places(name: str, values: Sequence[float]) -> None:
 def _require_place(name: str, values: Sequence[float]) -> None:
     require_count(name, values, 3, PLACE)
     _require_places(name, values)
-
-
-def _require_distance(name: str, values: Sequence[float]) -> None:
-    if len(values) != 1 or not 0.0 <= values[0] <= FARTHEST_SEEN:
-        raise BadGoal(name, list(values), DISTANCE)
 
 
 def _require_effector_goal(name: str, values: Sequence[float]) -> None:
@@ -255,7 +236,7 @@ Replace = Annotated[bool, flag("whether the steps that are not begun yet are dro
 WalkLimits = Annotated[str, word(CONFIGS, "which values of the parameters", empty=DEFAULT)]
 SecurityDistance = Annotated[
     List[float],
-    numbers((0.0, FARTHEST_SEEN), "distance from obstacles", "m", DISTANCE).but(check=_require_distance),
+    single(number((0.0, FARTHEST_SEEN), "distance from obstacles", "m"), f"one distance, 0 to {FARTHEST_SEEN:g} m"),
 ]
 SwingingArms = Annotated[
     List[str], _words(BOTH_ARMS, "arms; none: both", "arm", None, f"{', '.join(BOTH_ARMS)}, or nothing for both")
@@ -276,11 +257,11 @@ SwitchValues = Annotated[List[float], numbers("setting", "0: off, else on; one f
 # Whole body
 
 Foot = Annotated[str, word(BOTH_LEGS, "leg of the foot, or both")]
-FootState = Annotated[List[str], _one_word(("Fixed", "Plane", "Free"), "state of the foot")]
+FootState = Annotated[List[str], single(word(("Fixed", "Plane", "Free"), "state of the foot"))]
 BalanceLeg = Annotated[str, word(BOTH_LEGS, "leg that the centre of mass is over, or both")]
 BalanceTime = Annotated[float, number("duration", "time of the shift")]
 BodyEffectors = Annotated[List[str], _words(WHOLE_BODY, "effectors")]
-BodyEffector = Annotated[List[str], _one_word(WHOLE_BODY, "effector")]
+BodyEffector = Annotated[List[str], single(word(WHOLE_BODY, "effector"))]
 EffectorGoal = Annotated[
     List[float],
     _POSES.but(
