@@ -6,7 +6,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from naoqi.errors import NaoError
@@ -56,16 +56,14 @@ class BehaviorRunner(Protocol):
         """End what runs."""
 
 
+@dataclass
 class _Entry:
     """A binding at work."""
 
-    def __init__(self, binding: Binding, watch: TouchWatch) -> None:
-        self.binding = binding
-        self.watch = watch
-        self.running = False
-        self.runs = 0
-        self.ready_at = self.touched = 0.0
-        self.last = self.text = ""
+    binding: Binding
+    watch: TouchWatch
+    state: BindingState = BindingState()
+    ready_at: float = 0.0  # ROS time, s, from which touches count
 
 
 class TouchBindings:
@@ -103,10 +101,7 @@ class TouchBindings:
 
     def states(self) -> list[tuple[Binding, BindingState]]:
         with self._lock:
-            return [
-                (each.binding, BindingState(each.running, each.runs, each.last, each.text, each.touched))
-                for each in self._entries.values()
-            ]
+            return [(each.binding, each.state) for each in self._entries.values()]
 
     def bind(self, binding: Binding, pressed: Sequence[Contact]) -> None:
         """Start a behaviour at touches from now on; one of the same name is replaced.
@@ -187,9 +182,9 @@ class TouchBindings:
         with self._lock:
             for entry in self._entries.values():
                 touched = look(entry)
-                if touched and not entry.running and now >= entry.ready_at:
-                    entry.running, entry.runs = True, entry.runs + 1
-                    entry.touched = min(contact.begin for contact in touched)
+                if touched and not entry.state.running and now >= entry.ready_at:
+                    began = min(contact.begin for contact in touched)
+                    entry.state = replace(entry.state, running=True, runs=entry.state.runs + 1, touched=began)
                     to_start.append(entry)
                 if entry.watch.due is not None:
                     due.append(entry.watch.due)
@@ -203,7 +198,7 @@ class TouchBindings:
 
         def done(end: str, text: str) -> None:
             with self._lock:
-                entry.running, entry.last, entry.text = False, end, text
+                entry.state = replace(entry.state, running=False, last=end, text=text)
                 entry.ready_at = self._clock.now() + binding.cooldown
             if end not in ("succeeded", "preempted"):
                 log.warning("the behaviour %s of %s: %s %s", binding.behavior, binding.name, end, text)

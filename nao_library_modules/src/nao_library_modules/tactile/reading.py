@@ -1,4 +1,4 @@
-"""Functions that read what the robot feels now: touch, sonars, feet, battery, temperatures."""
+"""Functions that read what the robot feels now: touch, sonars, feet, battery, temperatures; what a goal has felt."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 from genpy import Time
 from sensor_msgs.msg import BatteryState
 
+from nao_library_msgs.msg import TouchBinding
 from naoqi.errors import RobotError
 
-from ..base.errors import BadGoal
-from ..base.suggestion import did_you_mean
+from ..base.field_checks import require_known
 from ..functions.memory_functions import MEMORY
 from ..functions.parts import Part
 from ..nao.body_devices import (
@@ -33,7 +33,6 @@ from ..nao.touch_names import Sensor, sensors_of
 from ..server.extractor_use import Event, ExtractorUse, subscriber_name
 from ..server.nao_basic import NaoBasic
 from .fields import FEET, Bumpers, Enable, Feet, Revert, Sensors, Sonars, Warm, words_of
-from .measurements import Measurements
 from .touch import Contact
 
 SONAR = "ALSonar"
@@ -47,6 +46,34 @@ BATTERY_KEYS = (
 HEAD, PACK = "head", "battery"
 SONAR_START = 0.35
 """s until a sonar that was switched on has measured: it does ten times a second."""
+
+
+class Measurements:
+    """What the functions of one chain felt."""
+
+    def __init__(self) -> None:
+        self.touched: list[Contact] = []
+        self.sonars: list[tuple[str, float]] = []
+        self.weights: list[tuple[str, float]] = []
+        self.batteries: list[BatteryState] = []
+        self.heat: list[tuple[str, float, int]] = []
+        self.fell = False
+        self.bindings: list[TouchBinding] = []
+
+    def touch(self, contacts: Sequence[Contact]) -> list[str]:
+        """Note what was touched, and answer the names."""
+        self.touched += contacts
+        return [contact.name for contact in contacts]
+
+    def fill(self, result: Any) -> None:
+        result.touched = [contact.name for contact in self.touched]
+        result.touch_times = [Time.from_sec(contact.begin) for contact in self.touched]
+        result.sonar_names, result.sonar = _columns(self.sonars, 2)
+        result.fsr_names, result.fsr = _columns(self.weights, 2)
+        result.battery = self.batteries
+        result.devices, result.temperatures, result.heat = _columns(self.heat, 3)
+        result.fell = self.fell
+        result.bindings = self.bindings
 
 
 class Senses(ExtractorUse):
@@ -176,6 +203,7 @@ class ReadingFunctions(Part):
 
     def get_temperatures(self, sensors: Warm) -> list[float]:
         """How warm motors, the computer in the head and the battery are, degrees Celsius."""
+        sensors = [name.strip() for name in sensors]
         joints = self._joints(sensors)
         names = [name for name in (*joints, HEAD, PACK) if not sensors or name in joints or name in sensors]
         devices = [{HEAD: "Head", PACK: "Battery"}.get(name, name) for name in names]
@@ -198,23 +226,18 @@ class ReadingFunctions(Part):
     def _joints(self, sensors: Sequence[str]) -> list[str]:
         """Joints behind names of joints and chains."""
         motion = self._module.robot.proxy("ALMotion")
-        body = [name for name in self._module.call(motion, "getBodyNames", "Body")]
+        body = list(self._module.call(motion, "getBodyNames", "Body"))
         if not sensors:
             return body
+        known = ["Head", "LArm", "RArm", "LLeg", "RLeg", "Body", HEAD, PACK, *body]
         found: list[str] = []
         for name in sensors:
             if name in body:
                 found.append(name)
             elif name not in (HEAD, PACK):
-                found += self._chain(motion, name, body)
+                require_known("sensors", name, known, "device whose temperature is known")
+                found += self._module.call(motion, "getBodyNames", name)
         return list(dict.fromkeys(found))
-
-    def _chain(self, motion: Any, name: str, body: Sequence[str]) -> list[str]:
-        known = ["Head", "LArm", "RArm", "LLeg", "RLeg", "Body", HEAD, PACK, *body]
-        if name not in known:
-            problem = f"{name!r} is nothing whose temperature is known{did_you_mean(name, known)}"
-            raise BadGoal("sensors", name, f"one of {', '.join(known)}", problem=problem)
-        return list(self._module.call(motion, "getBodyNames", name))
 
     functions = {
         "getTouched": get_touched,
@@ -225,6 +248,10 @@ class ReadingFunctions(Part):
         "getTemperatures": get_temperatures,
         "setSonarEnabled": set_sonar_enabled,
     }
+
+
+def _columns(rows: Sequence[tuple[Any, ...]], count: int) -> tuple[list[Any], ...]:
+    return tuple([row[place] for row in rows] for place in range(count))
 
 
 def _number(value: Any) -> float:

@@ -15,8 +15,7 @@ from ..processes.launcher import LaunchPath
 from ..server.nao_basic import NaoBasic
 from .binding_functions import BindingFunctions
 from .bindings import TouchBindings
-from .measurements import Measurements
-from .reading import ReadingFunctions, Senses
+from .reading import Measurements, ReadingFunctions, Senses
 from .waiting import WaitingFunctions
 
 log = logging.getLogger(__name__)
