@@ -25,11 +25,10 @@ class BehaviorClient:
     """Client of NaoBehavior. Nothing of ROS is needed before the first behaviour is to run.
 
     It stands on actionlib's ActionClient: a behaviour that was started by another touch goes on being followed when the
-    next one replaces it. `name`: of the action.
+    next one replaces it.
     """
 
-    def __init__(self, name: str = SERVER) -> None:
-        self._name = name
+    def __init__(self) -> None:
         self._client: actionlib.ActionClient | None = None
         self._lock = threading.Lock()
         self._handles: dict[object, Any] = {}
@@ -44,9 +43,12 @@ class BehaviorClient:
             parameters: Each as name=value.
             done: Gets how it ended and what was said about it, once, in a thread of actionlib.
         """
-        client = self._connected()
+        with self._lock:
+            if self._client is None:
+                self._client = actionlib.ActionClient(SERVER, NaoBehaviorAction)
+            client = self._client
         if not client.wait_for_server(rospy.Duration(SERVER_LIMIT)):
-            raise NaoError(f"there is no server {rospy.resolve_name(self._name)}: nobody can run {behavior}")
+            raise NaoError(f"there is no server {rospy.resolve_name(SERVER)}: nobody can run {behavior}")
         function = BehaviorFunction(function="runBehavior", str_param=behavior, parameters=list(parameters))
         watch = GoalTracker()
         key = object()
@@ -65,13 +67,6 @@ class BehaviorClient:
             if not watch.over.is_set():
                 # actionlib forgets a goal whose handle nobody holds.
                 self._handles[key] = handle
-
-    def _connected(self) -> actionlib.ActionClient:
-        """The client behind this one, made when it is asked for first."""
-        with self._lock:
-            if self._client is None:
-                self._client = actionlib.ActionClient(self._name, NaoBehaviorAction)
-            return self._client
 
     def close(self) -> None:
         with self._lock:

@@ -86,10 +86,7 @@ class WaitingFunctions(Part):
 
     def _touched(self, contacts: Sequence[Contact]) -> list[str]:
         ends = [contact.end for contact in contacts]
-        self._module.happened = (
-            min((contact.begin for contact in contacts), default=0.0),
-            max(ends) if ends and all(ends) else 0.0,
-        )
+        self._module.happened = (min(contact.begin for contact in contacts), max(ends) if all(ends) else 0.0)
         return self._senses.measurements.touch(contacts)
 
     def wait_for_chest_button(self, count: Clicks, timeout: Timeout) -> list[str]:
@@ -103,9 +100,8 @@ class WaitingFunctions(Part):
                 if event.name == clicked:
                     # Of clicks that began before the wait the first contact is not known.
                     first = presses[-(count or 1)] if len(presses) >= (count or 1) else 0.0
-                    (last,) = self._senses.released(CHEST) or [
-                        Contact("chest", 0.0)
-                    ]  # pressed again: its end is not known
+                    # Where it is pressed again, its end is not known.
+                    (last,) = self._senses.released(CHEST) or [Contact("chest", 0.0)]
                     return self._touched([Contact("chest", first, last.end)])
                 when = self._senses.event_time(event)
                 if event.value and when not in presses:
