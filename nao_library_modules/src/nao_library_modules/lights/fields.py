@@ -31,7 +31,6 @@ _COLOUR = free(
     check=lambda name, text: _require_colours(name, [text]),
 )
 _SHARES = numbers((0.0, 1.0), "", allowed="each within 0..1")
-_DURATION = number("duration", "length of the animation")
 
 Lights = Annotated[List[str], _LIGHTS]
 ColouredLights = Annotated[List[str], _LIGHTS.but(allowed="lights and groups with red, green and blue LEDs")]
@@ -49,7 +48,7 @@ ColourTexts = Annotated[
     ),
 ]
 FadeTime = Annotated[float, number("duration", "length of the fade", zero="")]
-AnimationTime = Annotated[float, _DURATION]
+AnimationTime = Annotated[float, number("duration", "length of the animation")]
 TurnTime = Annotated[float, number("duration", "time of one turn")]
 Moments = Annotated[List[float], moments("duration", "when each colour is reached, from the start", COLOURS)]
 Angle = Annotated[int, number((0, 360), "direction: 0 up, 90 front, 180 down, 270 back", "deg")]

@@ -8,40 +8,26 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ..functions.memory_functions import MEMORY
+from ..functions.parts import Part
 from ..nao.light_names import LightNames
 from ..robot.robot import CLEAN_UP_LIMIT
+from ..server.nao_basic import NaoBasic
 from .state import Values, light_intensity, memory_keys, restoring_calls
 
 LEDS = "ALLeds"
 DECIMALS = 6
 
 
-class LedAccess:
-    """Names, values and calls of the LEDs. Used from the thread that executes goals only.
+class LedAccess(Part):
+    """Names, values and calls of the LEDs. Used from the thread that executes goals; checks without a goal have a copy.
 
     The names are read from the robot when they are first needed and after each reconnection, for the robot
     behind a new connection may be another one, and does not know the groups that were made on the last one.
     """
 
-    def __init__(
-        self,
-        robot: Any,
-        call: Callable[..., Any],
-        call_all: Callable[..., list[Any]],
-        call_now: Callable[..., Any],
-    ) -> None:
-        """Keep the ways to call.
-
-        Args:
-            robot: Proxies and connection.
-            call: Calls a method; preemption interrupts it.
-            call_all: Calls a method several times at once; preemption interrupts them.
-            call_now: Calls a quick method whatever happens.
-        """
-        self._robot = robot
-        self._call = call
-        self._call_all = call_all
-        self._call_now = call_now
+    def __init__(self, module: NaoBasic) -> None:
+        self._robot = module.robot
+        self._call, self._call_all, self._call_now = module.call, module.call_all, module.call_now
         self._names: LightNames | None = None
         self._generation: int | None = None
 
@@ -78,10 +64,6 @@ class LedAccess:
         names = self.names.with_group(name, lights)
         self._call(self.proxy, "createGroup", name, list(names.groups[name]))
         self._names = names
-
-    def list_names(self, method: str) -> list[str]:
-        """Names as the robot lists them. `method`: listLEDs or listGroups."""
-        return list(self._call(self.proxy, method))
 
     def read(self, lights: Iterable[str]) -> Values:
         """Values of the LEDs behind lights and groups, 0..1.

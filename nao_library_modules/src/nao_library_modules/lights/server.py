@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Iterable, Sequence
 from itertools import repeat
 from typing import Any
@@ -70,7 +69,8 @@ class NaoLights(NaoBasic):
         self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
     ) -> None:
         super().__init__(ip, port, autostart, launchpath, **options)
-        self.leds = LedAccess(self.robot, self.call, self.call_all, self.call_now)
+        self.leds = LedAccess(self)
+        self.add_parts(self.leds)
         self._touched: dict[str, None] = {}  # an ordered set of lights and groups
         self.serve("NaoLights", NaoLedAction)
 
@@ -170,7 +170,7 @@ class NaoLights(NaoBasic):
 
     def list_leds(self) -> list[str]:
         """Names of the single lights."""
-        return self.leds.list_names("listLEDs")
+        return list(self.call(self.leds.proxy, "listLEDs"))
 
     @checked_by(check_group)
     def list_led(self, str_param: Group) -> list[str]:
@@ -184,7 +184,7 @@ class NaoLights(NaoBasic):
 
     def list_groups(self) -> list[str]:
         """Names of the groups."""
-        return self.leds.list_names("listGroups")
+        return list(self.call(self.leds.proxy, "listGroups"))
 
     function_table = {
         "on": on,
@@ -243,13 +243,7 @@ class NaoLights(NaoBasic):
         for values in arguments:
             self.call(self.leds.proxy, method, *values)
 
-    # Checks and results
-
-    def view_for_checks(self) -> Any:
-        """As NaoBasic gives it; with names of its own, which may be read again while a goal runs."""
-        view = super().view_for_checks()
-        view.leds = copy.copy(self.leds)
-        return view
+    # Results
 
     def begin_chain(self) -> None:
         """Forget what the last chain touched."""
