@@ -1,12 +1,62 @@
-"""What the fields mean that functions of both audio modules have."""
+"""What the fields of both audio modules mean and may hold. Pure; checks raise BadGoal."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import PurePosixPath
 from typing import List
 
+from ..base.errors import BadGoal
+from ..base.field_checks import CONTROL, LONGEST_NAME, require_known, require_text
 from ..functions.fields import Annotated, Field, flag, free, whole, word
-from .checks import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SETTABLE, allowed_files, require_file, require_rate
+
+OUTPUT_RATES = (16000, 22050, 44100, 48000)
+RATES = f"one of {', '.join(map(str, OUTPUT_RATES))} (Hz)"
+DEVICE_PARAMETERS = ("outputSampleRate", "inputBufferSize")
+SET_PARAMETERS = DEVICE_PARAMETERS[:1]
+"""Those that can be set."""
+SETTABLE = "parameter of ALAudioDevice that can be set"
+SOUND_FILES = (".wav", ".ogg", ".flac", ".mp3")
+"""What the robot plays."""
+HOME = "/home/nao/"
+"""Folder of the robot's user: absolute file names lead there."""
+
+
+def require_file(field: str, name: str, suffixes: Sequence[str]) -> str:
+    """Name of a file on the robot: relative, or in the home folder of its user; whether it is there the robot knows.
+
+    `suffixes`: allowed ends of the name, in lower case: ".wav". Returns the name without blanks around it.
+    """
+    path = require_text(field, name, "the name of a file")
+    allowed = allowed_files(suffixes)
+    if CONTROL.search(path):
+        raise BadGoal(field, name, allowed, problem=f"{name!r} has characters that names do not have")
+    if ".." in PurePosixPath(path).parts or (path.startswith("/") and not path.startswith(HOME)):
+        raise BadGoal(field, name, allowed, problem=f"{name!r} leads out of the folder for sounds")
+    if path.startswith("~") or "\\" in path:
+        raise BadGoal(field, name, allowed, problem=f"{name!r} is not the name of a file")
+    if max(map(len, PurePosixPath(path).parts)) > LONGEST_NAME:
+        raise BadGoal(field, name, f"up to {LONGEST_NAME} characters", problem="the name is too long")
+    if PurePosixPath(path).suffix.lower() not in suffixes:
+        raise BadGoal(field, name, allowed, problem=f"{name!r} is not a file of a known kind")
+    return path
+
+
+def allowed_files(suffixes: Sequence[str]) -> str:
+    """What `require_file` takes, in words."""
+    return f"a relative name or one in {HOME}, without '..', that ends in {', '.join(suffixes)}"
+
+
+def require_rate(field: str, values: Sequence[float]) -> None:
+    """A sample rate of the outputs, Hz."""
+    if len(values) != 1 or values[0] not in OUTPUT_RATES:
+        raise BadGoal(field, list(values), RATES)
+
+
+def check_device_setting(str_param: str, values: Sequence[float]) -> None:
+    """The sample rate of the outputs, which is all that can be set."""
+    require_known("str_param", str_param, SET_PARAMETERS, SETTABLE)
+    require_rate("values", values)
 
 
 def file_of_kind(suffixes: Sequence[str], meaning: str) -> Field:

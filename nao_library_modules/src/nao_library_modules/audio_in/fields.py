@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import List
 
-from ..audio.checks import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES
-from ..audio.fields import file_of_kind
+from ..audio.fields import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES, file_of_kind
 from ..base.errors import BadGoal
 from ..base.field_checks import require_known
 from ..base.limits import limit

@@ -14,7 +14,7 @@ import soundfile
 from nao_library_msgs.msg import RecordedFile
 from naoqi.errors import NaoError, RobotError
 
-from ..audio.checks import HOME
+from ..audio.fields import HOME
 from ..audio.sound_card import NaoAudio
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by

@@ -11,8 +11,7 @@ from typing import Any
 from nao_library_actions.msg import NaoAudioInAction
 from naoqi.errors import NaoError
 
-from ..audio.checks import DEVICE_PARAMETERS, check_device_setting
-from ..audio.fields import Revert
+from ..audio.fields import DEVICE_PARAMETERS, Revert, check_device_setting
 from ..audio.sound_card import NaoAudio, put_back
 from ..base.answers import Outcome
 from ..functions.chain import checked_by

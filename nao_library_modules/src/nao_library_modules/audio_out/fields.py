@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from typing import List
 from urllib.parse import urlsplit
 
-from ..audio.checks import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES
-from ..audio.fields import file_of_kind
+from ..audio.fields import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES, file_of_kind
 from ..base.errors import BadGoal
 from ..base.field_checks import CONTROL, require_known, require_text
 from ..base.limits import limit

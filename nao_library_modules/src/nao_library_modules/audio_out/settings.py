@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..audio.checks import DEVICE_PARAMETERS, check_device_setting
-from ..audio.fields import Revert
+from ..audio.fields import DEVICE_PARAMETERS, Revert, check_device_setting
 from ..audio.sound_card import NaoAudio, decimal, put_back
 from ..base.errors import BadGoal
 from ..base.field_checks import require_known
