@@ -32,7 +32,7 @@ from .fields import (
     require_phrases,
     timeout_of,
 )
-from .hearing import HeardWord, Hearing, LeftGoing, Recognition
+from .hearing import HeardWord, Hearing, LeftGoing, Recognition, tells_later
 from .recogniser import DEAF, HEARS, RECOGNITION, SPEECH, STATUS, Recogniser, WordTimes
 
 log = logging.getLogger(__name__)
@@ -123,33 +123,21 @@ class RecognitionFunctions(Part):
         with self._hearing.ended_by(lambda: self._put_back(recognition), "another vocabulary may be lost"):
             self._hearing.stop_extractor(RECOGNITION, "recognition")
 
-    def _check_vocabulary(self, context: dict[str, Any]) -> None:
-        """Nothing can be wrong; later functions of the chain may recognise the words."""
-        context["vocabulary"] = True
-
-    @checked_by(_check_vocabulary)
+    @checked_by(tells_later(vocabulary=True))
     def set_vocabulary(self, vocabulary: Phrases, word_spotting: WordSpotting) -> None:
         """Set the words and phrases to recognise, for good."""
         self._recogniser.idly("setVocabulary", require_phrases(vocabulary), word_spotting)
         self._left.vocabulary_is_set = True
         self._left.keep()
 
-    def _check_pause(self, context: dict[str, Any]) -> None:
-        """Nothing can be wrong; later functions of the chain would hear nothing."""
-        context["paused"] = True
-
-    @checked_by(_check_pause)
+    @checked_by(tells_later(paused=True))
     def pause(self) -> None:
         """Recognise nothing for the time being, whoever wants it; until `resume` or the end of the server."""
         self._hearing.begin(RECOGNITION, "pause", [True], "pause", False)
         self._left.paused = True
         self._left.keep()
 
-    def _check_resume(self, context: dict[str, Any]) -> None:
-        """Nothing can be wrong; later functions of the chain hear again."""
-        context["paused"] = False
-
-    @checked_by(_check_resume)
+    @checked_by(tells_later(paused=False))
     def resume(self) -> None:
         """Recognise again."""
         self._recogniser.call("pause", False)

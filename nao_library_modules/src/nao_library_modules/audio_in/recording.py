@@ -6,6 +6,7 @@ import logging
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -32,7 +33,7 @@ from .fields import (
     recording_file,
     recording_format,
 )
-from .hearing import Hearing, LeftGoing, Recording
+from .hearing import Hearing, LeftGoing, Recording, tells_later
 
 log = logging.getLogger(__name__)
 
@@ -86,34 +87,21 @@ class SoundRecordingFunctions(Part):
         file_type: str,
         overwrite: bool,
         context: dict[str, Any],
+        goes_on: bool = True,
     ) -> None:
-        """A file that is new or may be replaced, of its type, a format, and no recording that runs."""
+        """A file that is new or may be replaced, of its type, a format, and no recording that runs.
+
+        `goes_on`: whether it still runs when the function is over.
+        """
         path, _ = recording_file(str_param, file_type)
         self.require_new_file(path, overwrite)
         recording_format(rate, channels)
         if context.get("recording", self._left.recording):
             problem = "a recording of this server runs already"
             raise BadGoal("function", "startRecording", "stopRecording comes first", problem=problem)
-        context["recording"] = True
+        context["recording"] = goes_on
 
-    def _check_record(
-        self,
-        str_param: str,
-        rate: int,
-        channels: Sequence[str],
-        file_type: str,
-        overwrite: bool,
-        context: dict[str, Any],
-    ) -> None:
-        """As startRecording; later functions of the chain may record."""
-        self._check_recording_begin(str_param, rate, channels, file_type, overwrite, context)
-        context["recording"] = False
-
-    def _check_recording_end(self, context: dict[str, Any]) -> None:
-        """Nothing can be wrong; later functions of the chain may record."""
-        context["recording"] = False
-
-    @checked_by(_check_record)
+    @checked_by(partial(_check_recording_begin, goes_on=False))
     def record(
         self,
         str_param: RecordingFile,
@@ -143,7 +131,7 @@ class SoundRecordingFunctions(Part):
         self._begin_recording(str_param, rate, channels, file_type, overwrite)
         self._left.keep()
 
-    @checked_by(_check_recording_end)
+    @checked_by(tells_later(recording=False))
     def stop_recording(self) -> list[Any]:
         """End a recording; answers file and length (s) if it is one of this server."""
         if self._left.recording is None:
