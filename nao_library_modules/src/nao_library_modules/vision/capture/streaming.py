@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import re
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Dict, Tuple
 
@@ -102,9 +103,6 @@ class StreamingFunctions(Part):
             if job.kind == "stream" and job.ident != id.strip() and resolved(job.topic_out) == target:
                 raise BadGoal("topic_out", topic_out, "another topic", problem=f"{job.ident!r} publishes {target}")
 
-    def _check_subscribe(self, id: str, camera: str, topic: str, topic_out: str, context: dict[str, Any]) -> None:
-        self._check_create_stream(id, camera, topic, topic_out, context, runs=True)
-
     def _check_create_recording(
         self,
         id: str,
@@ -121,11 +119,6 @@ class StreamingFunctions(Part):
         if str_param.strip():
             self.files.plan(self.files.path(str_param, kind), overwrite, context.setdefault("files", set()))
 
-    def _check_start_recording(
-        self, id: str, str_param: str, file_type: str, codec: str, overwrite: bool, context: dict[str, Any]
-    ) -> None:
-        self._check_create_recording(id, str_param, file_type, codec, overwrite, context, runs=True)
-
     def _check_start(self, id: str, context: dict[str, Any]) -> None:
         name = self._planned(id, context)
         kind, runs = self._plan(context)[name]
@@ -137,12 +130,6 @@ class StreamingFunctions(Part):
         name = self._planned(id, context, kind)
         self._plan(context)[name] = (self._plan(context)[name][0], False)
 
-    def _check_unsubscribe(self, id: str, context: dict[str, Any]) -> None:
-        self._check_stop(id, context, "stream")
-
-    def _check_stop_recording(self, id: str, context: dict[str, Any]) -> None:
-        self._check_stop(id, context, "recording")
-
     def _check_delete(self, id: str, context: dict[str, Any]) -> None:
         del self._plan(context)[self._planned(id, context)]
 
@@ -152,7 +139,7 @@ class StreamingFunctions(Part):
 
     # Functions
 
-    @checked_by(_check_subscribe)
+    @checked_by(partial(_check_create_stream, runs=True))
     def subscribe(
         self, id: NewStream, camera: Camera, topic: Topic, topic_out: TopicOut, rate: Rate, width: Width, height: Height
     ) -> list[str]:
@@ -174,12 +161,12 @@ class StreamingFunctions(Part):
         self._keep()
         return [target]
 
-    @checked_by(_check_unsubscribe)
+    @checked_by(partial(_check_stop, kind="stream"))
     def unsubscribe(self, id: StreamId) -> None:
         """Stop a stream; it can be started again."""
         self._stop(self.jobs.get(id.strip()))
 
-    @checked_by(_check_start_recording)
+    @checked_by(partial(_check_create_recording, runs=True))
     def start_recording(
         self,
         id: NewRecording,
@@ -221,7 +208,7 @@ class StreamingFunctions(Part):
         )
         self._keep()
 
-    @checked_by(_check_stop_recording)
+    @checked_by(partial(_check_stop, kind="recording"))
     def stop_recording(self, id: RecordingId) -> list[Any]:
         """Stop a recording; answers file, frames and length (s)."""
         job = self.jobs.get(id.strip())
