@@ -88,9 +88,9 @@ class CaptureJob(ABC):
         """Close the target."""
 
     @property
-    @abstractmethod
     def settings(self) -> dict[str, Any]:
         """Arguments of the constructor that JSON can hold, to make the job again after the death of the node."""
+        return {"ident": self.ident, "topic": self.topic, "rate": self._rate}
 
     @abstractmethod
     def _fill(self, report: VisionThread) -> None:

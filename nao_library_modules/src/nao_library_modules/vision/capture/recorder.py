@@ -57,8 +57,7 @@ class VideoRecording(CaptureJob):
 
     @property
     def settings(self) -> dict[str, Any]:
-        common = {"ident": self.ident, "topic": self.topic, "rate": self._rate}
-        return {**common, "spec": {**asdict(self._spec), "path": self._spec.path and str(self._spec.path)}}
+        return {**super().settings, "spec": {**asdict(self._spec), "path": self._spec.path and str(self._spec.path)}}
 
     @property
     def video(self) -> RecordedVideo:

@@ -10,7 +10,7 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image, RegionOfInterest
 from nao_library_msgs.msg import VisionThread
 
 from .job import CaptureJob
-from .pictures import COMPRESSED, encoded, encoding_of, is_compressed, picture_of, scaled, visible, wanted_size
+from .pictures import COMPRESSED, encoded, encoding_of, is_compressed, picture_of, scaled, wanted_size
 from .queue import Frame
 
 
@@ -39,8 +39,7 @@ class Stream(CaptureJob):
     @property
     def settings(self) -> dict[str, Any]:
         width, height = self._wanted
-        common = {"ident": self.ident, "topic": self.topic, "rate": self._rate}
-        return {**common, "topic_out": self.topic_out, "width": width, "height": height}
+        return {**super().settings, "topic_out": self.topic_out, "width": width, "height": height}
 
     def _begin(self) -> None:
         self._publisher = self._topics.publisher(self.topic_out, CompressedImage if self._compress else Image)
@@ -85,13 +84,12 @@ class Stream(CaptureJob):
             return CompressedImage(
                 header=message.header, format=f"{original}; jpeg compressed bgr8", data=encoded(picture, "jpg")
             )
-        if picture.ndim == 3 and encoding_of(message) == "mono8":
-            picture = picture[:, :, 0].copy()
-        encoding = {2: "mono8", 3: "bgr8"}[picture.ndim]
-        if encoding == "mono8" and picture.dtype.itemsize == 2:
+        if picture.ndim == 2:  # grey of 16 bits
             encoding = "mono16"
-        if encoding == "bgr8":
-            picture = visible(picture)
+        elif encoding_of(message) == "mono8":
+            encoding, picture = "mono8", picture[:, :, 0].copy()
+        else:
+            encoding = "bgr8"
         height, width = picture.shape[:2]
         return Image(
             header=message.header,
