@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...base.errors import BadGoal
-from ...base.field_checks import CONTROL, LONGEST_NAME
-from ...base.suggestion import did_you_mean
+from ...base.field_checks import CONTROL, LONGEST_NAME, require_known
 from ...base.whole_file import WholeFile, numbered_names, tidy
 
 DEFAULT_RECORD_DIR = "~/.ros/nao_recordings"
@@ -137,10 +136,7 @@ def known_type(field: str, text: str, known: Sequence[str]) -> str:
     """Usual name of a type of file; empty for none. Raises BadGoal if it is not known."""
     bare = text.strip().lower().lstrip(".")
     kind = SYNONYMS.get(bare, bare)
-    if kind and kind not in known:
-        problem = f"{kind!r} is no type of file for this{did_you_mean(kind, known)}"
-        raise BadGoal(field, kind, f"one of {', '.join(known)}", problem=problem)
-    return kind
+    return require_known(field, kind, known, "type of file for this") if kind else ""
 
 
 def require_short(field: str, name: str) -> None:

@@ -42,14 +42,6 @@ OLD_FRAMES = 5
 clock, and its stamps do not count."""
 
 
-class NoPicture(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A camera sent nothing within the timeout (s)."""
-
-    def __init__(self, topic: str, timeout: float) -> None:
-        super().__init__(f"no picture came from {topic} within {timeout:g} s: is its camera running?")
-        self.topic = topic
-
-
 class Frames:
     """The newest frame of a topic, for one function that waits for it."""
 
@@ -69,7 +61,7 @@ class Frames:
     def next(self, since: float, timeout: float) -> Frame:
         """The next frame that is not older than a time, or comes after OLD_FRAMES older ones.
 
-        `since`: ROS time, s. `timeout`: s to wait for it. Raises NoPicture: None came; Preempted, or whatever reason
+        `since`: ROS time, s. `timeout`: s to wait for it. Raises NaoError if none came; Preempted, or whatever reason
         the interrupt has.
         """
         end = self._clock.now() + timeout
@@ -84,7 +76,7 @@ class Frames:
                 continue
             remaining = end - self._clock.now()
             if remaining <= 0.0:
-                raise NoPicture(self._topic, timeout)
+                raise NaoError(f"no picture came from {self._topic} within {timeout:g} s: is its camera running?")
             with self._interrupt.waking(self._news.trigger):
                 self._clock.wait(remaining, self._news)
 

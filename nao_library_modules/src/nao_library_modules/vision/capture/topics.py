@@ -24,10 +24,6 @@ QUEUE = 2
 """Messages that wait for a slow subscriber of a stream."""
 
 
-class SettingsTrouble(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A camera's node cannot be set."""
-
-
 class Publisher:
     """A publisher of pictures or camera_info."""
 
@@ -89,19 +85,15 @@ class VisionTopics:
     def settings(self, server: str) -> dict[str, Any]:
         """The settings of a node that takes dynamic_reconfigure: name -> value.
 
-        Raises SettingsTrouble if there is no such node.
+        Raises NaoError if there is no such node.
         """
-        return self._configured(server, {})
+        return self.set(server, {})
 
     def set(self, server: str, values: Mapping[str, Any]) -> dict[str, Any]:
         """Change some settings; answers all afterwards.
 
-        Raises SettingsTrouble if there is no such node, or it refuses.
+        Raises NaoError if there is no such node, or it refuses.
         """
-        return self._configured(server, values)
-
-    @staticmethod
-    def _configured(server: str, values: Mapping[str, Any]) -> dict[str, Any]:
         # The service alone, for dynamic_reconfigure's client subscribes to two topics, and waits for them.
         from dynamic_reconfigure.encoding import decode_config, encode_config
         from dynamic_reconfigure.srv import Reconfigure
@@ -111,10 +103,10 @@ class VisionTopics:
             rospy.wait_for_service(name, SETTINGS_LIMIT)
             answer = rospy.ServiceProxy(name, Reconfigure)(encode_config(dict(values)))
         except rospy.ServiceException as error:
-            raise SettingsTrouble(f"{rospy.resolve_name(server)} refuses: {error}") from error
+            raise NaoError(f"{rospy.resolve_name(server)} refuses: {error}") from error
         except rospy.ROSException as error:
             full = rospy.resolve_name(name)
-            raise SettingsTrouble(f"the camera's node cannot be set: there is no service {full}") from error
+            raise NaoError(f"the camera's node cannot be set: there is no service {full}") from error
         decoded = decode_config(answer.config)
         return {key: value for key, value in decoded.items() if key != "groups"}
 

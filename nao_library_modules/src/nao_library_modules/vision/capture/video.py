@@ -58,10 +58,6 @@ KEY_FRAMES = 30
 """Frames from one key frame to the next."""
 
 
-class VideoTrouble(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """A video cannot be written, for another reason than the file."""
-
-
 def known_codecs(file_type: str) -> list[str]:
     return [name for name, codec in CODECS.items() if file_type in codec.file_types and _has(codec.encoder)]
 
@@ -98,7 +94,7 @@ class VideoFile:
     def __init__(self, file: WholeFile, file_type: str, codec: str, width: int, height: int) -> None:
         """Open the video; the file is closed with it.
 
-        Raises VideoTrouble: FFmpeg cannot make such a video.
+        Raises NaoError if FFmpeg cannot make such a video.
 
         Args:
             file: Open for writing.
@@ -146,7 +142,7 @@ class VideoFile:
         """Add a frame.
 
         `picture`: (height, width, 3) uint8, blue, green, red. One of another size than the first is made to fit.
-        `stamp`: when it was taken, s. Returns whether it has a place in the video. Raises VideoTrouble if it cannot be
+        `stamp`: when it was taken, s. Returns whether it has a place in the video. Raises NaoError if it cannot be
         compressed, FileTrouble if it cannot be written.
         """
         time = self._times.place(stamp)
@@ -170,7 +166,7 @@ class VideoFile:
     def close(self) -> None:
         """End the video and the file; of one that could not be written to its end the playable part is kept.
 
-        Raises VideoTrouble if the end cannot be compressed, FileTrouble if the end cannot be written.
+        Raises NaoError if the end cannot be compressed, FileTrouble if the end cannot be written.
         """
         try:
             try:
@@ -209,5 +205,5 @@ class VideoFile:
             self._whole = self._muxed - (self._kind == "mp4")
 
 
-def _trouble(error: Exception) -> VideoTrouble:
-    return VideoTrouble(f"the video cannot be written: {error}")
+def _trouble(error: Exception) -> NaoError:
+    return NaoError(f"the video cannot be written: {error}")
