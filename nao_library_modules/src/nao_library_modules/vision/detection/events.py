@@ -6,8 +6,9 @@ Angles are NAOqi's: alpha is positive to the left of the camera's axis, beta pos
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple, Tuple
 
 from ...nao.camera_facts import camera_number
@@ -64,44 +65,6 @@ class DetectionArray:
 NOTHING = DetectionArray(None, None, None, None, ())
 
 
-def ball_detections(value: Any) -> DetectionArray:
-    """A picture with a ball, from redBallDetected.
-
-    `value`: [[s, us], [alpha, beta, radius, radius], camera in the torso, camera in FRAME_ROBOT, camera]; rad. Raises
-    ValueError if the value is something else.
-    """
-    return _read(value, "red ball", _ball)
-
-
-def landmark_detections(value: Any) -> DetectionArray:
-    """A picture with landmarks, from LandmarkDetected.
-
-    `value`: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in the torso, camera in
-    FRAME_ROBOT, camera]; rad. Raises ValueError if the value is something else.
-    """
-    return _read(value, "landmarks", _landmarks)
-
-
-def face_detections(value: Any) -> DetectionArray:
-    """A picture with faces, from FaceDetected.
-
-    The only face of a picture, if it has no name, gets that of the only person who was recognised for some time. Raises
-    ValueError if the value is something else. `value`: [[s, us], [[[0, alpha, beta, width, height], [id, score, name,
-    ...]], ..., recognised for some time], camera in the torso, camera in FRAME_ROBOT, camera]; rad.
-    """
-    return _read(value, "faces", _faces)
-
-
-def movement_detections(value: Any) -> DetectionArray:
-    """A picture with movements, from the key MovementDetection/MovementInfo.
-
-    `value`: [[s, us], [[[alpha, beta], [left, top, width, height], [fraction of the picture's pixels, of the region's],
-    ...], ...], camera in the torso, camera in FRAME_ROBOT, camera]; rad. Raises ValueError if the value is something
-    else.
-    """
-    return _read(value, "movements", _movements)
-
-
 def code_detections(value: Any, width: int, height: int, lens: Lens) -> tuple[Detection, ...]:
     """Codes, from BarcodeReader/BarcodeDetected.
 
@@ -121,7 +84,12 @@ def code_detections(value: Any, width: int, height: int, lens: Lens) -> tuple[De
         raise ValueError(f"no codes that were read: {value!r}") from error
 
 
-def _read(value: Any, what: str, read: Any) -> DetectionArray:
+def _read(what: str, read: Callable[[Any], list[Detection]], value: Any) -> DetectionArray:
+    """The picture of which an event tells. Raises ValueError if its value is something else.
+
+    `what`: its content in words. `read`: reads the content. `value`: [[s, us], content, camera in the torso, camera in
+    FRAME_ROBOT, camera]; angles in rad.
+    """
     if not value:
         return NOTHING
     try:
@@ -157,11 +125,13 @@ def _finite(values: Sequence[Any]) -> list[float]:
 
 
 def _ball(content: Any) -> list[Detection]:
+    """From redBallDetected: [alpha, beta, radius, radius]."""
     alpha, beta, radius_x, radius_y = _finite(content)
     return [Detection(BALL, "", BALL, 1.0, alpha, beta, 2.0 * radius_x, 2.0 * radius_y)]
 
 
 def _landmarks(content: Any) -> list[Detection]:
+    """From LandmarkDetected: [[[1, alpha, beta, width, height, heading], [number]], ...]."""
     detections = []
     for shape, (number, *_) in content:
         _, alpha, beta, width, height, *heading = _finite(shape)
@@ -172,6 +142,10 @@ def _landmarks(content: Any) -> list[Detection]:
 
 
 def _faces(content: Any) -> list[Detection]:
+    """From FaceDetected: [[[0, alpha, beta, width, height], [id, score, name, ...]], ..., recognised for some time].
+
+    The only face of a picture, if it has no name, gets that of the only person who was recognised for some time.
+    """
     shapes = [entry for entry in content if len(entry) == 2 and isinstance(entry[0], (list, tuple))]
     known = _recognised(content[-1]) if content and len(shapes) < len(content) else []
     numbers = [int(extra[0]) for _, extra in shapes]
@@ -195,6 +169,10 @@ def _recognised(entry: Any) -> list[str]:
 
 
 def _movements(content: Any) -> list[Detection]:
+    """From the key MovementDetection/MovementInfo: for each [alpha, beta], [left, top, width, height], fractions, ...
+
+    The fractions are those of the picture's pixels and of the region's.
+    """
     detections = []
     for place, (centre, region, moving, *_) in enumerate(content):
         alpha, beta = _finite(centre)
@@ -203,6 +181,12 @@ def _movements(content: Any) -> list[Detection]:
         confidence = min(max(float(of_region), 0.0), 1.0)
         detections.append(Detection(MOVEMENT, "", f"{place}", confidence, alpha, beta, abs(width), abs(height)))
     return detections
+
+
+ball_detections = partial(_read, "red ball", _ball)
+landmark_detections = partial(_read, "landmarks", _landmarks)
+face_detections = partial(_read, "faces", _faces)
+movement_detections = partial(_read, "movements", _movements)
 
 
 def _code(text: Any, corners: list[list[float]], picture: tuple[int, int], lens: Lens) -> Detection:
