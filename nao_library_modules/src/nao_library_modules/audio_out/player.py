@@ -7,6 +7,7 @@ from typing import Any
 from ..audio.fields import Revert
 from ..audio.sound_card import decimal, put_back
 from ..base.errors import BadGoal, Preempted
+from ..base.field_checks import require_known
 from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
 from ..functions.parts import Part
@@ -273,12 +274,7 @@ class PlayerFunctions(Part):
     # Sound sets
 
     def _check_set(self, str_param: str) -> None:
-        """A sound set that is installed."""
-        name, known = str_param.strip(), self.get_installed_sound_sets_list()
-        if name not in known:
-            allowed = f"one of {', '.join(known)}" if known else "none is installed"
-            problem = f"{name!r} is no sound set of the robot{did_you_mean(name, known)}"
-            raise BadGoal("str_param", str_param, allowed, problem=problem)
+        require_known("str_param", str_param, self.get_installed_sound_sets_list(), "sound set of the robot")
 
     def _check_set_file(self, str_param: str, duration: float, background: bool) -> None:
         """A sound set that is installed, or none; and no time to end the sound in the background."""

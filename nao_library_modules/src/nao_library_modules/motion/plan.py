@@ -157,7 +157,8 @@ class MotionPlan:
         """See that an angle is within the limits of a joint. Raises BadGoal if it is not; names the limits."""
         limits = self.facts.limits[joint]
         if not (math.isfinite(angle) and limits.lower - TOLERANCE <= angle <= limits.upper + TOLERANCE):
-            unit, hint = _unit(joint), degrees_hint(angle, limits.lower, limits.upper)
+            unit = "" if joint.endswith("Hand") else " rad"
+            hint = degrees_hint(angle, limits.lower, limits.upper)
             allowed = f"{limits.lower:.4f} to {limits.upper:.4f}{unit}{hint}"
             raise BadGoal(field, angle, allowed, problem=f"{joint} cannot go to {angle:.4f}{unit}")
 
@@ -295,7 +296,3 @@ class WalkPlan:
     def stands(self, posture: str | None = None) -> None:
         """The robot does not walk when the function is over; it is in a posture, if that is known."""
         self._walking, self._posture = False, posture
-
-
-def _unit(joint: str) -> str:
-    return "" if joint.endswith("Hand") else " rad"

@@ -57,14 +57,12 @@ class FaceFunctions(Part):
 
     def relearn_face(self, str_param: Person, camera: Camera, timeout: Timeout) -> list[bool]:
         """Add the face that is in view to what is known of a person; answers as learnFace does."""
-        name = require_name(str_param)
-        self._require_known(name)
+        name = self._known_person(str_param)
         return self._learn("reLearnFace", name, camera, timeout)
 
     def forget_face(self, str_param: Person) -> None:
         """Forget a person's face."""
-        name = require_name(str_param)
-        self._require_known(name)
+        name = self._known_person(str_param)
         if not self._call("forgetPerson", name):
             raise NaoError(f"{FACES} did not forget the face of {name!r}")
 
@@ -80,11 +78,12 @@ class FaceFunctions(Part):
     def _call(self, method: str, *args: Any) -> Any:
         return self._detectors.call(self._detectors.robot.proxy(FACES), method, *args)
 
-    def _require_known(self, name: str) -> None:
-        known = self.list_faces()
+    def _known_person(self, str_param: str) -> str:
+        name, known = require_name(str_param), self.list_faces()
         if name not in known:
             learnt = f"learnt are {', '.join(known)}" if known else "none is learnt"
             raise NaoError(f"no face of {name!r} is learnt{did_you_mean(name, known)}: {learnt}")
+        return name
 
     def _learn(self, method: str, name: str, camera: str, timeout: float) -> list[bool]:
         detectors = self._detectors
