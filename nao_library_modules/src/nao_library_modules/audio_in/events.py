@@ -12,8 +12,6 @@ Vector = Tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Bearing:
-    """A direction."""
-
     azimuth: float  # rad, positive to the left
     elevation: float  # rad, positive upwards
 
@@ -32,16 +30,12 @@ class Bearing:
 
 @dataclass(frozen=True)
 class BegunSound:
-    """A sound that began."""
-
     confidence: float  # 0..1
     time: float  # when it began, s of the robot; 0 if the robot does not report that
 
 
 @dataclass(frozen=True)
 class LocatedSound:
-    """A sound and where it came from."""
-
     in_head: Bearing  # in the frame of the head
     in_base: Bearing  # in NAOqi's FRAME_ROBOT
     head: Vector  # where the head was in FRAME_ROBOT, m

@@ -29,8 +29,6 @@ TIMES = "NaoSimulation/WordTimes"
 
 
 class Recogniser(Part):
-    """Calls of ALSpeechRecognition."""
-
     def __init__(self, module: NaoBasic, hearing: Hearing, onset_delay: float, end_delay: float) -> None:
         """Delays: s from the begin and the end of speech to the robot's events."""
         self._module = module

@@ -56,12 +56,10 @@ class RecognitionFunctions(Part):
         self._recogniser = recogniser
 
     def _check_recognition(self, vocabulary: Sequence[str], context: dict[str, Any]) -> None:
-        """Words and phrases here, or those of setVocabulary."""
         if not vocabulary and not context.get("vocabulary", self._left.vocabulary_is_set):
             raise BadGoal("vocabulary", [], PHRASES_OR_SET, problem="it is empty")
 
     def _check_listen(self, vocabulary: Sequence[str], str_param: str, context: dict[str, Any]) -> None:
-        """Words and phrases, no pause, and a language that the robot knows if one is named."""
         self._check_recognition(vocabulary, context)
         if context.get("paused", self._left.paused):
             raise BadGoal("function", "listen", "resume comes first", problem="the recognition is paused")
@@ -69,7 +67,6 @@ class RecognitionFunctions(Part):
             self._check_language(str_param)
 
     def _check_language(self, str_param: str) -> None:
-        """A language that the robot recognises."""
         require_known("str_param", str_param, self._recogniser.languages(), "language that the robot recognises")
 
     @checked_by(_check_listen)

@@ -68,8 +68,6 @@ def length_of(file: Path) -> float | None:
 
 
 class SoundRecordingFunctions(Part):
-    """Recordings. Parameters are fields of AudioInFunction."""
-
     def __init__(
         self, module: NaoBasic, hearing: Hearing, left: LeftGoing, card: NaoAudio, robot_home: Path | None
     ) -> None:

@@ -29,8 +29,6 @@ HEAD, BASE = "Head", "base_footprint"
 
 
 class SoundFunctions(Part):
-    """Sounds and their directions. Parameters are fields of AudioInFunction."""
-
     def __init__(self, module: NaoBasic, hearing: Hearing, frame_prefix: str) -> None:
         self._module = module
         self._hearing = hearing

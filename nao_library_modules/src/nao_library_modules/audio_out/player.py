@@ -60,7 +60,6 @@ class PlayerFunctions(Part):
     # Files
 
     def _check_background(self, duration: float, background: bool) -> None:
-        """No time to end a sound in the background."""
         if background and duration > 0.0:
             # Somebody has to wait for its end, to end it.
             raise BadGoal("duration", duration, "0 for a sound in the background; stopAll ends it")
@@ -139,7 +138,6 @@ class PlayerFunctions(Part):
     def _check_play(
         self, sound_id: int, str_param: str, duration: float, background: bool, context: dict[str, Any]
     ) -> None:
-        """A sound that is loaded, and no time to end it in the background."""
         self._check_loaded(sound_id, str_param, context)
         self._check_background(duration, background)
 
@@ -204,7 +202,6 @@ class PlayerFunctions(Part):
         self.call("disablePitch", self._number(sound_id, str_param))
 
     def _check_unload(self, sound_id: int, str_param: str, context: dict[str, Any]) -> None:
-        """A sound that is loaded."""
         self._check_loaded(sound_id, str_param, context)
         known, name = self._loaded_by_then(context), str_param.strip()
         if sound_id == 0:
@@ -238,7 +235,6 @@ class PlayerFunctions(Part):
     # Volume and direction
 
     def _check_volume_of(self, sound_id: int, str_param: str, context: dict[str, Any]) -> None:
-        """Nothing, or a sound that is loaded."""
         if sound_id or str_param.strip():
             self._check_loaded(sound_id, str_param, context)
 
@@ -277,7 +273,6 @@ class PlayerFunctions(Part):
         require_known("str_param", str_param, self.get_installed_sound_sets_list(), "sound set of the robot")
 
     def _check_set_file(self, str_param: str, duration: float, background: bool) -> None:
-        """A sound set that is installed, or none; and no time to end the sound in the background."""
         if str_param.strip():
             self._check_set(str_param)
         self._check_background(duration, background)

@@ -34,14 +34,12 @@ def _names(module: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> L
 
 
 def check_lights(module: HasLeds, lights: Sequence[str], context: dict[str, Any]) -> None:
-    """Known lights, at least one."""
     require_lights(_names(module, lights, context), lights)
 
 
 def check_intensities(
     module: HasLeds, lights: Sequence[str], i_values: Sequence[float], context: dict[str, Any]
 ) -> None:
-    """Known lights, one intensity for all or one each."""
     check_lights(module, lights, context)
     intensities(lights, i_values)
 
@@ -49,7 +47,6 @@ def check_intensities(
 def check_colours(
     module: HasLeds, lights: Sequence[str], i_values: Sequence[float], str_param: str, context: dict[str, Any]
 ) -> None:
-    """Coloured lights, one colour for all or one each."""
     require_coloured(_names(module, lights, context), lights)
     colours(lights, i_values, str_param)
 
@@ -66,7 +63,6 @@ def check_fade_list(
     times: Sequence[float],
     context: dict[str, Any],
 ) -> None:
-    """Coloured lights, one colour a time."""
     require_coloured(_names(module, lights, context), lights)
     colour_steps(times, i_values, str_param)
 
@@ -86,5 +82,4 @@ def check_new_group(module: HasLeds, str_param: str, lights: Sequence[str], cont
 
 
 def check_group(module: HasLeds, str_param: str, context: dict[str, Any]) -> None:
-    """A known group or light."""
     check_lights(module, [str_param.strip()], context)

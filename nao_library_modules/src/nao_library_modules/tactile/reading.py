@@ -151,8 +151,6 @@ class Senses(ExtractorUse):
 
 
 class ReadingFunctions(Part):
-    """Parameters are fields of TactileFunction."""
-
     def __init__(self, module: NaoBasic, senses: Senses) -> None:
         self._module = module
         self._senses = senses

@@ -15,16 +15,12 @@ SWAPPED = 0.05
 
 @dataclass(frozen=True)
 class WantedTouch:
-    """A kind of touch."""
-
     kind: str = PRESS  # one of `KINDS`
     count: int = 2  # how many presses (count)
     duration: float = 1.0  # s, how long a hold lasts, or within what time a count has to come
 
 
 class Contact(NamedTuple):
-    """One touch of a sensor."""
-
     name: str  # short name of the sensor
     begin: float  # ROS time of the first contact, s
     end: float = 0.0  # that of the last one; 0 while it lasts

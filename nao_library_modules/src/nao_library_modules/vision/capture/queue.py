@@ -15,8 +15,6 @@ MOST_BYTES = int(limit("bytes of waiting pictures").highest)
 
 @dataclass(frozen=True)
 class Frame:
-    """A message of a camera."""
-
     message: Any  # sensor_msgs/Image or sensor_msgs/CompressedImage
     stamp: float  # ROS time at which it was taken, s; of its arrival if the message has none
 

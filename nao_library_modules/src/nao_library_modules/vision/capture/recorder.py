@@ -20,8 +20,6 @@ from .video import VideoFile
 
 @dataclass(frozen=True)
 class VideoSpec:
-    """How a recording is written."""
-
     path: Path | None  # None: named by the time of the start
     file_type: str  # mp4 or avi
     codec: str  # one of `known_codecs`

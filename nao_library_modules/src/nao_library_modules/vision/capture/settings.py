@@ -48,8 +48,6 @@ RESOLUTION, FRAME_RATE = "resolution", "frame_rate"
 
 
 class SettingFunctions(Part):
-    """Settings of the cameras. Parameters are fields of VisionFunction."""
-
     def __init__(self, module: NaoBasic, cameras: Cameras, servers: Mapping[str, str]) -> None:
         """Keep what the functions need. `servers`: camera -> where its node takes dynamic_reconfigure."""
         self._module = module

@@ -82,8 +82,6 @@ class Frames:
 
 
 class PictureFunctions(Part):
-    """Pictures in files. Parameters are fields of VisionFunction."""
-
     left_by_goals = frozenset({"files"})
 
     def __init__(self, module: NaoBasic, cameras: Cameras, files: VisionFiles, results: ChainResults) -> None:

@@ -50,8 +50,6 @@ Plan = Dict[str, Tuple[str, bool]]
 
 
 class StreamingFunctions(Part):
-    """Streams and recordings. Parameters are fields of VisionFunction."""
-
     left_by_goals = frozenset({"jobs", "files"})
 
     def __init__(

@@ -26,8 +26,6 @@ VIDEO_TYPES = ("mp4", "avi")
 
 @dataclass(frozen=True)
 class Codec:
-    """A way to compress a video."""
-
     encoder: str  # name in FFmpeg
     pixels: str  # format of the pixels
     bits: float  # per pixel and frame, roughly; 0: the encoder has a measure of its own

@@ -56,8 +56,6 @@ BASE = "base_footprint"
 
 @dataclass(frozen=True)
 class Detector:
-    """One of the robot's extractors."""
-
     module: str
     event: str
     read: Callable[[Any], DetectionArray] | None = None
