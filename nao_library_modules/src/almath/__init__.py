@@ -122,7 +122,7 @@ from almath.functions import (
     transpose,
 )
 from almath.pose2d import Pose2D, pose2dDiff, pose2DInverse, pose2dInvertInPlace
-from almath.positions import Position2D, Position3D, Position6D
+from almath.positions import Position2D, Position3D, Position6D, PositionAndVelocity, Velocity3D, Velocity6D
 from almath.quaternion import (
     Quaternion,
     angleAndAxisRotationFromQuaternion,
@@ -179,7 +179,6 @@ from almath.transform import (
     transformToFloatVector,
 )
 from almath.vectors import vectorFloat, vectorPose2D, vectorPosition2D, vectorPosition6D
-from almath.velocities import PositionAndVelocity, Velocity3D, Velocity6D
 
 # The SDK has each static method as a function too; scripts use both spellings.
 Pose2D_fromPolarCoordinates = Pose2D.fromPolarCoordinates

@@ -11,11 +11,10 @@ from almath._components import answer, as_number, fill, in_place, require
 from almath.displacement import Displacement
 from almath.errors import AlmathError
 from almath.pose2d import Pose2D
-from almath.positions import Position2D, Position3D, Position6D
+from almath.positions import Position2D, Position3D, Position6D, Velocity6D
 from almath.quaternion import Quaternion
 from almath.rotations import Rotation, Rotation3D
 from almath.transform import Transform
-from almath.velocities import Velocity6D
 
 # --- to points and poses
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from almath._components import require
-from almath.positions import Position3D
+from almath.positions import Position3D, Velocity6D
 from almath.quaternion import Quaternion
 from almath.transform import Transform
-from almath.velocities import Velocity6D
 
 
 class Displacement:

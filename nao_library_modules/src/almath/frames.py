@@ -11,9 +11,8 @@ from typing import Union
 from almath import _matrix
 from almath._components import as_number, fill, require
 from almath.pose2d import Pose2D
-from almath.positions import Position3D, Position6D
+from almath.positions import Position3D, Position6D, Velocity6D
 from almath.transform import Transform
-from almath.velocities import Velocity6D
 
 Turnable = Union[Position3D, Position6D, Velocity6D]
 

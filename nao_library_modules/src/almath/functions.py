@@ -7,11 +7,10 @@ from typing import Union
 from almath._components import Placed, answer, asking
 from almath.errors import AlmathError
 from almath.pose2d import Pose2D
-from almath.positions import Position2D, Position3D, Position6D
+from almath.positions import Position2D, Position3D, Position6D, Velocity3D, Velocity6D
 from almath.quaternion import Quaternion
 from almath.rotations import Rotation, Rotation3D
 from almath.transform import Transform
-from almath.velocities import Velocity3D, Velocity6D
 
 Vector = Union[Position2D, Position3D]
 

@@ -1,10 +1,10 @@
-"""Points in the plane and in space, and a point with three angles."""
+"""Points in the plane and in space, a point with three angles, and how fast they move."""
 
 from __future__ import annotations
 
 import math
 
-from almath._components import Linear, Placed, Vector, require
+from almath._components import Components, Linear, Placed, Vector, as_number, require
 
 
 class Position2D(Linear, Vector, Placed):
@@ -75,3 +75,32 @@ class Position6D(Linear, Vector, Placed):
 
     def _point(self) -> list[float]:
         return self._values()[:3]
+
+
+class Velocity3D(Linear, Vector):
+    """A linear velocity."""
+
+    xd: float  # m/s
+    yd: float  # m/s
+    zd: float  # m/s
+
+
+class Velocity6D(Linear, Vector):
+    """A linear and an angular velocity."""
+
+    xd: float  # m/s
+    yd: float  # m/s
+    zd: float  # m/s
+    wxd: float  # rad/s
+    wyd: float  # rad/s
+    wzd: float  # rad/s
+
+
+class PositionAndVelocity(Components):
+    """Where one joint is and how fast it moves."""
+
+    q: float  # position, rad or m
+    dq: float  # velocity, rad/s or m/s
+
+    def __init__(self, q: float = 0.0, dq: float = 0.0) -> None:
+        self._assign((as_number(q, "PositionAndVelocity.q"), as_number(dq, "PositionAndVelocity.dq")))

@@ -8,8 +8,7 @@ from collections.abc import Iterable
 from almath import _matrix
 from almath._components import Components, Linear, as_number, as_numbers, asking, require
 from almath.errors import AlmathError
-from almath.positions import Position3D
-from almath.velocities import Velocity3D
+from almath.positions import Position3D, Velocity3D
 
 # How far from 1 the square of an axis' length may be before it is refused instead of taken for rounding.
 _AXIS_TOLERANCE = 0.00001

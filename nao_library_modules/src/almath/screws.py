@@ -11,9 +11,8 @@ import math
 from almath import _matrix
 from almath._components import as_number, in_place, require
 from almath.errors import AlmathError
-from almath.positions import Position6D
+from almath.positions import Position6D, Velocity6D
 from almath.transform import Transform
-from almath.velocities import Velocity6D
 
 # Below this angle, in rad, the closed formulas divide rounding errors by its square; their series take over.
 _SMALL_ANGLE = 0.0001
