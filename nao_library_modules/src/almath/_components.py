@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterable, Sequence
 from numbers import Real
 from typing import Any, ClassVar, TypeVar
 
+from almath import _matrix
 from almath.errors import AlmathError
 
 _Value = TypeVar("_Value", bound="Components")
 _Vector = TypeVar("_Vector", bound="Scalable")
+_Turn = TypeVar("_Turn", bound="Turning")
 
 
 def as_number(value: object, what: str) -> float:
@@ -219,7 +221,10 @@ class Vector(Scalable):
 
     def normalize(self: _Vector) -> _Vector:
         """Divide all numbers by the norm; AlmathError where it is zero."""
-        return unit(self, self.norm())
+        length = self.norm()
+        if length == 0.0:
+            raise AlmathError(f"{self!r} has no direction: its norm is zero")
+        return self / length
 
 
 class Placed(Components):
@@ -236,6 +241,78 @@ class Placed(Components):
     def distance(self: _Value, other: _Value) -> float:
         """Distance between the two points, in m; angles do not count."""
         return math.sqrt(self.distanceSquared(other))
+
+
+class Turning(Components):
+    """Components that are the rows of a rotation matrix, each perhaps with a number of a translation behind it."""
+
+    @classmethod
+    def _from_rows(cls: type[_Turn], rows: _matrix.Matrix) -> _Turn:
+        return cls._make(number for row in rows for number in row)
+
+    def _with_rows(self: _Turn, rows: _matrix.Matrix) -> _Turn:
+        """Return the same with another rotation."""
+        return self._from_rows(rows)
+
+    def _lines(self) -> list[list[float]]:
+        """List the numbers row by row."""
+        numbers = self._values()
+        width = len(numbers) // 3
+        return [numbers[start : start + width] for start in range(0, len(numbers), width)]
+
+    def _rows(self) -> _matrix.Matrix:
+        return tuple(tuple(line[:3]) for line in self._lines())
+
+    # These two have a name of their own in each class.
+
+    def _is_rotation(self, epsilon: float = 0.0001) -> bool:
+        """Tell whether the rotation is orthonormal and right-handed, within `epsilon`."""
+        return _matrix.is_rotation(self._rows(), epsilon)
+
+    def _normalize(self) -> None:
+        """Make the rotation one again; its third column keeps its direction.
+
+        Raises AlmathError if the second and third column do not span a plane.
+        """
+        rows = _matrix.orthonormalised(self._rows())
+        if rows is None:
+            raise AlmathError(f"no rotation near {self!r}: its second and third column do not span a plane")
+        self._assign(self._with_rows(rows)._values())
+
+    def determinant(self) -> float:
+        """Determinant of the rotation: 1."""
+        return _matrix.determinant(self._rows())
+
+    @classmethod
+    def fromRotX(cls: type[_Turn], angle: float) -> _Turn:
+        """Rotation about X by `angle`, in rad."""
+        return cls._from_rows(_matrix.about_x(angle))
+
+    @classmethod
+    def fromRotY(cls: type[_Turn], angle: float) -> _Turn:
+        """Rotation about Y by `angle`, in rad."""
+        return cls._from_rows(_matrix.about_y(angle))
+
+    @classmethod
+    def fromRotZ(cls: type[_Turn], angle: float) -> _Turn:
+        """Rotation about Z by `angle`, in rad."""
+        return cls._from_rows(_matrix.about_z(angle))
+
+    @classmethod
+    def from3DRotation(cls: type[_Turn], wx: float, wy: float, wz: float) -> _Turn:
+        """Rz(wz) Ry(wy) Rx(wx), angles in rad, without translation."""
+        return cls._from_rows(_matrix.from_angles(wx, wy, wz))
+
+    def __str__(self) -> str:
+        """Write the rows, one a line."""
+        return "[" + "\n ".join(f"[{row}]" for row in self._texts()) + "]"
+
+    def __repr__(self) -> str:
+        opening = f"{type(self).__name__}(["
+        return opening + (",\n" + " " * len(opening)).join(self._texts()) + "])"
+
+    def _texts(self) -> list[str]:
+        return [", ".join(f"{number:g}" for number in line) for line in self._lines()]
 
 
 def fill(out: _Value, value: _Value, where: str) -> None:
@@ -288,14 +365,3 @@ def answer(value: _Value, out: _Value | None, where: str) -> _Value | None:
         return value
     fill(out, value, where)
     return None
-
-
-def unit(vector: _Vector, length: float) -> _Vector:
-    """Divide a vector by its length.
-
-    `vector`: what to scale. `length`: its norm. Raises AlmathError if the length is zero, so that there is no direction
-    to keep.
-    """
-    if length == 0.0:
-        raise AlmathError(f"{vector!r} has no direction: its norm is zero")
-    return vector / length

@@ -26,10 +26,7 @@ def axisRotationProjection(axis: Position3D, rotated: Rotation | Transform) -> R
     require(axis, Position3D, "axisRotationProjection")
     if not isinstance(rotated, (Rotation, Transform)):
         raise AlmathError(f"axisRotationProjection takes a Rotation or a Transform, got {rotated!r}")
-    rows = _projected(tuple(axis.normalize()._values()), rotated._rows())
-    if isinstance(rotated, Transform):
-        return Transform._from_parts(rows, rotated._point())
-    return Rotation._from_rows(rows)
+    return rotated._with_rows(_projected(tuple(axis.normalize()._values()), rotated._rows()))
 
 
 def axisRotationProjectionInPlace(axis: Position3D, rotated: Rotation | Transform) -> None:
@@ -60,11 +57,9 @@ def orthogonalSpace(axis: Position3D, out: Transform | None = None) -> Transform
         first = Position3D(third.z, 0.0, 0.0)
     first = first.normalize()
     columns = tuple(tuple(column._values()) for column in (first, third.crossProduct(first), third))
-    position = (0.0, 0.0, 0.0)
-    if out is not None:
-        require(out, Transform, "orthogonalSpace")
-        position = out._point()
-    return answer(Transform._from_parts(_matrix.transposed(columns), position), out, "orthogonalSpace")
+    placed = Transform() if out is None else out
+    require(placed, Transform, "orthogonalSpace")
+    return answer(placed._with_rows(_matrix.transposed(columns)), out, "orthogonalSpace")
 
 
 def transformFromRotVec(*arguments: int | float | Position3D) -> Transform:

@@ -212,14 +212,14 @@ def transformFromPosition6D(position: Position6D) -> Transform:
 def transformFromRotation(rotation: Rotation) -> Transform:
     """Transform of a rotation, without translation."""
     require(rotation, Rotation, "transformFromRotation")
-    return Transform._from_parts(rotation._rows(), (0.0, 0.0, 0.0))
+    return Transform._from_rows(rotation._rows())
 
 
 def transformFromRotationInPlace(rotation: Rotation, out: Transform) -> None:
     """Give `out` a rotation; its origin stays."""
     require(rotation, Rotation, "transformFromRotationInPlace")
     require(out, Transform, "transformFromRotationInPlace")
-    fill(out, Transform._from_parts(rotation._rows(), out._point()), "transformFromRotationInPlace")
+    fill(out, out._with_rows(rotation._rows()), "transformFromRotationInPlace")
 
 
 def transformFromRotation3D(angles: Rotation3D) -> Transform:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from almath import _matrix
-from almath._components import Components, Linear, as_number, as_numbers, asking, require
+from almath._components import Linear, Turning, as_number, as_numbers, asking, require
 from almath.errors import AlmathError
 from almath.positions import Position3D, Velocity3D
 
@@ -14,7 +14,7 @@ from almath.positions import Position3D, Velocity3D
 _AXIS_TOLERANCE = 0.00001
 
 
-class Rotation(Components):
+class Rotation(Turning):
     """A 3x3 rotation matrix; `r2_c3` is row 2, column 3.
 
     Made from nothing it is the identity. A sequence of 9 numbers is the matrix row by row; of one of 12 or 16
@@ -39,14 +39,6 @@ class Rotation(Components):
             raise AlmathError(f"Rotation takes 9, 12 or 16 numbers, got {len(numbers)}: {numbers}")
         return numbers
 
-    @classmethod
-    def _from_rows(cls, rows: _matrix.Matrix) -> Rotation:
-        return cls._make(number for row in rows for number in row)
-
-    def _rows(self) -> _matrix.Matrix:
-        numbers = self._values()
-        return (tuple(numbers[0:3]), tuple(numbers[3:6]), tuple(numbers[6:9]))
-
     def __mul__(self, other: Rotation | Position3D | Velocity3D) -> Rotation | Position3D | Velocity3D:
         """Chain two rotations, or turn a point or a velocity."""
         if isinstance(other, Rotation):
@@ -55,27 +47,12 @@ class Rotation(Components):
             return other._make(_matrix.applied(self._rows(), tuple(other._values())))
         return NotImplemented
 
-    def isRotation(self, epsilon: float = 0.0001) -> bool:
-        """Tell whether the matrix is orthonormal and right-handed, within `epsilon`."""
-        return _matrix.is_rotation(self._rows(), epsilon)
-
-    def normalizeRotation(self) -> None:
-        """Make the matrix a rotation again; the third column keeps its direction.
-
-        Raises AlmathError if the second and third column do not span a plane.
-        """
-        rows = _matrix.orthonormalised(self._rows())
-        if rows is None:
-            raise AlmathError(f"no rotation near {self!r}: its second and third column do not span a plane")
-        self._assign(self._from_rows(rows)._values())
+    isRotation = Turning._is_rotation
+    normalizeRotation = Turning._normalize
 
     def transpose(self) -> Rotation:
         """Swap rows and columns: the inverse of a rotation."""
         return self._from_rows(_matrix.transposed(self._rows()))
-
-    def determinant(self) -> float:
-        """Determinant: 1 for a rotation."""
-        return _matrix.determinant(self._rows())
 
     @staticmethod
     def fromQuaternion(w: float, x: float, y: float, z: float) -> Rotation:
@@ -92,21 +69,6 @@ class Rotation(Components):
         if not abs(square - 1.0) <= _AXIS_TOLERANCE:
             raise AlmathError(f"the axis of a rotation must have length 1, got ({x}, {y}, {z})")
         return Rotation._from_rows(_matrix.about_axis((x, y, z), angle))
-
-    @staticmethod
-    def fromRotX(angle: float) -> Rotation:
-        """Rotation about X by `angle`, in rad."""
-        return Rotation._from_rows(_matrix.about_x(angle))
-
-    @staticmethod
-    def fromRotY(angle: float) -> Rotation:
-        """Rotation about Y by `angle`, in rad."""
-        return Rotation._from_rows(_matrix.about_y(angle))
-
-    @staticmethod
-    def fromRotZ(angle: float) -> Rotation:
-        """Rotation about Z by `angle`, in rad."""
-        return Rotation._from_rows(_matrix.about_z(angle))
 
     # The quarter and half turns are written out because cos(pi / 2) is not exactly 0 in floating point.
 
@@ -129,20 +91,6 @@ class Rotation(Components):
     def fromRotZHalfPi() -> Rotation:
         """Quarter of a turn about Z, without rounding."""
         return Rotation([0, -1, 0, 1, 0, 0, 0, 0, 1])
-
-    @staticmethod
-    def from3DRotation(wx: float, wy: float, wz: float) -> Rotation:
-        """Rz(wz) Ry(wy) Rx(wx), angles in rad."""
-        return Rotation._from_rows(_matrix.from_angles(wx, wy, wz))
-
-    def __str__(self) -> str:
-        """Write the matrix, one row a line."""
-        rows = ("[" + ", ".join(f"{number:g}" for number in row) + "]" for row in self._rows())
-        return "[" + "\n ".join(rows) + "]"
-
-    def __repr__(self) -> str:
-        rows = (", ".join(f"{number:g}" for number in row) for row in self._rows())
-        return f"{type(self).__name__}([" + ",\n          ".join(rows) + "])"
 
 
 class Rotation3D(Linear):

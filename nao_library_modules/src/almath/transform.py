@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from numbers import Real
 
 from almath import _matrix
-from almath._components import Placed, answer, as_number, as_numbers, asking, fill, require
+from almath._components import Components, Placed, Turning, answer, as_number, as_numbers, asking, fill, require
 from almath.errors import AlmathError
 from almath.positions import Position2D, Position3D
 
 _LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 
 
-class Transform(Placed):
+class Transform(Turning, Placed):
     """Rotation and translation of one frame in another; `r2_c3` is row 2, column 3, and column 4 is in m.
 
     Made from nothing it is the identity, from three numbers a translation. A sequence of 12 or 16 numbers is
@@ -48,9 +48,12 @@ class Transform(Placed):
     def _from_parts(cls, rows: _matrix.Matrix, position: Iterable[float]) -> Transform:
         return cls._make(number for row, offset in zip(rows, position) for number in (*row, offset))
 
-    def _rows(self) -> _matrix.Matrix:
-        numbers = self._values()
-        return (tuple(numbers[0:3]), tuple(numbers[4:7]), tuple(numbers[8:11]))
+    @classmethod
+    def _from_rows(cls, rows: _matrix.Matrix) -> Transform:
+        return cls._from_parts(rows, (0.0, 0.0, 0.0))
+
+    def _with_rows(self, rows: _matrix.Matrix) -> Transform:
+        return self._from_parts(rows, self._point())
 
     def _point(self) -> _matrix.Triple:
         return (self.r1_c4, self.r2_c4, self.r3_c4)
@@ -69,27 +72,12 @@ class Transform(Placed):
             return Position3D(*self._placed((other.x, other.y, 0.0)))
         return NotImplemented
 
-    def isTransform(self, epsilon: float = 0.0001) -> bool:
-        """Tell whether the rotation is orthonormal and right-handed, within `epsilon`."""
-        return _matrix.is_rotation(self._rows(), epsilon)
-
-    def normalizeTransform(self) -> None:
-        """Make the rotation one again; its third column keeps its direction.
-
-        Raises AlmathError if the second and third column do not span a plane.
-        """
-        rows = _matrix.orthonormalised(self._rows())
-        if rows is None:
-            raise AlmathError(f"no rotation near {self!r}: its second and third column do not span a plane")
-        self._assign(self._from_parts(rows, self._point())._values())
+    isTransform = Turning._is_rotation
+    normalizeTransform = Turning._normalize
 
     def norm(self) -> float:
         """Length of the translation, in m."""
         return math.sqrt(_matrix.dot(self._point(), self._point()))
-
-    def determinant(self) -> float:
-        """Determinant of the rotation: 1."""
-        return _matrix.determinant(self._rows())
 
     def inverse(self) -> Transform:
         """Transform that undoes this one."""
@@ -110,40 +98,9 @@ class Transform(Placed):
         return None
 
     @staticmethod
-    def fromRotX(angle: float) -> Transform:
-        """Rotation about X by `angle`, in rad."""
-        return Transform._from_parts(_matrix.about_x(angle), (0.0, 0.0, 0.0))
-
-    @staticmethod
-    def fromRotY(angle: float) -> Transform:
-        """Rotation about Y by `angle`, in rad."""
-        return Transform._from_parts(_matrix.about_y(angle), (0.0, 0.0, 0.0))
-
-    @staticmethod
-    def fromRotZ(angle: float) -> Transform:
-        """Rotation about Z by `angle`, in rad."""
-        return Transform._from_parts(_matrix.about_z(angle), (0.0, 0.0, 0.0))
-
-    @staticmethod
-    def from3DRotation(wx: float, wy: float, wz: float) -> Transform:
-        """Rz(wz) Ry(wy) Rx(wx), angles in rad, without translation."""
-        return Transform._from_parts(_matrix.from_angles(wx, wy, wz), (0.0, 0.0, 0.0))
-
-    @staticmethod
     def fromPosition(x: float, y: float, z: float, wx: float = 0.0, wy: float = 0.0, wz: float = 0.0) -> Transform:
         """Translation in m and, if given, rotation Rz(wz) Ry(wy) Rx(wx) in rad."""
         return Transform._from_parts(_matrix.from_angles(wx, wy, wz), (x, y, z))
-
-    def __str__(self) -> str:
-        """Write the upper three rows, one a line."""
-        return "[" + "\n ".join(f"[{row}]" for row in self._lines()) + "]"
-
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}([" + ",\n           ".join(self._lines()) + "])"
-
-    def _lines(self) -> list[str]:
-        numbers = self._values()
-        return [", ".join(f"{number:g}" for number in numbers[start : start + 4]) for start in (0, 4, 8)]
 
 
 transformFromRotX, transformFromRotY, transformFromRotZ = Transform.fromRotX, Transform.fromRotY, Transform.fromRotZ
@@ -179,7 +136,4 @@ normalizeTransform = asking("normalizeTransform", (Transform,), Transform.normal
 def transformToFloatVector(transform: Transform, out: list[float] | None = None) -> list[float] | None:
     """List the upper three rows, 12 numbers, or write them to `out`. `Transform.toVector` lists all 16."""
     require(transform, Transform, "transformToFloatVector")
-    if out is None:
-        return transform._values()
-    out[:] = transform._values()
-    return None
+    return Components.toVector(transform, out)
