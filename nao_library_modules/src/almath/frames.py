@@ -6,7 +6,7 @@ forms turn back. All of them write their result to the last argument.
 
 from __future__ import annotations
 
-from typing import Union
+from typing import Callable, TypeVar
 
 from almath import _matrix
 from almath._components import as_number, fill, require
@@ -14,48 +14,33 @@ from almath.pose2d import Pose2D
 from almath.positions import Position3D, Position6D, Velocity6D
 from almath.transform import Transform
 
-Turnable = Union[Position3D, Position6D, Velocity6D]
+Turnable = TypeVar("Turnable", Position3D, Position6D, Velocity6D)
 
 
-def _turn(kind: type, transform: Transform, vector: Turnable, out: Turnable, where: str, back: bool = False) -> None:
-    """Turn each triple of numbers of a vector, forth or back, and write the result to `out`."""
-    require(transform, Transform, where)
-    require(vector, kind, where)
-    require(out, kind, where)
-    rows = _matrix.transposed(transform._rows()) if back else transform._rows()
-    numbers = vector._values()
-    triples = (tuple(numbers[start : start + 3]) for start in range(0, len(numbers), 3))
-    out._assign([number for triple in triples for number in _matrix.applied(rows, triple)])
+def _turning(kind: type[Turnable], what: str, back: bool = False) -> Callable[[Transform, Turnable, Turnable], None]:
+    """A function that turns each triple of numbers of a vector, forth or back."""
+    name = f"changeReference{'Transpose' if back else ''}{kind.__name__}"
+
+    def turn(transform: Transform, vector: Turnable, out: Turnable) -> None:
+        require(transform, Transform, name)
+        require(vector, kind, name)
+        require(out, kind, name)
+        rows = _matrix.transposed(transform._rows()) if back else transform._rows()
+        numbers = vector._values()
+        triples = (tuple(numbers[start : start + 3]) for start in range(0, len(numbers), 3))
+        out._assign([number for triple in triples for number in _matrix.applied(rows, triple)])
+
+    turn.__name__ = turn.__qualname__ = name
+    turn.__doc__ = f"Turn {what}{' back' if back else ''} by the rotation of `transform`, and write it to `out`."
+    return turn
 
 
-def changeReferenceVelocity6D(transform: Transform, velocity: Velocity6D, out: Velocity6D) -> None:
-    """Turn a velocity by the rotation of `transform`."""
-    _turn(Velocity6D, transform, velocity, out, "changeReferenceVelocity6D")
-
-
-def changeReferenceTransposeVelocity6D(transform: Transform, velocity: Velocity6D, out: Velocity6D) -> None:
-    """Turn a velocity back by the rotation of `transform`."""
-    _turn(Velocity6D, transform, velocity, out, "changeReferenceTransposeVelocity6D", back=True)
-
-
-def changeReferencePosition6D(transform: Transform, position: Position6D, out: Position6D) -> None:
-    """Turn both triples of a small displacement by the rotation of `transform`."""
-    _turn(Position6D, transform, position, out, "changeReferencePosition6D")
-
-
-def changeReferenceTransposePosition6D(transform: Transform, position: Position6D, out: Position6D) -> None:
-    """Turn both triples of a small displacement back by the rotation of `transform`."""
-    _turn(Position6D, transform, position, out, "changeReferenceTransposePosition6D", back=True)
-
-
-def changeReferencePosition3D(transform: Transform, point: Position3D, out: Position3D) -> None:
-    """Turn a vector by the rotation of `transform`."""
-    _turn(Position3D, transform, point, out, "changeReferencePosition3D")
-
-
-def changeReferenceTransposePosition3D(transform: Transform, point: Position3D, out: Position3D) -> None:
-    """Turn a vector back by the rotation of `transform`."""
-    _turn(Position3D, transform, point, out, "changeReferenceTransposePosition3D", back=True)
+changeReferenceVelocity6D = _turning(Velocity6D, "a velocity")
+changeReferenceTransposeVelocity6D = _turning(Velocity6D, "a velocity", back=True)
+changeReferencePosition6D = _turning(Position6D, "both triples of a small displacement")
+changeReferenceTransposePosition6D = _turning(Position6D, "both triples of a small displacement", back=True)
+changeReferencePosition3D = _turning(Position3D, "a vector")
+changeReferenceTransposePosition3D = _turning(Position3D, "a vector", back=True)
 
 
 def changeReferencePosition3DInPlace(transform: Transform, point: Position3D) -> None:
@@ -72,7 +57,7 @@ def changeReferenceTransform(transform: Transform, other: Transform, out: Transf
     """Turn another transform, its origin included, by the rotation of `transform`."""
     for argument in (transform, other, out):
         require(argument, Transform, "changeReferenceTransform")
-    turn = Transform._from_parts(transform._rows(), (0.0, 0.0, 0.0))
+    turn = Transform._from_rows(transform._rows())
     fill(out, turn * other, "changeReferenceTransform")
 
 
