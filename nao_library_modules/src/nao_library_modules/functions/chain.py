@@ -112,33 +112,33 @@ def _rest(named: Collection[str], fields: Sequence[str]) -> list[str]:
     return [field for field in fields if field not in named and field not in OF_THE_SERVER]
 
 
-class _Signature:
-    """Parameters of one callable as fields of one message type, worked out once."""
+def _arguments(
+    function: Callable[..., Any], message_type: type, after_self: bool = False
+) -> Callable[[Any, dict[str, Any]], tuple[Any, ...]]:
+    """What gives the arguments of a callable: message, context -> arguments; worked out once for a message type.
 
-    def __init__(self, function: Callable[..., Any], message_type: type, bound_self: object | None = None) -> None:
-        fields = message_type.__slots__
-        parameters = list(inspect.signature(function).parameters.values())
-        if bound_self is not None:
-            parameters = parameters[1:]
-        self._first = () if bound_self is None else (bound_self,)
-        rest = _rest([parameter.name for parameter in parameters], fields)
-        self._spread: list[str] = []
-        self._values: list[Callable[[Any, dict[str, Any]], Any]] = []
-        for parameter in parameters:
-            if parameter.kind is parameter.KEYWORD_ONLY and parameter.default is parameter.empty:
-                problem = "the function takes it by its name alone"
-                raise BadGoal(parameter.name, None, "a parameter before *args", problem=problem)
-            if parameter.kind is parameter.VAR_POSITIONAL:
-                self._spread = rest
-            elif parameter.kind is parameter.KEYWORD_ONLY:
-                pass  # it has its default
-            elif parameter.kind is not parameter.VAR_KEYWORD:
-                self._values.append(_value(parameter, fields, rest, message_type.__name__))
+    `after_self`: whether the first parameter is not looked at.
+    """
+    fields = message_type.__slots__
+    parameters = list(inspect.signature(function).parameters.values())
+    if after_self:
+        parameters = parameters[1:]
+    rest = _rest([parameter.name for parameter in parameters], fields)
+    spread: list[str] = []
+    values: list[Callable[[Any, dict[str, Any]], Any]] = []
+    for parameter in parameters:
+        if parameter.kind is parameter.KEYWORD_ONLY and parameter.default is parameter.empty:
+            problem = "the function takes it by its name alone"
+            raise BadGoal(parameter.name, None, "a parameter before *args", problem=problem)
+        if parameter.kind is parameter.VAR_POSITIONAL:
+            spread = rest
+        elif parameter.kind not in (parameter.KEYWORD_ONLY, parameter.VAR_KEYWORD):  # which stay as they are
+            values.append(_value(parameter, fields, rest, message_type.__name__))
 
-    def arguments(self, message: Any, context: dict[str, Any]) -> tuple[Any, ...]:
-        """Values of the parameters, taken from a message."""
-        values = [value(message, context) for value in self._values]
-        return (*self._first, *values, *(getattr(message, field) for field in self._spread))
+    def arguments(message: Any, context: dict[str, Any]) -> tuple[Any, ...]:
+        return (*(value(message, context) for value in values), *(getattr(message, field) for field in spread))
+
+    return arguments
 
 
 def _value(
@@ -174,12 +174,12 @@ class BoundFunction:
 
     def __init__(self, function: Callable[..., Any], message_type: type) -> None:
         self.function = function
-        self.arguments = _Signature(function, message_type).arguments
+        self.arguments = _arguments(function, message_type)
         self.fields = declared_fields(function, message_type.__slots__)
         self.check: Callable[..., None] | None = getattr(function, CHECK_ATTRIBUTE, None)
         if self.check is not None:
             self._bound_self = getattr(function, "__self__", None)
-            self._check_arguments = _Signature(self.check, message_type, self._bound_self).arguments
+            self._check_arguments = _arguments(self.check, message_type, self._bound_self is not None)
 
     def check_fields(self, message: Any) -> None:
         """See that each field that the function declares holds what it may hold.
@@ -198,10 +198,8 @@ class BoundFunction:
         """
         if self.check is None:
             return
-        arguments = self._check_arguments(message, context)
-        if self._bound_self is not None:
-            arguments = (stand_in(self._bound_self), *arguments[1:])
-        self.check(*arguments)
+        owner = () if self._bound_self is None else (stand_in(self._bound_self),)
+        self.check(*owner, *self._check_arguments(message, context))
 
 
 def require_callable(name: str, function: Any) -> Callable[..., Any]:
@@ -280,7 +278,7 @@ class FunctionChain:
         Args:
             before_check: As `read` takes it.
             context: What the checks share, with those of the chains before.
-            stand_in: As `Binding.run_check` takes it.
+            stand_in: As `BoundFunction.run_check` takes it.
         """
         _require_some(messages)
         context = {} if context is None else context

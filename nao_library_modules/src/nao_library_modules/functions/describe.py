@@ -62,29 +62,33 @@ class Description:
         choices: Function, field, what to ask the robot -> words that it may hold, where they are not declared.
     """
 
-    def __init__(self, table: Mapping[str, Callable[..., Any]], kind: type, action: type) -> None:
+    def __init__(
+        self,
+        table: Mapping[str, Callable[..., Any]],
+        kind: type,
+        action: type,
+        choices: Callable[[str, str, Sequence[Question]], Sequence[str]] = lambda function, field, asked: (),
+    ) -> None:
         """Look at what the server takes.
 
         Args:
             table: Its functions, those of the robot's memory among them.
             kind: Class of the module behind it.
             action: Type of its action; the first field of the goal is the array of function messages.
+            choices: As the attribute.
         """
-        self.choices: Callable[[str, str, Sequence[Question]], Sequence[str]] = lambda function, field, asked: ()
+        import roslib.message  # not needed by who only looks at texts
+
+        self.choices = choices
         goal = action().action_goal.goal
         self.action = f"{goal._type.rpartition('/')[0]}/{action.__name__[: -len('Action')]}"
         self.message = goal._slot_types[0].partition("[")[0]
         self.table = table
         self.help = first_line(kind)
-        self._message_type = message_class(goal)
+        self._message_type = roslib.message.get_message_class(self.message)
         self._fields = read_fields(self._message_type._full_text)
         self._defaults = self._message_type()
         self._shared = frozenset(MemoryFunctions.functions)
-
-    @property
-    def names(self) -> list[str]:
-        """Names of the functions, in the order of the table."""
-        return list(self.table)
 
     def functions(self, names: Sequence[str] = (), arguments: bool = True) -> list[Described]:
         """Descriptions of functions; of all without names. Unknown names are left out.
@@ -128,12 +132,6 @@ class Description:
         functions = (each for each in self.table.values() if callable(each))
         fields = (declared_fields(each, (name,)).get(name) for each in functions)
         return next((field.asked for field in fields if field and field.asked), ())
-
-
-def message_class(goal: Any) -> type:
-    import roslib.message  # not needed by who only looks at texts
-
-    return roslib.message.get_message_class(goal._slot_types[0].partition("[")[0])
 
 
 def default_text(value: Any) -> str:

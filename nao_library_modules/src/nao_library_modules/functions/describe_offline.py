@@ -35,12 +35,7 @@ def _declared(name: str) -> OfflineServer:
     server = server_type(name)
     kind, action = server.module, server.action
     table = FunctionTable(kind.declared_functions(), MemoryFunctions.functions)
-
     module = lru_cache(maxsize=None)(lambda: offline_module(kind))
-
-    def describe() -> Description:
-        description = Description(table, kind, action)
-        description.choices = lambda function, field, _: module().argument_choices(function, field)
-        return description
-
-    return OfflineServer(name, action, kind, table, DescribeService(describe, None, lambda: ((), 0)))
+    choices = lambda function, field, _: module().argument_choices(function, field)  # noqa: E731
+    service = DescribeService(lambda: Description(table, kind, action, choices), None, lambda: ((), 0))
+    return OfflineServer(name, action, kind, table, service)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 from nao_library_msgs.msg import ArgumentDescription, FunctionDescription
@@ -29,17 +30,16 @@ class DescribeService:
             robot: Proxies and connection; None: there is none.
             running: The functions of the goal that runs, and the index of the one that does.
         """
-        self._describe = describe
+        self._description = lru_cache(maxsize=None)(describe)
         self._robot = robot
         self._running = running
         self._lock = threading.Lock()
-        self._description: Description | None = None
 
     def answer(self, request: Any) -> Any:
         running, index = self._running()
         robot = self._robot
         with self._lock:
-            description = self._described()
+            description = self._description()
             response = DescribeFunctionsResponse(
                 action=description.action,
                 message=description.message,
@@ -53,14 +53,8 @@ class DescribeService:
                 described = description.functions(request.functions, not request.without_arguments)
                 response.functions = [function_message(function) for function in described]
                 response.common = [argument_message(argument) for argument in description.common()]
-                known = frozenset(description.names)
-                response.unknown = [name for name in request.functions if name not in known]
+                response.unknown = [name for name in request.functions if name not in description.table]
         return response
-
-    def _described(self) -> Description:
-        if self._description is None:
-            self._description = self._describe()
-        return self._description
 
 
 def function_message(described: Described) -> FunctionDescription:

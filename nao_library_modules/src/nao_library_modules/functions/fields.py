@@ -132,12 +132,8 @@ def numbers(
 
 def whole(lowest: int, highest: int, meaning: str, unit: str = "") -> Field:
     """A whole number between two others, both included."""
-    check = partial(_check_whole, lowest=lowest, highest=highest, unit=f" {unit}".rstrip())
+    check = partial(require_whole, lowest=lowest, highest=highest, unit=f" {unit}".rstrip())
     return Field(meaning, unit, f"a whole number {lowest}..{highest} {unit}".rstrip(), lowest, highest, check=check)
-
-
-def _check_whole(name: str, value: float, lowest: int, highest: int, unit: str) -> None:
-    require_whole(name, value, lowest, highest, unit)
 
 
 def moments(bounds: Bounds, meaning: str, most: Limit = KEY_FRAMES, shared: bool = False) -> Field:

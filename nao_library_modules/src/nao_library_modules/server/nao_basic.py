@@ -213,15 +213,13 @@ class NaoBasic(FunctionRunner):
         if self.launchpath is not None:
             reports[f"{name} launch file"] = lambda: launch_report(self._launch)
         self._diagnostics = self._node.publish_diagnostics(self.robot.address, reports)
-        description = DescribeService(lambda: self._description(action), self.robot, lambda: self._running)
+        choices = Choices(self.robot, self.argument_choices)
+        description = DescribeService(
+            lambda: Description(self.function_table, type(self), action, choices.of), self.robot, lambda: self._running
+        )
         self._node.serve_description(name, description.answer)
         self._node.serve(name + CHECK, CheckGoals, CheckService(self, action).answer)
         self._tell_ready()
-
-    def _description(self, action: type) -> Description:
-        description = Description(self.function_table, type(self), action)
-        description.choices = Choices(self.robot, self.argument_choices).of
-        return description
 
     def _tell_ready(self) -> None:
         """Say once that goals are carried out from now on: the server is there, and the robot."""
@@ -441,7 +439,9 @@ class NaoBasic(FunctionRunner):
         except NaoError:
             return  # the chain is read once more, and then it is told
         self._running = (names, 0)
-        self._startup_grace.wait(self.interrupt, lambda awaited: self._tell_wait(awaited, len(messages)))
+        self._startup_grace.wait(
+            self.interrupt, lambda awaited: self._send_feedback(count=len(messages), waiting=awaited)
+        )
 
     def _run_chain(self, goal: Any, outcomes: list[Outcome]) -> tuple[str, str]:
         messages = getattr(goal, goal.__slots__[0])
@@ -468,9 +468,8 @@ class NaoBasic(FunctionRunner):
             self.happened = (0.0, 0.0)
             answered, began = len(outcomes), self.clock.now()
             try:
-                self.run(
-                    step.function, step.args, step.sleep_time, lambda a, b=began: self._answered(step, a, b, outcomes)
-                )
+                told = lambda answer, began=began: outcomes.append(self._outcome(step, began, answer))  # noqa: E731
+                self.run(step.function, step.args, step.sleep_time, told)
                 return
             except Preempted:
                 raise
@@ -494,23 +493,15 @@ class NaoBasic(FunctionRunner):
                 return
 
     def _note_failure(self, step: ChainStep, began: float, error: Exception) -> None:
-        outcome = Outcome(step.position, step.function, [], self._since(began), _told(error), began, self.happened)
-        self._failures.append(outcome)
+        self._failures.append(self._outcome(step, began, None, _told(error)))
 
-    def _answered(self, step: ChainStep, answer: Any, began: float, outcomes: list[Outcome]) -> None:
-        elapsed = self._since(began)
-        outcome = Outcome(step.position, step.function, values_of(answer), elapsed, "", began, self.happened)
-        outcomes.append(outcome)
-
-    def _since(self, began: float) -> float:
-        return max(0.0, self.clock.now() - began)
+    def _outcome(self, step: ChainStep, began: float, answer: Any, error: str = "") -> Outcome:
+        elapsed = max(0.0, self.clock.now() - began)
+        return Outcome(step.position, step.function, values_of(answer), elapsed, error, began, self.happened)
 
     def _tell_progress(self, position: int, function: str, count: int) -> None:
         self._progress = (position - 1, function, count)
         self.publish_feedback()
-
-    def _tell_wait(self, awaited: str, count: int) -> None:
-        self._send_feedback(count=count, waiting=awaited)
 
     # The connection
 
