@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from numbers import Real
-from typing import Any
+from typing import Any, Type, TypeVar
 
 import genpy
 from trajectory_msgs.msg import JointTrajectory
@@ -24,6 +24,8 @@ from nao_library_msgs.msg import (
     TactileFunction,
     VisionFunction,
 )
+
+Message = TypeVar("Message")
 
 FITS: dict[str, Callable[[Any], bool]] = {
     "bool": lambda value: isinstance(value, bool),
@@ -66,42 +68,25 @@ def _fits(type_: str, value: Any) -> bool:
     return FITS[type_](value)
 
 
-# The names are those of the paper.
+def _maker(kind: Type[Message], server: str, example: str) -> Callable[..., Message]:
+    """`new_function` for one kind of message, under the name that the paper gives it."""
+    name = f"new{kind.__name__}"
+
+    def make(function: str, *values: Any, **fields: Any) -> Message:
+        return new_function(kind, function, *values, **fields)
+
+    make.__name__ = make.__qualname__ = name
+    make.__doc__ = f"A function of {server}, as in `{name}({example})`."
+    return make
 
 
-def newLedFunction(function: str, *values: Any, **fields: Any) -> LedFunction:  # noqa: N802
-    """A function of NaoLights, as in `newLedFunction("setIntensity", ["Brain0"], [0.5])`."""
-    return new_function(LedFunction, function, *values, **fields)
-
-
-def newMotionFunction(function: str, *values: Any, **fields: Any) -> MotionFunction:  # noqa: N802
-    """A function of NaoMotion, as in `newMotionFunction("setAngles", ["HeadYaw"], [0.5])`."""
-    return new_function(MotionFunction, function, *values, **fields)
-
-
-def newAudioOutFunction(function: str, *values: Any, **fields: Any) -> AudioOutFunction:  # noqa: N802
-    """A function of nao_audio_out, as in `newAudioOutFunction("say", "Hello")`."""
-    return new_function(AudioOutFunction, function, *values, **fields)
-
-
-def newAudioInFunction(function: str, *values: Any, **fields: Any) -> AudioInFunction:  # noqa: N802
-    """A function of nao_audio_in, as in `newAudioInFunction("listen", ["yes", "no"])`."""
-    return new_function(AudioInFunction, function, *values, **fields)
-
-
-def newVisionFunction(function: str, *values: Any, **fields: Any) -> VisionFunction:  # noqa: N802
-    """A function of NaoVision, as in `newVisionFunction("takePicture", "desk.png")`."""
-    return new_function(VisionFunction, function, *values, **fields)
-
-
-def newTactileFunction(function: str, *values: Any, **fields: Any) -> TactileFunction:  # noqa: N802
-    """A function of NaoTactile, as in `newTactileFunction("waitForTouch", ["head"], timeout=30.0)`."""
-    return new_function(TactileFunction, function, *values, **fields)
-
-
-def newBehaviorFunction(function: str, *values: Any, **fields: Any) -> BehaviorFunction:  # noqa: N802
-    """A function of NaoBehavior, as in `newBehaviorFunction("runBehavior", "greet", ["name=Ada"])`."""
-    return new_function(BehaviorFunction, function, *values, **fields)
+newLedFunction = _maker(LedFunction, "NaoLights", '"setIntensity", ["Brain0"], [0.5]')  # noqa: N816
+newMotionFunction = _maker(MotionFunction, "NaoMotion", '"setAngles", ["HeadYaw"], [0.5]')  # noqa: N816
+newAudioOutFunction = _maker(AudioOutFunction, "nao_audio_out", '"say", "Hello"')  # noqa: N816
+newAudioInFunction = _maker(AudioInFunction, "nao_audio_in", '"listen", ["yes", "no"]')  # noqa: N816
+newVisionFunction = _maker(VisionFunction, "NaoVision", '"takePicture", "desk.png"')  # noqa: N816
+newTactileFunction = _maker(TactileFunction, "NaoTactile", '"waitForTouch", ["head"], timeout=30.0')  # noqa: N816
+newBehaviorFunction = _maker(BehaviorFunction, "NaoBehavior", '"runBehavior", "greet", ["name=Ada"]')  # noqa: N816
 
 
 def JointTrajectoryPoint(  # noqa: N802
