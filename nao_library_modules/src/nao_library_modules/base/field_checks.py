@@ -30,15 +30,14 @@ def require_number(field: str, value: float, lowest: float, highest: float, allo
 
 def require_within(field: str, value: float, limit: Limit, allowed: str = "") -> float:
     """A number within the declared bounds of its kind."""
-    lowest, highest, unit = limit
-    return require_number(field, value, lowest, highest, allowed or f"{lowest:g}..{highest:g} {unit}".strip())
+    return require_number(field, value, limit.lowest, limit.highest, allowed or limit.text)
 
 
 def require_zero_or(field: str, value: float, limit: Limit, zero: str = "") -> float:
     """As `require_within`; 0 is allowed as well; `zero` says what it stands for: ": the default"."""
-    lowest, highest, unit = limit
-    allowed = f"{lowest:g}..{highest:g} {unit}".strip()
-    return float(value) if value == 0.0 else require_number(field, value, lowest, highest, f"{allowed}, or 0{zero}")
+    if value == 0.0:
+        return float(value)
+    return require_number(field, value, limit.lowest, limit.highest, f"{limit.text}, or 0{zero}")
 
 
 def require_each(field: str, values: Iterable[float], limit: Limit) -> list[float]:

@@ -18,6 +18,11 @@ class Limit(NamedTuple):
     highest: float
     unit: str
 
+    @property
+    def text(self) -> str:
+        """What is allowed, in words: "0.1..60 s"."""
+        return f"{self.lowest:g}..{self.highest:g} {self.unit}".strip()
+
 
 def limit(kind: str) -> Limit:
     """The bounds of a kind of number."""

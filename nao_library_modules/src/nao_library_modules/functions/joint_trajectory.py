@@ -106,7 +106,7 @@ class KeyFrames:
         return list(self.joints), [list(self.times) for _ in self.joints], points
 
 
-def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False, field: str = "trajectory") -> KeyFrames:
+def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False) -> KeyFrames:
     """Check a trajectory and bring it into one shape.
 
     Raises BadGoal, which names the field that is wrong, what it holds and what is allowed.
@@ -115,23 +115,24 @@ def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False, fie
         trajectory: A trajectory_msgs/JointTrajectory.
         chains: Chain -> its joints on this robot; "Body" tells what joints there are.
         relative: Whether positions are added to the present ones.
-        field: What errors call the trajectory.
     """
     names = [str(name) for name in trajectory.joint_names]
-    joints = expand_names(names, chains, f"{field}.joint_names")
+    joints = expand_names(names, chains, "trajectory.joint_names")
     points = list(trajectory.points)
     if not points:
-        raise BadGoal(f"{field}.points", [], "at least one point", problem="there is no point")
+        raise BadGoal("trajectory.points", [], "at least one point", problem="there is no point")
     pieces = PIECES if any(len(point.accelerations) for point in points) else 1
-    require_length(f"{field}.points", len(points) * len(joints) * pieces, KEY_FRAMES)
-    times = _times(points, field)
+    require_length("trajectory.points", len(points) * len(joints) * pieces, KEY_FRAMES)
+    times = _times(points)
     source = _body_order(names, joints, len(points[0].positions))
-    values = [_row(point.positions, source, joints, f"{field}.points[{i}].positions") for i, point in enumerate(points)]
-    velocities = _slopes("velocities", points, source, joints, field)
-    accelerations = _slopes("accelerations", points, source, joints, field)
+    values = [
+        _row(point.positions, source, joints, f"trajectory.points[{i}].positions") for i, point in enumerate(points)
+    ]
+    velocities = _slopes("velocities", points, source, joints)
+    accelerations = _slopes("accelerations", points, source, joints)
     if accelerations is not None:
         if velocities is None:
-            name = f"{field}.points[0].velocities"
+            name = "trajectory.points[0].velocities"
             raise BadGoal(name, [], "velocities beside accelerations", problem="there are accelerations alone")
         times, values, velocities = _quintic_pieces(times, values, velocities, accelerations)
     first = 1 if times[0] == 0.0 else 0
@@ -189,7 +190,7 @@ def one_each(values: Sequence[float], names: Sequence[str], chains: Chains, fiel
     return _row(values, _body_order(names, joints, len(values)), joints, field)
 
 
-def check_range(frames: KeyFrames, low: float, high: float, field: str = "trajectory") -> None:
+def check_range(frames: KeyFrames, low: float, high: float) -> None:
     """See that all values are within a range, as stiffnesses are.
 
     Raises BadGoal, which names the joint, the value and the range.
@@ -197,24 +198,24 @@ def check_range(frames: KeyFrames, low: float, high: float, field: str = "trajec
     for joint, values in zip(frames.joints, frames.values):
         for value in values:
             if not low <= value <= high:
-                raise BadGoal(f"{field}.points", value, f"{low:g} to {high:g}", problem=f"{joint} is to be {value:g}")
+                raise BadGoal("trajectory.points", value, f"{low:g} to {high:g}", problem=f"{joint} is to be {value:g}")
 
 
-def _times(points: Sequence[Any], field: str) -> list[float]:
+def _times(points: Sequence[Any]) -> list[float]:
     times = [seconds(point.time_from_start) for point in points]
     what = "times that rise, the first above 0 s (or 0 s where more points follow)"
     if times[0] < 0.0 or times == [0.0]:
-        raise BadGoal(f"{field}.points[0].time_from_start", times[0], what)
+        raise BadGoal("trajectory.points[0].time_from_start", times[0], what)
     for i, (before, time) in enumerate(zip(times, times[1:]), start=1):
         if not time > before:
-            name = f"{field}.points[{i}].time_from_start"
+            name = f"trajectory.points[{i}].time_from_start"
             raise BadGoal(name, time, what, problem=f"{time:g} s after {before:g} s")
-    require_zero_or(f"{field}.points[{len(times) - 1}].time_from_start", times[-1], DURATION)
+    require_zero_or(f"trajectory.points[{len(times) - 1}].time_from_start", times[-1], DURATION)
     return times
 
 
 def _slopes(
-    what: str, points: Sequence[Any], source: Sequence[int] | None, joints: Sequence[str], field: str
+    what: str, points: Sequence[Any], source: Sequence[int] | None, joints: Sequence[str]
 ) -> list[tuple[float, ...]] | None:
     """Velocities or accelerations of the points; None if none has any."""
     given = [getattr(point, what) for point in points]
@@ -223,9 +224,9 @@ def _slopes(
     for i, numbers in enumerate(given):
         if not len(numbers):
             problem = f"point {i} has no {what}, others have"
-            raise BadGoal(f"{field}.points[{i}].{what}", [], f"{what} in every point or in none", problem=problem)
+            raise BadGoal(f"trajectory.points[{i}].{what}", [], f"{what} in every point or in none", problem=problem)
     kind = SLOPES[what]
-    return [_row(numbers, source, joints, f"{field}.points[{i}].{what}", kind) for i, numbers in enumerate(given)]
+    return [_row(numbers, source, joints, f"trajectory.points[{i}].{what}", kind) for i, numbers in enumerate(given)]
 
 
 Rows = List[Tuple[float, ...]]
