@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 from ..base.clock import WallClock
@@ -14,58 +15,32 @@ def offline_module(kind: type) -> Any:
     return kind("127.0.0.1", 9559, robot=KnownRobot(), node=_OfflineNode())
 
 
-class _OfflineServer:
-    """An action server that gets no goals."""
-
-    def start(self) -> None:
-        """There is nothing to start."""
-
-
-class _NothingKept:
-    """Takes the place of `Kept`: what belongs to no node outlives nothing."""
-
-    def load(self) -> None:
-        """Nothing was kept."""
-
-    def save(self, _value: Any) -> None:
-        """Nothing is kept."""
-
-    forget = load
+def _nothing(*_: Any) -> None:
+    """What is published goes nowhere, what is served is never asked, and nothing is kept."""
 
 
 class _OfflineNode:
-    """Takes the place of `ServerNode`: what is published goes nowhere, what is served is never asked."""
+    """Takes the place of `ServerNode`."""
 
     namespace = "/"
+    driver = on_shutdown = publish_diagnostics = serve = serve_description = subscribe = staticmethod(_nothing)
 
     def __init__(self) -> None:
         self.clock = WallClock()
 
-    def action_server(self, *_: Any) -> _OfflineServer:
-        return _OfflineServer()
-
-    def driver(self) -> None:
-        """There is none."""
+    def action_server(self, *_: Any) -> SimpleNamespace:
+        """An action server that gets no goals."""
+        return SimpleNamespace(start=_nothing)
 
     def event_sink(self) -> Callable[[str, Any], None]:
-        return lambda _name, _value: None
+        return _nothing
 
     def frame_prefix(self) -> str:
         return ""
 
-    def kept(self) -> _NothingKept:
-        return _NothingKept()
-
-    def on_shutdown(self, _action: Callable[[], None]) -> None:
-        """It does not end."""
-
-    def publish_diagnostics(self, *_: Any) -> None:
-        """Nobody would see them."""
+    def kept(self) -> SimpleNamespace:
+        """What stands for `Kept`: a module that belongs to no node outlives nothing."""
+        return SimpleNamespace(load=_nothing, save=_nothing, forget=_nothing)
 
     def seconds(self, _name: str, default: float) -> float:
         return default
-
-    def serve(self, *_: Any) -> None:
-        """Nobody would ask."""
-
-    serve_description = subscribe = serve
