@@ -16,33 +16,21 @@ _Turn = TypeVar("_Turn", bound="Turning")
 
 
 def as_number(value: object, what: str) -> float:
-    """Return `value` as a float.
-
-    `value`: what should be a number. `what`: name of the value, for the error text. Raises AlmathError if it is not a
-    number.
-    """
+    """Return `value` as a float; AlmathError, which calls it `what`, if it is not a number."""
     if not isinstance(value, Real):
         raise AlmathError(f"{what} must be a number, got {value!r}")
     return float(value)
 
 
 def as_numbers(values: object, what: str) -> list[float]:
-    """Return a sequence of numbers as a list of floats.
-
-    `values`: what should be a flat sequence of numbers. `what`: name of the sequence, for the error text. Raises
-    AlmathError if it is not a sequence, or one of its items is not a number.
-    """
+    """Return a flat sequence of numbers as a list of floats; AlmathError, which calls it `what`, if it is none."""
     if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
         raise AlmathError(f"{what} must be a sequence of numbers, got {values!r}")
     return [as_number(value, f"{what}[{index}]") for index, value in enumerate(values)]
 
 
 def require(value: object, kind: type, where: str) -> None:
-    """Check the class of an argument.
-
-    `kind`: the class it must have. `where`: function or class that takes it, for the error text. Raises AlmathError if
-    `value` is not of that class.
-    """
+    """See that an argument of `where`, a function or class, is of a class; AlmathError if it is not."""
     if not isinstance(value, kind):
         raise AlmathError(f"{where} takes a {kind.__name__}, got {value!r}")
 
@@ -316,10 +304,7 @@ class Turning(Components):
 
 
 def fill(out: _Value, value: _Value, where: str) -> None:
-    """Write a result over the object that the caller passed for it.
-
-    `out`: what to overwrite. `where`: function that answers, for the error text.
-    """
+    """Write a result of the function `where` over the object that the caller passed for it."""
     require(out, type(value), where)
     out._assign(value._values())
 
@@ -357,10 +342,7 @@ def in_place(function: Callable[..., Components]) -> Callable[..., None]:
 
 
 def answer(value: _Value, out: _Value | None, where: str) -> _Value | None:
-    """Return a result, or write it over an object that the caller passed for it, as the SDK's functions do.
-
-    `out`: what to overwrite, or None to have the result returned. `where`: function that answers, for the error text.
-    """
+    """Return a result of the function `where`, or write it to `out` if that is given, as the SDK's functions do."""
     if out is None:
         return value
     fill(out, value, where)

@@ -18,27 +18,22 @@ _SHORTEST_COLUMN = 0.0001
 
 
 def dot(a: Triple, b: Triple) -> float:
-    """Inner product of two triples."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Triple, b: Triple) -> Triple:
-    """Vector product of two triples."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def scaled(a: Triple, factor: float) -> Triple:
-    """Multiply a triple by a number."""
     return (a[0] * factor, a[1] * factor, a[2] * factor)
 
 
 def transposed(m: Matrix) -> Matrix:
-    """Swap rows and columns."""
     return tuple(zip(*m))
 
 
 def product(a: Matrix, b: Matrix) -> Matrix:
-    """Multiply two matrices."""
     columns = transposed(b)
     return tuple(tuple(dot(row, column) for column in columns) for row in a)
 
