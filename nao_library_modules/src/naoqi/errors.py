@@ -15,8 +15,6 @@
 Each subclass keeps the facts of its text as attributes.
 """
 
-# ruff: noqa: N818  the names say what happened; the base class names the family
-
 from __future__ import annotations
 
 import re

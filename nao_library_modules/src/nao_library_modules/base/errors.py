@@ -37,7 +37,7 @@ def cut(text: str) -> str:
     return f"{text[: LONGEST // 2]} ... ({len(text)} characters) ... {text[-LONGEST // 3 :]}"
 
 
-class BadGoal(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class BadGoal(NaoError):
     """A field of a function message has a value that the function cannot take.
 
     `allowed`: what it may hold, in words. `problem`: what is wrong, where "<value> is not allowed" says too little.
@@ -51,7 +51,7 @@ class BadGoal(NaoError):  # noqa: N818  named like the errors of the proxy layer
         self.allowed = allowed
 
 
-class UnknownFunction(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class UnknownFunction(NaoError):
     """A goal names a function that the module does not have.
 
     Tells the closest names, and where all are to be seen, or all of them where there is no `server`: the name of the
@@ -66,7 +66,7 @@ class UnknownFunction(NaoError):  # noqa: N818  named like the errors of the pro
         super().__init__(f"unknown function {name!r}{hint}; {rest}")
 
 
-class FunctionFailed(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class FunctionFailed(NaoError):
     """A function of a chain is wrong or failed; the text opens with its place, counted from 1, and its name."""
 
     def __init__(self, position: int, function: str, cause: Exception) -> None:
@@ -77,7 +77,7 @@ class FunctionFailed(NaoError):  # noqa: N818  named like the errors of the prox
         self.cause = cause
 
 
-class RobotLost(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class RobotLost(NaoError):
     """The connection to the robot at `ip:port` broke while a goal was waiting."""
 
     def __init__(self, address: str, reason: str) -> None:
@@ -86,14 +86,14 @@ class RobotLost(NaoError):  # noqa: N818  named like the errors of the proxy lay
         self.reason = reason
 
 
-class RobotFell(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class RobotFell(NaoError):
     """The robot fell while a goal moved it; its motors are off."""
 
     def __init__(self) -> None:
         super().__init__("the robot fell and its motors are off: goToPosture gets it up again")
 
 
-class MotionStopped(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class MotionStopped(NaoError):
     """A motion ended and joints are not where it should have brought them.
 
     `joints`: joint -> where it was to go and where it is told to be, rad.
@@ -126,7 +126,7 @@ class WalkStopped(MotionStopped):
         self.cause = cause
 
 
-class NotReady(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class NotReady(NaoError):
     """The robot cannot do something as it is now: why, and what to do about it."""
 
     def __init__(self, problem: str, remedy: str) -> None:
@@ -142,7 +142,7 @@ class NotFit(NotReady):
     """The robot must not move: a motor is too hot, or the battery empty."""
 
 
-class PutToRest(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class PutToRest(NaoError):
     """The robot put chains (Body: all of it) to rest to protect them while a goal moved them."""
 
     def __init__(self, chains: Iterable[str]) -> None:
@@ -156,5 +156,5 @@ def _way(way: Place) -> str:
     return f"x {way.x:.3f} m, y {way.y:.3f} m, theta {way.yaw:.3f} rad"
 
 
-class Preempted(Exception):  # noqa: N818  a signal that stops a chain, not an error
+class Preempted(Exception):
     """A new goal, a cancel or the end of the node interrupts what is running."""

@@ -23,7 +23,7 @@ DRAFT, PART = ".draft", ".part"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
-class NoPlaceForFile(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class NoPlaceForFile(NaoError):
     """A file cannot be written where it is wanted. `path`: the file."""
 
     def __init__(self, path: Path, problem: str) -> None:

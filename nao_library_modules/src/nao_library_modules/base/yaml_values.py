@@ -10,7 +10,7 @@ MOST_BRACKETS = 100
 """In each other: with more, PyYAML takes a second for a few lines."""
 
 
-class TooMuch(yaml.YAMLError):  # noqa: N818  named like the errors of the proxy layer
+class TooMuch(yaml.YAMLError):
     """A text stands for more than is read."""
 
 

@@ -19,7 +19,7 @@ CHECK = "/check"
 """What the service is called behind the name of the action."""
 
 
-class NotValidated(NaoError):  # noqa: N818  it says what became of the question
+class NotValidated(NaoError):
     """A server did not say whether it could carry out goals."""
 
 

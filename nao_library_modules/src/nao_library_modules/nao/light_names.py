@@ -26,7 +26,7 @@ PLAIN_WORDS = {
 """Names that ALLeds does not know -> those of its groups that they mean. A light or group of the robot comes before."""
 
 
-class UnknownLight(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class UnknownLight(NaoError):
     """No light or group has that name.
 
     `hint` has the closest names, or where to find the names.

@@ -19,7 +19,7 @@ XAP_TIME = 2.0
 """s in which a pose of a library is taken; the libraries hold no times."""
 
 
-class BadPose(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class BadPose(NaoError):
     """The table of poses has an entry that is no pose. `name`: name of the pose."""
 
     def __init__(self, name: str, problem: str) -> None:
@@ -27,7 +27,7 @@ class BadPose(NaoError):  # noqa: N818  named like the errors of the proxy layer
         self.name = name
 
 
-class UnknownPose(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class UnknownPose(NaoError):
     """Nobody knows a pose of that name. `name`: the name. `known`: the names there are."""
 
     def __init__(self, name: str, known: Iterable[str], what: str = "pose") -> None:

@@ -20,7 +20,7 @@ RADIANS_VERSION = "2"
 HANDS = ("LHand", "RHand")
 
 
-class BadPoseFile(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class BadPoseFile(NaoError):
     """A pose library cannot be read. `path`: the file. `problem`: what is wrong with it."""
 
     def __init__(self, path: Path, problem: str) -> None:

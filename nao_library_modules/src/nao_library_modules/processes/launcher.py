@@ -15,7 +15,7 @@ from .supervisor import Supervisor
 LaunchPath = Tuple[str, str]
 
 
-class BadLaunchPath(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class BadLaunchPath(NaoError):
     """A launch path `(package, launchfile)` names no launch file that can be read."""
 
     def __init__(self, launchpath: object, problem: str) -> None:
