@@ -28,7 +28,7 @@ from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface, node_that_offers
 from ...ros.ros_clock import RosClock
-from ..base.node import name_for_robot, publish
+from ..base.node import name_for_robot, publish, whenever
 from ..base.reconfigure import ReconfigureField, serve, update
 from .speech import RobotSpeech
 from .speech_recognition import RecognizedWords, WordRecognition
@@ -106,8 +106,8 @@ class NaoSpeech:
         }
         for (name, server), action in zip(self._goals.items(), (SpeechWithFeedbackAction, SetSpeechVocabularyAction)):
             self._node.action(name, action, server)
-        robot.connection.add_listener(self._connection_changed)
-        node.if_it_fails(lambda: robot.connection.remove_listener(self._connection_changed))
+        self._stop_watching = whenever(robot, "connected", self._speech.robot_is_back)
+        node.if_it_fails(self._stop_watching)
         self._node.subscriber("speech", String, self._on_text, queue_size=100)
         self._node.offer("stop_recognition", Empty, lambda _: self._recognition.stop())
         self._node.offer("reconfigure", Empty, lambda _: update(self._server, self._read_parameters()))
@@ -118,7 +118,7 @@ class NaoSpeech:
         return {"speech": self._speech.report, "recognition": self._recognition.report, **goals}
 
     def close(self) -> None:
-        self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_watching()
         for server in self._goals.values():
             server.close(SHUTDOWN_LIMIT / len(self._goals))
         self._speech.close()
@@ -185,8 +185,6 @@ class NaoSpeech:
                 if wanted not in known:
                     raise NaoError(f"the robot has no {name} {wanted!r}{of_those(wanted, sorted(known))}")
 
-    # --- the connection -------------------------------------------------------------------------------------------
-
     def _read_parameters(self) -> dict[str, Any]:
         """Private parameters that are set, in today's form; former names are deleted."""
         given = self._node.param(self._node.name, {})
@@ -195,11 +193,6 @@ class NaoSpeech:
             if former in given:
                 rospy.delete_param(self._node.resolve(f"~{former}"))
         return values
-
-    def _connection_changed(self, *_: Any) -> None:
-        """Called from the connection's thread for listeners."""
-        if self._robot.connection.state == "connected":
-            self._speech.robot_is_back()
 
 
 def _listening(settings: SpeechSettings) -> tuple[Any, ...]:

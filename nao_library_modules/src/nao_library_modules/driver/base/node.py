@@ -95,14 +95,27 @@ def _made(make: Callable[[Robot, NodeInterface], Any], robot: Robot) -> Any:
 def interrupt_when_lost(robot: Robot, *servers: ConcurrentActionServer) -> Callable[[], None]:
     """End the goals of servers whenever the robot is lost; call what it returns to end that."""
 
-    def changed(*_: Any) -> None:
+    def interrupt() -> None:
         connection = robot.connection
-        if connection.state == "lost":
-            lost = RobotLost(robot.address, connection.last_error or "no answer")
-            for server in servers:
-                server.interrupt_all(lost)
+        lost = RobotLost(robot.address, connection.last_error or "no answer")
+        for server in servers:
+            server.interrupt_all(lost)
+
+    return whenever(robot, "lost", interrupt)
+
+
+def whenever(robot: Robot, state: str, action: Callable[[], None]) -> Callable[[], None]:
+    """Call something each time the connection gets into a state, and now if it is in it; what it returns ends that.
+
+    It is called from the thread that the connection has for its listeners: it may call the robot.
+    """
+
+    def changed(*_: Any) -> None:
+        if robot.connection.state == state:
+            action()
 
     robot.connection.add_listener(changed)
+    changed()
     return lambda: robot.connection.remove_listener(changed)
 
 

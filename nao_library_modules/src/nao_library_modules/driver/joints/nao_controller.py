@@ -24,7 +24,7 @@ from ...base.cancellation import CancellationToken
 from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ..base.node import interrupt_when_lost
+from ..base.node import interrupt_when_lost, whenever
 from .joint_controller import InitialStiffness, JointController, Reached
 
 COMPLAINT_PERIOD = 5.0
@@ -56,7 +56,7 @@ class NaoController:
         self._node = node
         self._robot = robot
         self._joints = JointController(robot)
-        self._init_stiffness = InitialStiffness(self._joints, node.param)
+        init_stiffness = InitialStiffness(self._joints, node.param)
         self._servers: dict[str, ConcurrentActionServer] = {}
         self._serve("joint_trajectory", JointTrajectoryAction, self._trajectory_joints, self._trajectory, True)
         self._serve("joint_stiffness_trajectory", JointTrajectoryAction, self._trajectory_joints, self._stiffness)
@@ -70,8 +70,7 @@ class NaoController:
         self._node.offer("life/disable", Empty, lambda _: self._set_life(False))
         self._node.service("life/get_state", Trigger, self._on_life_state)
         self._stop_watching = interrupt_when_lost(robot, *self._servers.values())
-        robot.connection.add_listener(self._connection_changed)
-        self._connection_changed()
+        self._stop_stiffening = whenever(robot, "connected", init_stiffness.apply)
         self._node.subscriber("joint_angles", JointAnglesWithSpeed, self._on_angles, queue_size=10)
         self._node.subscriber("joint_stiffness", JointState, self._on_stiffness, queue_size=10)
 
@@ -79,7 +78,7 @@ class NaoController:
         return {f"goals {name}": server.counter.report for name, server in self._servers.items()}
 
     def close(self) -> None:
-        self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_stiffening()
         self._stop_watching()
         for server in self._servers.values():
             server.close(SHUTDOWN_LIMIT / len(self._servers))
@@ -154,13 +153,6 @@ class NaoController:
             return TriggerResponse(False, str(error))
         self._life.publish(state)
         return TriggerResponse(True, state)
-
-    # --- the connection -------------------------------------------------------------------------------------------
-
-    def _connection_changed(self, *_: Any) -> None:
-        """Called from the thread that the connection has for its listeners; they may call the robot."""
-        if self._robot.connection.state == "connected":
-            self._init_stiffness.apply()
 
 
 def _outcome(result: Any, names: Sequence[str], reached: Reached) -> GoalOutcome:

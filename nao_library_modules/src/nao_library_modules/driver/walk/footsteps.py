@@ -19,7 +19,7 @@ from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ..base.node import interrupt_when_lost
+from ..base.node import interrupt_when_lost, whenever
 from ..joints.joint_controller import InitialStiffness, JointController
 from .footsteps_walk import FootstepWalk
 from .walk_commands import LEGS, FootStep, read_step
@@ -44,8 +44,7 @@ class NaoFootsteps:
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._node = node
-        self._robot = robot
-        self._init_stiffness = InitialStiffness(JointController(robot), node.param)
+        init_stiffness = InitialStiffness(JointController(robot), node.param)
         self._walk = FootstepWalk(robot, RosClock())
         self._server = ConcurrentActionServer(self._claims, self._execute, with_feedback=True, robot=robot)
         self._node.action("footsteps_execution", ExecFootstepsAction, self._server)
@@ -53,8 +52,7 @@ class NaoFootsteps:
         self._node.service("clip_footstep_srv", ClipFootstep, self._on_clip)
         # After the services: a part that cannot offer them sets nothing on the robot.
         self._stop_watching = interrupt_when_lost(robot, self._server)
-        robot.connection.add_listener(self._connection_changed)
-        self._connection_changed()
+        self._stop_stiffening = whenever(robot, "connected", init_stiffness.apply)
         self._node.subscriber("footstep", StepTarget, self._on_step, queue_size=50)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
@@ -62,7 +60,7 @@ class NaoFootsteps:
 
     def close(self) -> None:
         """End the goal that runs; the robot stands then."""
-        self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_stiffening()
         self._stop_watching()
         self._server.close(SHUTDOWN_LIMIT)
 
@@ -98,11 +96,6 @@ class NaoFootsteps:
             return ClipFootstepResponse(step_target(self._walk.clipped(read_step(request.step))))
         except NaoError as error:
             raise rospy.ServiceException(str(error)) from error
-
-    def _connection_changed(self, *_: Any) -> None:
-        """Called from the thread that the connection has for its listeners; they may call the robot."""
-        if self._robot.connection.state == "connected":
-            self._init_stiffness.apply()
 
 
 def read_steps(targets: list[StepTarget]) -> list[FootStep]:

@@ -23,6 +23,7 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
+from ..base.node import whenever
 from ..joints.joint_controller import QUICK_LIMIT, InitialStiffness, JointController
 from .head_scan import HeadScan
 from .walk_commands import Velocity, read_gait_config, read_step, read_target, read_velocity
@@ -86,9 +87,8 @@ class NaoWalker:
         self._online = False
         self._offer_services()
         # After the services: a part that cannot offer them sets nothing on the robot.
-        robot.connection.add_listener(self._connection_changed)
-        node.if_it_fails(lambda: robot.connection.remove_listener(self._connection_changed))
-        self._connection_changed()
+        self._stop_setting_up = whenever(robot, "connected", self._set_up)
+        node.if_it_fails(self._stop_setting_up)
         self._listen("cmd_vel", Twist, partial(self._velocity, "cmd_vel"), watched=True, queue_size=1, tcp_nodelay=True)
         self._listen("cmd_pose", Pose2D, read_target, queue_size=1, tcp_nodelay=True)
         self._listen("cmd_step", StepTarget, read_step, queue_size=STEPS_IN_LINE)
@@ -100,7 +100,7 @@ class NaoWalker:
     def close(self) -> None:
         """Stop the walk and wait until the robot stands; holds on walking end with the node."""
         self._kept.forget()
-        self._robot.connection.remove_listener(self._connection_changed)
+        self._stop_setting_up()
         self._scan.close()
         self._walker.close(CLOSE_LIMIT)
 
@@ -215,10 +215,8 @@ class NaoWalker:
 
     # --- state ----------------------------------------------------------------------------------------------------
 
-    def _connection_changed(self, *_: Any) -> None:
-        """Called from the thread that the connection has for its listeners; they may call the robot."""
-        if self._robot.connection.state != "connected":
-            return
+    def _set_up(self) -> None:
+        """Give the parameters of the walk to a robot that is reached."""
         try:
             protect = self._node.param("~enable_foot_contact_protection", None)
             if protect is not None:
