@@ -32,7 +32,7 @@ from nao_library_modules.driver.walk import walk_commands as commands
 from nao_library_modules.driver.walk.footsteps import read_steps, step_target
 from nao_library_modules.driver.walk.footsteps_walk import LEFT_BOX, RIGHT_BOX, check_legs, clip
 from nao_library_modules.driver.walk.walk_commands import FootStep, Target, Velocity, read_gait_config, read_step
-from nao_library_modules.driver.walk.walk_inhibition import NotInhibited, WalkInhibition
+from nao_library_modules.driver.walk.walk_inhibition import WalkInhibition
 from nao_library_modules.driver.walk.walk_orders import Mailbox, Order, Stop, WalkEnded
 from nao_library_modules.driver.walk.walk_report import WalkJournal
 from nao_library_modules.driver.walk.walk_timing import PACE, REFRESH, WalkPace, WalkWatchdog
@@ -152,8 +152,7 @@ def test_inhibition_is_counted_and_means_the_others(tmp_path):
     assert WalkInhibition(kept).owners == ["/me"]  # of a node that was killed and started again
     assert WalkInhibition(kept, own="/me").owners == [], "a part of the same process died with it"
     assert inhibition.let_go("/rosservice_2") == 0  # whoever has no hold takes off the first
-    with pytest.raises(NotInhibited):
-        inhibition.let_go("/path")
+    refused("nothing to let go", inhibition.let_go, "/path")
 
 
 def test_the_report_tells_who_inhibits_and_of_failures_until_a_command_succeeds():

@@ -32,14 +32,6 @@ LONGEST_QUEUE = int(limit("waiting texts").highest)
 CLOSE_LIMIT = 2.0
 
 
-class NothingSaid(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """The robot accepted a text, and then said nothing for `limit` s."""
-
-    def __init__(self, limit: float) -> None:
-        super().__init__(f"the robot has said nothing for {limit:g} s: the text was given up")
-        self.limit = limit
-
-
 class Utterance:
     """A text in the queue.
 
@@ -123,19 +115,16 @@ class RobotSpeech:
             self._news.notify_all()
         return utterance
 
-    def silence(self, utterance: Utterance, reason: Exception | None = None) -> None:
-        """End a text: at once if it is being said, and before it begins if it waits.
-
-        Its `error` becomes `reason`, or Preempted if none is given.
-        """
+    def silence(self, utterance: Utterance) -> None:
+        """End a text: at once if it is being said, and before it begins if it waits. Its `error` becomes Preempted."""
         with self._news:
             waits = utterance in self._waiting
             if waits:
                 self._waiting.remove(utterance)
                 self._count("interrupted")
-        utterance.interrupt.trigger(reason)
+        utterance.interrupt.trigger()
         if waits:
-            utterance.end(reason or Preempted())
+            utterance.end(Preempted())
 
     def robot_is_back(self) -> None:
         """Subscribe events again after a reconnection, and restore the voice if that is still owed."""
@@ -248,7 +237,8 @@ class RobotSpeech:
             while not news.is_set():
                 left = self._last_sign + QUIET_LIMIT - self._clock.now()
                 if left <= 0.0:
-                    interrupt.trigger(NothingSaid(QUIET_LIMIT))
+                    quiet = f"the robot has said nothing for {QUIET_LIMIT:g} s: the text was given up"
+                    interrupt.trigger(NaoError(quiet))
                     return
                 self._clock.wait(left, news)
 

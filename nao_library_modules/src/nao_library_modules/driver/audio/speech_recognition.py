@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,14 +30,6 @@ class RecognizedWords:
 
     words: tuple[str, ...]
     confidences: tuple[float, ...]  # 0 to 1, one each
-
-
-class RecognitionInUse(NaoError):  # noqa: N818  named like the errors of the proxy layer
-    """Another subscriber listens for words, and a new vocabulary would take them away."""
-
-    def __init__(self, owners: Sequence[str]) -> None:
-        super().__init__(f"the recognition of words is in use by {', '.join(owners)}: stop it there first")
-        self.owners = list(owners)
 
 
 class WordRecognition:
@@ -117,8 +109,8 @@ class WordRecognition:
         if self._subscriber in owners:  # left over from a process that was killed
             self._ask("unsubscribe", self._subscriber)
             owners.remove(self._subscriber)
-        if owners:
-            raise RecognitionInUse(owners)
+        if owners:  # a new vocabulary would take theirs away
+            raise NaoError(f"the recognition of words is in use by {', '.join(owners)}: stop it there first")
         with self._lock:
             self._former_audio = self._ask("getAudioExpression")
             self._set(settings)

@@ -49,7 +49,7 @@ class NaoFootsteps:
         self._server = ConcurrentActionServer(self._claims, self._execute, with_feedback=True, robot=robot)
         self._node.action("footsteps_execution", ExecFootstepsAction, self._server)
         self._node.offer("footstep_srv", StepTargetService, lambda request: self._walk.make(read_step(request.step)))
-        self._node.service("clip_footstep_srv", ClipFootstep, self._on_clip)
+        self._node.offer("clip_footstep_srv", ClipFootstep, self._on_clip)
         # After the services: a part that cannot offer them sets nothing on the robot.
         self._stop_watching = interrupt_when_lost(robot, self._server)
         self._stop_stiffening = whenever(robot, "connected", init_stiffness.apply)
@@ -92,10 +92,7 @@ class NaoFootsteps:
             rospy.logerr_throttle(COMPLAINT_PERIOD, f"footstep: {error}")
 
     def _on_clip(self, request: Any) -> ClipFootstepResponse:
-        try:
-            return ClipFootstepResponse(step_target(self._walk.clipped(read_step(request.step))))
-        except NaoError as error:
-            raise rospy.ServiceException(str(error)) from error
+        return ClipFootstepResponse(step_target(self._walk.clipped(read_step(request.step))))
 
 
 def read_steps(targets: list[StepTarget]) -> list[FootStep]:

@@ -10,11 +10,6 @@ from naoqi.errors import NaoError
 from ...base.kept import Kept
 
 
-class NotInhibited(NaoError):
-    def __init__(self) -> None:
-        super().__init__("walking is not inhibited, so there is nothing to let go")
-
-
 class WalkInhibition:
     """Holds on walking, by the node that put them on. Every method may be called from any thread.
 
@@ -40,11 +35,11 @@ class WalkInhibition:
 
         A person who lets go at a command line has another name each time.
 
-        Raises NotInhibited if there is none.
+        Raises NaoError if there is none.
         """
         with self._lock:
             if not self._holds:
-                raise NotInhibited()
+                raise NaoError("walking is not inhibited, so there is nothing to let go")
             held = owner if owner in self._holds else next(iter(self._holds))
             self._holds[held] -= 1
             if not self._holds[held]:
