@@ -246,7 +246,7 @@ def test_it_listens_for_the_vocabulary_until_it_is_stopped(recognition, robot, s
     settings[0] = SpeechSettings()
     with pytest.raises(NaoError, match="no vocabulary"):
         recognition.start()
-    assert not recognition.running and listeners(robot) == []
+    assert recognition.report().message == "does not listen" and listeners(robot) == []
     recognition.apply()  # while it does not listen a vocabulary waits
     good = settings[0] = SpeechSettings(vocabulary=("stop",))
     recognition.start()
@@ -291,4 +291,4 @@ def test_words_are_passed_on_whoever_listens_and_once_after_a_loss(recognition, 
     assert len(words()) == 3
     recognition.stop()
     driver_robot.lose()
-    assert listeners(robot) == [] and not recognition.running
+    assert listeners(robot) == [] and recognition.report().message == "does not listen"

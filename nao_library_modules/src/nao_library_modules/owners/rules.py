@@ -11,7 +11,7 @@ from typing import Any
 from ..base.paths import config_file
 
 FILE = "owned_calls.json"
-NAMES, FIRST, NONE = "names", "first", "none"
+FIRST, NONE = "first", "none"
 
 
 @dataclass(frozen=True)

@@ -163,10 +163,9 @@ class MasterWatch:
     `uri`: of the master. `caller`: name of this node.
     """
 
-    def __init__(self, uri: str, caller: str, period: float = PERIOD) -> None:
+    def __init__(self, uri: str, caller: str) -> None:
         self._uri = uri
         self._caller = caller
-        self._period = period
         self._looks = 0
         self._ended = threading.Event()
         threading.Thread(target=self._run, name="watch of the master", daemon=True).start()
@@ -176,7 +175,7 @@ class MasterWatch:
 
     def _run(self) -> None:
         book, gone = None, False
-        while not self._ended.wait(self._period):
+        while not self._ended.wait(PERIOD):
             try:
                 book, gone = self._look(book), False
             except (*GONE, Refused) as error:

@@ -16,7 +16,6 @@ MODULES = ("ALSoundLocalization", "ALAudioSourceLocalization")
 """Newer name first."""
 ENERGY = "EnergyComputation"
 ANSWER_LIMIT = 2.0
-CLOSE_LIMIT = 2.0
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ class SoundDirections:
         return self._locating.report("nobody listens", "sounds are located", "sounds cannot be located", values)
 
     def close(self) -> None:
-        self._locating.close(CLOSE_LIMIT)
+        self._locating.close()
 
     def _begin(self) -> None:
         self._module = self._find_module()

@@ -23,7 +23,6 @@ VERSIONS = ("RobotConfig/Head/Version", "RobotConfig/Body/Version")
 ANSWER_LIMIT = 5.0
 SILENCE_LIMIT = 3.0
 """s without a block, of the robot's time and of ours, after which the robot is asked again."""
-CLOSE_LIMIT = 2.0
 
 
 @dataclass(frozen=True)
@@ -58,24 +57,15 @@ class Microphone:
     The robot has to reach this computer for it. If it cannot, the report and the log say so.
     """
 
-    def __init__(
-        self,
-        robot: Any,
-        name: str,
-        clock: Any,
-        sink: Callable[[Block], None],
-        wall_time: Callable[[], float] = time.monotonic,
-    ) -> None:
+    def __init__(self, robot: Any, name: str, clock: Any, sink: Callable[[Block], None]) -> None:
         """Start idle; the robot need not be connected yet.
 
         Args:
             name: Name of the module at the robot.
             clock: ROS time: `now()`.
             sink: Gets each block, in the thread of the module.
-            wall_time: Time of this computer, s.
         """
         self._robot = robot
-        self._wall_time = wall_time
         self._name = name
         self._clock = clock
         self._sink = sink
@@ -115,7 +105,7 @@ class Microphone:
         return report
 
     def close(self) -> None:
-        self._hearing.close(CLOSE_LIMIT)
+        self._hearing.close()
         if self._broker is not None:
             self._broker.shutdown()
 
@@ -161,7 +151,7 @@ class Microphone:
         """Whether blocks come. On a simulation that stands still, none are due."""
         with self._lock:
             wall, ros = self._last
-        quiet = min(self._wall_time() - wall, self._clock.now() - ros)
+        quiet = min(time.monotonic() - wall, self._clock.now() - ros)
         if quiet < SILENCE_LIMIT:
             return True
         if not self._silent:
@@ -174,7 +164,7 @@ class Microphone:
         return f"no sound comes from the microphones: the robot has to reach this program at {where}"
 
     def _note_life(self) -> None:
-        self._last = (self._wall_time(), self._clock.now())
+        self._last = (time.monotonic(), self._clock.now())
 
     # --- in the thread of the module ------------------------------------------------------------------------------
 

@@ -60,10 +60,6 @@ class WordRecognition:
         self._hearing = LazySubscription(robot, f"event {HEARD}", self._hear, lambda: self._relay.unsubscribe(HEARD))
         self._hearing.want(True)
 
-    @property
-    def running(self) -> bool:
-        return self._listening.wanted
-
     def start(self) -> None:
         """Begin to listen; go on after a lost connection. No effect if it listens.
 

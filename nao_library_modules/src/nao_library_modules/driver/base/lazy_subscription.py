@@ -17,6 +17,8 @@ FIRST_RETRY, RETRY = 0.1, 1.0
 """s after which a start that failed is tried again: the first time, and in the long run. Then it is logged as well."""
 LOOK_PERIOD = 1.0
 """s between two looks whether what runs is alive."""
+CLOSE_LIMIT = 2.0
+"""s that the end may take, if nothing else is said."""
 
 
 class LazySubscription:
@@ -24,6 +26,9 @@ class LazySubscription:
 
     Any thread may say whether it is wanted. One lock keeps starts and stops apart; the condition guards the rest, and
     is not held during calls to the robot.
+
+    Attributes:
+        problem: Why it does not run although it is wanted; empty if it does.
     """
 
     def __init__(
@@ -51,7 +56,7 @@ class LazySubscription:
         self._stale = False
         self._closed = False
         self._generation: int | None = None
-        self._problem = ""
+        self.problem = ""
         self._delay = FIRST_RETRY
         self._logged = False
         robot.connection.add_listener(self._on_state)
@@ -68,19 +73,14 @@ class LazySubscription:
         connection = self._robot.connection
         return connection.state == "connected" and self._generation == connection.generation
 
-    @property
-    def problem(self) -> str:
-        """Why it does not run although it is wanted; empty if it does."""
-        return self._problem
-
     def report(self, idle: str, runs: str, fails: str, values: dict[str, str]) -> Report:
         """State for diagnostics, by the text that fits: it is not wanted, it runs, or it fails (the reason follows)."""
-        values.setdefault("last error", self._problem)
+        values.setdefault("last error", self.problem)
         if not self._wanted:
             return Report(Level.OK, idle, values)
         if self.running:
             return Report(Level.OK, runs, values)
-        return Report(Level.ERROR, f"{fails}: {self._problem or 'the robot is not connected'}", values)
+        return Report(Level.ERROR, f"{fails}: {self.problem or 'the robot is not connected'}", values)
 
     def want(self, wanted: bool) -> None:
         with self._condition:
@@ -97,7 +97,7 @@ class LazySubscription:
                 self.want(False)
                 self._start()
                 self._generation = self._robot.connection.generation
-            self._problem = ""
+            self.problem = ""
             self.want(True)
 
     def stop_now(self) -> None:
@@ -118,7 +118,7 @@ class LazySubscription:
             self._stale = True
             self._condition.notify_all()
 
-    def close(self, limit: float) -> None:
+    def close(self, limit: float = CLOSE_LIMIT) -> None:
         """Stop it for good, and wait up to `limit` s for that."""
         self._robot.connection.remove_listener(self._on_state)
         with self._condition:
@@ -163,21 +163,21 @@ class LazySubscription:
                 self._succeeded()
                 return
             except NaoError as error:
-                self._problem = str(error)
+                self.problem = str(error)
             except Exception as error:  # a mistake in here must not leave a node that lives and does nothing
                 log.exception("%s failed", self._name)
-                self._problem = f"unexpected error: {error!r}"
+                self.problem = f"unexpected error: {error!r}"
         self._wait_after_failure()
 
     def _succeeded(self) -> None:
         if self._logged:
             log.info("%s: it works again", self._name)
-        self._problem, self._delay, self._logged = "", FIRST_RETRY, False
+        self.problem, self._delay, self._logged = "", FIRST_RETRY, False
 
     def _wait_after_failure(self) -> None:
         """A robot that starts, or has just come back, needs a moment: so the first failures are not logged."""
         if self._delay >= RETRY and not self._logged:
-            log.warning("%s: %s", self._name, self._problem)
+            log.warning("%s: %s", self._name, self.problem)
             self._logged = True
         with self._condition:
             if self._wanted and not self._closed:

@@ -13,6 +13,7 @@ class LazyTopic(rospy.SubscribeListener):
     """Calls a function, which must not wait, when some topics get their first listener, and when the last one leaves.
 
     Callbacks come from threads of rospy, sometimes out of order: so each counts the listeners, under a lock.
+    `listened`: whether somebody listens, as last reported.
     """
 
     def __init__(self, report: Callable[[bool], None], *publishers: rospy.Publisher, but: Collection[str] = ()) -> None:
@@ -22,16 +23,11 @@ class LazyTopic(rospy.SubscribeListener):
         self._publishers = publishers
         self._but = but
         self._lock = threading.Lock()
-        self._listened = False
+        self.listened = False
         # Not in the constructor of the publisher: the first listener would find none.
         for publisher in publishers:
             publisher.impl.add_subscriber_listener(self)
         self._look()
-
-    @property
-    def listened(self) -> bool:
-        """Whether somebody listens, as last reported."""
-        return self._listened
 
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
         self._look()
@@ -42,8 +38,8 @@ class LazyTopic(rospy.SubscribeListener):
     def _look(self) -> None:
         with self._lock:
             listens = any(node not in self._but for publisher in self._publishers for node in listeners(publisher))
-            if listens != self._listened:
-                self._listened = listens
+            if listens != self.listened:
+                self.listened = listens
                 self._report(listens)
 
 

@@ -12,13 +12,13 @@ GAP = 1.5
 
 
 class PictureRate:
-    """Counts pictures, and missed ones between them. Any thread may ask."""
+    """Counts pictures (`count`), and missed ones between them (`missed`). Any thread may ask."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._times: deque[float] = deque()
-        self._count = 0
-        self._missed = 0
+        self.count = 0
+        self.missed = 0
 
     def restart(self) -> None:
         """Begin another stream: the time until its first picture is no gap."""
@@ -32,19 +32,11 @@ class PictureRate:
                 self._times.clear()
             since = time - self._times[-1] if self._times else 0.0
             if since > GAP * period:
-                self._missed += round(since / period) - 1
-            self._count += 1
+                self.missed += round(since / period) - 1
+            self.count += 1
             self._times.append(time)
             while self._times[-1] - self._times[0] > WINDOW and len(self._times) > 2:
                 self._times.popleft()
-
-    @property
-    def count(self) -> int:
-        return self._count
-
-    @property
-    def missed(self) -> int:
-        return self._missed
 
     @property
     def rate(self) -> float | None:

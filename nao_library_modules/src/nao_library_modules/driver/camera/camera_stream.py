@@ -17,7 +17,7 @@ from ...nao.camera_facts import CAMERA_NAMES
 from ...robot.image_clock import ImageClock
 from ...robot.robot import wait_for_calls
 from ...ros.health import Level, Report
-from ..base.lazy_subscription import LazySubscription
+from ..base.lazy_subscription import CLOSE_LIMIT, LazySubscription
 from .camera_formats import RESOLUTIONS, SPACES, Picture, read_picture
 from .camera_rate import PictureRate
 from .camera_subscriber import DEVICE, CameraSubscriber, StreamSettings
@@ -30,7 +30,6 @@ BEGIN_LIMIT = 15.0
 """The same before the first picture: a camera, or a simulator's renderer, may have to start."""
 FAILURE_PAUSE = 0.5
 """s after which a stream that failed begins again."""
-CLOSE_LIMIT = 2.0
 SLOW = 0.8
 """Share of the rate that was asked for below which the pictures are reported as too few."""
 
@@ -59,7 +58,6 @@ class CameraStream:
         clock: Any,
         sink: Callable[[Picture, float], None],
         prepare: Callable[[], None] = lambda: None,
-        wall_time: Callable[[], float] = time.monotonic,
     ) -> None:
         """Start without pictures; the robot need not be connected yet.
 
@@ -68,7 +66,6 @@ class CameraStream:
             clock: ROS time: `now()`.
             sink: Gets each picture and the ROS time at which it was taken, in s, in the thread of the pictures.
             prepare: Called before each subscription, in the thread of the lazy subscription. May make calls.
-            wall_time: Time of this computer, s.
         """
         self._robot = robot
         self._name = name
@@ -77,7 +74,6 @@ class CameraStream:
         self._clock = clock
         self._sink = sink
         self._prepare = prepare
-        self._wall_time = wall_time
         self._changing = threading.Lock()
         self._news = threading.Condition()
         self._subscription: CameraSubscription | None = None
@@ -94,10 +90,6 @@ class CameraStream:
     @property
     def settings(self) -> StreamSettings:
         return self._settings
-
-    @property
-    def running(self) -> bool:
-        return self._lazy.running
 
     def want(self, wanted: bool) -> None:
         self._lazy.want(wanted)
@@ -152,7 +144,7 @@ class CameraStream:
         return Report(Level.OK, "pictures come", values)
 
     def close(self) -> None:
-        self._lazy.close(CLOSE_LIMIT)
+        self._lazy.close()
         with self._news:
             self._closed = True
             self._news.notify_all()
@@ -188,7 +180,7 @@ class CameraStream:
     def _is_alive(self) -> bool:
         """Whether pictures come. On a simulation that stands still, none are due."""
         wall, ros = self._last
-        quiet = min(self._wall_time() - wall, self._clock.now() - ros)
+        quiet = min(time.monotonic() - wall, self._clock.now() - ros)
         limit = (SILENCE_LIMIT if self._shows else BEGIN_LIMIT) + self._settings.period
         if quiet < limit or self._subscription is None:
             return True
@@ -246,7 +238,7 @@ class CameraStream:
             self._sink(picture, self._times.take(last, self._last[1]))
 
     def _note_life(self) -> None:
-        self._last = (self._wall_time(), self._clock.now())
+        self._last = (time.monotonic(), self._clock.now())
 
     def _fail_once(self, problem: str) -> None:
         if problem != self._problem:

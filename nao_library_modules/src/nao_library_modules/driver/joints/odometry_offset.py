@@ -26,10 +26,6 @@ class OdometryOffset:
         self._paused_at: Place | None = None
         self._jumps = 0
 
-    @property
-    def paused(self) -> bool:
-        return self._paused_at is not None
-
     def correct(self, torso: Sequence[float]) -> tuple[tuple[float, ...], int]:
         """The torso's x, y, z (m) and roll, pitch, yaw (rad) in the published odometry, from those in the robot's own.
 

@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 
-DEFAULT_SAMPLES = 5
+SAMPLES = 5
 GAP = 0.5
 """s without a sample after which older ones say nothing about the present."""
 
 
 class SlopeEstimator:
-    """Slopes of straight lines through the last `samples` samples (at least 2) of several values.
+    """Slopes of straight lines through the last few samples of several values.
 
     The robot measures in cycles of its own, so of two samples 20 ms apart one may hold one cycle's motion and the next
     three; a line through several of them is not upset by that. The slope is that of the middle of the window.
     """
 
-    def __init__(self, samples: int = DEFAULT_SAMPLES) -> None:
-        self._samples: deque[tuple[float, Sequence[float]]] = deque(maxlen=samples)
+    def __init__(self) -> None:
+        self._samples: deque[tuple[float, Sequence[float]]] = deque(maxlen=SAMPLES)
 
     def add(self, time: float, values: Sequence[float]) -> list[float]:
         """Take a sample and return the change of each value per s; zeros with less than two samples.

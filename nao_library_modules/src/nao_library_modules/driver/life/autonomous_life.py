@@ -18,7 +18,6 @@ STATES = ("disabled", "solitary", "interactive", "safeguard")
 CHANGE_LIMIT = 60.0
 """s that a change of state may take: the robot may get up for it."""
 ANSWER_LIMIT = 5.0
-CLOSE_LIMIT = 2.0
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ class AutonomousLife:
         return Report(Level.OK, f"unknown: {self._listening.problem or 'the robot is not connected'}", values)
 
     def close(self) -> None:
-        self._listening.close(CLOSE_LIMIT)
+        self._listening.close()
 
     def _begin(self) -> None:
         self._relay.close()  # events of a connection that was lost

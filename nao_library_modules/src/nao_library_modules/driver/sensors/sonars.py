@@ -18,7 +18,6 @@ CONE = 1.05
 """rad, in which they see something."""
 ANSWER_LIMIT = 5.0
 READ_LIMIT = 1.0
-CLOSE_LIMIT = 2.0
 
 
 def range_of(value: Any) -> float:
@@ -64,7 +63,7 @@ class Sonars:
 
     def close(self) -> None:
         self._polling.close()
-        self._measuring.close(CLOSE_LIMIT)
+        self._measuring.close()
 
     def _ask(self, method: str) -> None:
         self._robot.proxy(SONAR).call_async(method, self._subscriber).result(timeout=ANSWER_LIMIT)

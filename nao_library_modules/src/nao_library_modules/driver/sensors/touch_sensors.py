@@ -20,7 +20,6 @@ log = logging.getLogger(__name__)
 
 MEMORY = "ALMemory"
 ANSWER_LIMIT = 5.0
-CLOSE_LIMIT = 2.0
 HEAD, HAND, BUMPER, CHEST, FEET = "head", "hand", "bumper", "chest button", "feet"
 
 
@@ -34,25 +33,25 @@ class TouchSensor:
     keys: tuple[str, ...]
 
 
-def _sensor(event: str, place: str, number: int) -> TouchSensor:
-    return TouchSensor(event, place, number, BY_EVENT[event].keys)
-
-
-SENSORS = (
-    _sensor("FrontTactilTouched", HEAD, 1),
-    _sensor("MiddleTactilTouched", HEAD, 2),
-    _sensor("RearTactilTouched", HEAD, 3),
-    _sensor("HandRightBackTouched", HAND, 0),
-    _sensor("HandRightLeftTouched", HAND, 1),
-    _sensor("HandRightRightTouched", HAND, 2),
-    _sensor("HandLeftBackTouched", HAND, 3),
-    _sensor("HandLeftLeftTouched", HAND, 4),
-    _sensor("HandLeftRightTouched", HAND, 5),
-    _sensor("RightBumperPressed", BUMPER, 0),
-    _sensor("LeftBumperPressed", BUMPER, 1),
-    _sensor("ChestButtonPressed", CHEST, 0),
-    TouchSensor("footContactChanged", FEET, 0, (FOOT_CONTACT,)),
-)
+NUMBERS = {
+    "FrontTactilTouched": (HEAD, 1),
+    "MiddleTactilTouched": (HEAD, 2),
+    "RearTactilTouched": (HEAD, 3),
+    "HandRightBackTouched": (HAND, 0),
+    "HandRightLeftTouched": (HAND, 1),
+    "HandRightRightTouched": (HAND, 2),
+    "HandLeftBackTouched": (HAND, 3),
+    "HandLeftLeftTouched": (HAND, 4),
+    "HandLeftRightTouched": (HAND, 5),
+    "RightBumperPressed": (BUMPER, 0),
+    "LeftBumperPressed": (BUMPER, 1),
+    "ChestButtonPressed": (CHEST, 0),
+}
+SENSORS = {
+    **{event: TouchSensor(event, *where, BY_EVENT[event].keys) for event, where in NUMBERS.items()},
+    "footContactChanged": TouchSensor("footContactChanged", FEET, 0, (FOOT_CONTACT,)),
+}
+"""Event -> its sensor."""
 CLICKS = {
     "ALChestButton/SimpleClickOccurred": 1,
     "ALChestButton/DoubleClickOccurred": 2,
@@ -68,26 +67,20 @@ class TouchSensors:
     """
 
     def __init__(
-        self,
-        robot: Any,
-        tell: Callable[[TouchSensor, bool], None],
-        tell_clicks: Callable[[int], None],
-        sensors: Sequence[TouchSensor] = SENSORS,
+        self, robot: Any, tell: Callable[[TouchSensor, bool], None], tell_clicks: Callable[[int], None]
     ) -> None:
         """Begin to listen; the robot need not be connected yet.
 
         Args:
             tell: Gets a sensor and whether it is touched, in a thread of libqi or of this object; must not wait.
             tell_clicks: Gets how often the chest button was clicked, likewise.
-            sensors: Those to listen to.
         """
         self._robot = robot
         self._tell = tell
         self._tell_clicks = tell_clicks
-        self._sensors = {sensor.event: sensor for sensor in sensors}
         # The lock is held while a change is told: changes of one sensor come in several threads of libqi.
         self._lock = threading.Lock()
-        self._touched: dict[str, bool | None] = {s.event: None if s.place == FEET else False for s in sensors}
+        self._touched: dict[str, bool | None] = {s.event: None if s.place == FEET else False for s in SENSORS.values()}
         self._heard: set[str] = set()
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
         self._listening = LazySubscription(robot, "touch sensors", self._begin, self._relay.close, self._look_again)
@@ -99,7 +92,7 @@ class TouchSensors:
         return self._listening.report("closed", "touches are told", "deaf", values)
 
     def close(self) -> None:
-        self._listening.close(CLOSE_LIMIT)
+        self._listening.close()
 
     # --- in the thread of the demand ------------------------------------------------------------------------------
 
@@ -107,9 +100,9 @@ class TouchSensors:
         self._relay.close()  # events of a connection that was lost
         with self._lock:
             self._heard.clear()
-        for event in (*self._sensors, *CLICKS):
+        for event in (*SENSORS, *CLICKS):
             self._relay.subscribe(event)
-        self._read({sensor: sensor.keys for sensor in self._sensors.values()})
+        self._read({sensor: sensor.keys for sensor in SENSORS.values()})
 
     def _look_again(self) -> bool:
         """Read the sensors whose events came: libqi delivers events in quick succession in any order.
@@ -118,7 +111,7 @@ class TouchSensors:
         Returns True: nothing has to be started anew.
         """
         with self._lock:
-            heard = [sensor for event, sensor in self._sensors.items() if event in self._heard]
+            heard = [sensor for event, sensor in SENSORS.items() if event in self._heard]
             self._heard.clear()
         try:
             if heard:
@@ -144,7 +137,7 @@ class TouchSensors:
         if name in CLICKS:
             self._tell_clicks(CLICKS[name])
         elif isinstance(value, (bool, int, float)):
-            self._take(self._sensors[name], value > 0.5, is_event=True)
+            self._take(SENSORS[name], value > 0.5, is_event=True)
 
     def _take(self, sensor: TouchSensor, touched: bool, is_event: bool) -> None:
         with self._lock:

@@ -17,7 +17,6 @@ log = logging.getLogger(__name__)
 
 MEMORY = "ALMemory"
 ANSWER_LIMIT = 5.0
-CLOSE_LIMIT = 2.0
 
 
 @dataclass(frozen=True)
@@ -86,7 +85,7 @@ class VisionModule:
         return self._looking.report("off", "on", "cannot run", {"module": self._kind.module})
 
     def close(self) -> None:
-        self._looking.close(CLOSE_LIMIT)
+        self._looking.close()
 
     def _begin(self) -> None:
         self._prepare()

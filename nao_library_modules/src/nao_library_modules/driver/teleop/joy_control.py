@@ -9,9 +9,6 @@ from enum import Enum
 
 from ..walk.walk_commands import STANDSTILL, Velocity
 
-UNUSED = -1
-"""Index of an axis or button that the gamepad does not have."""
-
 
 class JoyRequest(Enum):
     """What a button asks for, once each time it is pressed."""

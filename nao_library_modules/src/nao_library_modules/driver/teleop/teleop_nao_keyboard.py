@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Sequence
-from typing import TextIO
 
 import rospy
 
@@ -30,9 +29,8 @@ class TeleopNaoKeyboard:
         speed to begin with).
     """
 
-    def __init__(self, poses: Sequence[str], speed: float, out: TextIO = sys.stdout) -> None:
+    def __init__(self, poses: Sequence[str], speed: float) -> None:
         self._control = KeyboardControl(poses, speed)
-        self._out = out
         self._clients = TeleopClients(self._tell)
         self._walking = False
         self._actions: dict[KeyCommand, Callable[[KeyRequest], None]] = {
@@ -75,6 +73,7 @@ class TeleopNaoKeyboard:
         self._clients.walk(self._control.velocity(float("inf")))
         self._clients.call("stop_walk_srv", "the robot stands")
 
-    def _tell(self, text: str) -> None:
-        self._out.write(text + "\n")
-        self._out.flush()
+    @staticmethod
+    def _tell(text: str) -> None:
+        sys.stdout.write(text + "\n")
+        sys.stdout.flush()
