@@ -7,11 +7,12 @@ from dataclasses import replace
 import pytest
 
 from nao_library_modules.driver.base import lazy_subscription
+from nao_library_modules.driver.base.extractor import Extractor
 from nao_library_modules.driver.camera import camera_stream
 from nao_library_modules.driver.camera.camera_stream import CameraStream
 from nao_library_modules.driver.camera.camera_subscriber import StreamSettings
 from nao_library_modules.driver.camera.camera_tuning import CameraTuning
-from nao_library_modules.driver.sensors.vision_detection import FACES, MOVEMENT, VisionModule
+from nao_library_modules.driver.sensors.nao_vision import FACES, MOVEMENT
 from nao_library_modules.robot.robot import Robot
 from nao_library_modules.ros.health import Level
 from naoqi.errors import NaoError
@@ -165,7 +166,7 @@ def make(robot, driver_robot, closing):
     seen = []
 
     def make(kind, **options):
-        detection = closing(VisionModule(driver_robot, kind, "ros_nao_vision", seen.append, **options))
+        detection = closing(Extractor(driver_robot, kind, "ros_nao_vision", seen.append, **options))
         detection.seen = seen
         return detection
 

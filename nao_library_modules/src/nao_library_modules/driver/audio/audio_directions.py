@@ -6,16 +6,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from naoqi.errors import NaoError, UnknownModule
+from naoqi.errors import UnknownModule
 
-from ...robot.event_relay import EventRelay
-from ...ros.health import Report
-from ..base.lazy_subscription import LazySubscription
+from ..base.extractor import Extractor, ExtractorKind
 
-MODULES = ("ALSoundLocalization", "ALAudioSourceLocalization")
+STATES = ("nobody listens", "sounds are located", "sounds cannot be located")
+KINDS = [
+    ExtractorKind("sound localisation", module, f"{module}/SoundLocated", states=STATES)
+    for module in ("ALSoundLocalization", "ALAudioSourceLocalization")
+]
 """Newer name first."""
 ENERGY = "EnergyComputation"
-ANSWER_LIMIT = 2.0
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ def read_direction(value: Any) -> Direction | None:
     return Direction(stamp, azimuth, elevation, confidence, energy[0] if energy else 0.0, pose)
 
 
-class SoundDirections:
+class SoundDirections(Extractor):
     """Has the robot locate sounds while that is wanted, also after a lost connection."""
 
     def __init__(self, robot: Any, subscriber: str, sensitivity: float, sink: Callable[[Direction], None]) -> None:
@@ -54,53 +55,29 @@ class SoundDirections:
             sensitivity: 0 to 1; below 0 leaves the robot's own.
             sink: Gets each direction, in a thread of libqi.
         """
-        self._robot = robot
-        self._subscriber = subscriber
         self._sensitivity = sensitivity
-        self._sink = sink
-        self._module = MODULES[0]
-        self._relay = EventRelay(lambda: robot.proxy("ALMemory"), self._on_event)
-        self._locating = LazySubscription(robot, "sound localisation", self._begin, self._end)
+        self._tell = sink
+        super().__init__(robot, KINDS[0], subscriber, self._take, self._set_up)
 
-    def want(self, wanted: bool) -> None:
-        self._locating.want(wanted)
-
-    def report(self) -> Report:
-        values = {"module": self._module}
-        return self._locating.report("nobody listens", "sounds are located", "sounds cannot be located", values)
-
-    def close(self) -> None:
-        self._locating.close()
-
-    def _begin(self) -> None:
-        self._module = self._find_module()
-        self._ask("setParameter", ENERGY, True)
+    def _set_up(self) -> None:
+        self._choose_kind()
+        self.call("setParameter", ENERGY, True)
         if self._sensitivity >= 0.0:
-            self._ask("setParameter", "Sensitivity", self._sensitivity)
-        self._relay.close()  # events of a connection that was lost
-        self._relay.subscribe(f"{self._module}/SoundLocated")
-        self._ask("subscribe", self._subscriber)
+            self.call("setParameter", "Sensitivity", self._sensitivity)
 
-    def _end(self) -> None:
-        self._relay.close()
-        self._ask("unsubscribe", self._subscriber)
-
-    def _find_module(self) -> str:
-        """The module that this robot has; raises NaoError if it has neither, or cannot be asked."""
-        missing: NaoError | None = None
-        for module in MODULES:
+    def _choose_kind(self) -> None:
+        """Choose the module that this robot has; raises NaoError if it has neither, or cannot be asked."""
+        missing = []
+        for kind in KINDS:
+            self.kind = kind
             try:
-                self._robot.proxy(module).call_async("ping").result(timeout=ANSWER_LIMIT)
+                self.call("ping")
+                return
             except UnknownModule as error:
-                missing = missing or error
-            else:
-                return module
-        raise missing or NaoError("there is no module that locates sounds")
+                missing.append(error)
+        raise missing[0]
 
-    def _ask(self, method: str, *arguments: Any) -> None:
-        self._robot.proxy(self._module).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
-
-    def _on_event(self, _name: str, value: Any) -> None:
+    def _take(self, value: Any) -> None:
         direction = read_direction(value)
         if direction is not None:
-            self._sink(direction)
+            self._tell(direction)

@@ -22,12 +22,20 @@ from ...robot.image_clock import ImageClock
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
+from ..base.extractor import Extractor, ExtractorKind
 from ..base.node import name_for_robot, publish
 from ..camera.image_messages import header_of
-from .vision_detection import FACES, LANDMARKS, MOVEMENT, VisionModule, VisionModuleKind
 from .vision_messages import to_face, to_landmarks, to_movement
 from .vision_values import MovementReader, View, read_faces, read_landmarks
 
+FACES = ExtractorKind("face detection", "ALFaceDetection", "FaceDetected")
+LANDMARKS = ExtractorKind("landmark detection", "ALLandMarkDetection", "LandmarkDetected")
+MOVEMENT = ExtractorKind(
+    "motion detection",
+    "ALMovementDetection",
+    "MovementDetection/MovementDetected",
+    "MovementDetection/MovementInfo",
+)
 QUEUE = 10
 LEARN_LIMIT = 30.0
 """s that the robot may take to learn a face: it waits for a good view."""
@@ -64,9 +72,9 @@ class NaoVisionServices:
         self._faces_topic = self._topic("faces_detected", FaceDetected)
         self._landmarks_topic = self._topic("landmark_detected", LandmarkDetected)
         self._movement_topic = self._topic("movement_detected", MovementDetected)
-        self._faces = VisionModule(robot, FACES, subscriber, self._on_faces)
-        self._landmarks = VisionModule(robot, LANDMARKS, subscriber, self._on_landmarks)
-        self._movement = VisionModule(robot, MOVEMENT, subscriber, self._on_movement, self._send_sensitivity)
+        self._faces = Extractor(robot, FACES, subscriber, self._on_faces)
+        self._landmarks = Extractor(robot, LANDMARKS, subscriber, self._on_landmarks)
+        self._movement = Extractor(robot, MOVEMENT, subscriber, self._on_movement, self._send_sensitivity)
         self._detections = {"face": self._faces, "motion": self._movement, "landmark": self._landmarks}
         node.if_it_fails(self.close)
         for name, detection in self._detections.items():
@@ -141,7 +149,7 @@ class NaoVisionServices:
         if movement is not None:
             publish(self._movement_topic, to_movement(movement, self._header(MOVEMENT, movement.view)))
 
-    def _header(self, kind: VisionModuleKind, view: View | None) -> Header:
+    def _header(self, kind: ExtractorKind, view: View | None) -> Header:
         """Header of a detection; without a view, of now and the top camera."""
         frame = f"{self._prefix}{CAMERA_NAMES[TOP if view is None else view.camera]}_optical_frame"
         if view is None:

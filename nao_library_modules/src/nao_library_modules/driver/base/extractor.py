@@ -1,4 +1,4 @@
-"""A vision module of the robot, switched on and off. No ROS."""
+"""A module of the robot that looks or listens for something while it is subscribed. No ROS."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from naoqi.errors import NaoError
 
 from ...robot.event_relay import EventRelay
 from ...ros.health import Report
-from ..base.lazy_subscription import LazySubscription
+from .lazy_subscription import LazySubscription
 
 log = logging.getLogger(__name__)
 
@@ -20,27 +20,18 @@ ANSWER_LIMIT = 5.0
 
 
 @dataclass(frozen=True)
-class VisionModuleKind:
-    """A vision module of the robot."""
+class ExtractorKind:
+    """Such a module."""
 
     name: str  # for people
     module: str
     event: str
     key: str = ""  # in the robot's memory, of the value of an event without one; else empty
+    states: tuple[str, str, str] = ("off", "on", "cannot run")  # in words: not wanted, works, fails
 
 
-FACES = VisionModuleKind("face detection", "ALFaceDetection", "FaceDetected")
-LANDMARKS = VisionModuleKind("landmark detection", "ALLandMarkDetection", "LandmarkDetected")
-MOVEMENT = VisionModuleKind(
-    "motion detection",
-    "ALMovementDetection",
-    "MovementDetection/MovementDetected",
-    "MovementDetection/MovementInfo",
-)
-
-
-class VisionModule:
-    """Has the robot detect something while that is switched on, also after a lost connection.
+class Extractor:
+    """Has the robot detect something while that is wanted, also after a lost connection.
 
     Any thread may call. Methods raise NaoError if the robot cannot be asked.
     """
@@ -48,7 +39,7 @@ class VisionModule:
     def __init__(
         self,
         robot: Any,
-        kind: VisionModuleKind,
+        kind: ExtractorKind,
         subscriber: str,
         sink: Callable[[Any], None],
         prepare: Callable[[], None] = lambda: None,
@@ -59,15 +50,19 @@ class VisionModule:
             kind: Module and event.
             subscriber: Name of the subscriber at the robot.
             sink: Gets the value of each event, in a thread of libqi: it must not wait.
-            prepare: Called before the robot begins, for settings that it may have forgotten. May make calls.
+            prepare: Called before the robot begins, for settings that it may have forgotten. May make calls, and choose
+                another `kind`.
         """
+        self.kind = kind
         self._robot = robot
-        self._kind = kind
         self._subscriber = subscriber
         self._sink = sink
         self._prepare = prepare
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
         self._looking = LazySubscription(robot, kind.name, self._begin, self._end)
+
+    def want(self, wanted: bool) -> None:
+        self._looking.want(wanted)
 
     def enable(self) -> None:
         """Switch on; after an error it is off. No effect if it is on."""
@@ -79,10 +74,10 @@ class VisionModule:
 
     def call(self, method: str, *arguments: Any, limit: float = ANSWER_LIMIT) -> Any:
         """Call a method of the module; `limit` in s."""
-        return self._robot.proxy(self._kind.module).call_async(method, *arguments).result(timeout=limit)
+        return self._robot.proxy(self.kind.module).call_async(method, *arguments).result(timeout=limit)
 
     def report(self) -> Report:
-        return self._looking.report("off", "on", "cannot run", {"module": self._kind.module})
+        return self._looking.report(*self.kind.states, {"module": self.kind.module})
 
     def close(self) -> None:
         self._looking.close()
@@ -90,7 +85,7 @@ class VisionModule:
     def _begin(self) -> None:
         self._prepare()
         self._relay.close()  # events of a connection that was lost
-        self._relay.subscribe(self._kind.event)
+        self._relay.subscribe(self.kind.event)
         try:
             self.call("subscribe", self._subscriber)
         except NaoError:
@@ -104,8 +99,8 @@ class VisionModule:
     # --- in threads of libqi --------------------------------------------------------------------------------------
 
     def _on_event(self, _name: str, value: Any) -> None:
-        if self._kind.key and not (isinstance(value, (list, tuple)) and value):
-            self._robot.proxy(MEMORY).call_async("getData", self._kind.key).add_done_callback(self._on_value)
+        if self.kind.key and not (isinstance(value, (list, tuple)) and value):
+            self._robot.proxy(MEMORY).call_async("getData", self.kind.key).add_done_callback(self._on_value)
         elif self._looking.wanted:
             self._sink(value)
 
@@ -113,7 +108,7 @@ class VisionModule:
         try:
             value = call.result(timeout=0)
         except NaoError as error:
-            log.debug("%s: %s", self._kind.key, error)
+            log.debug("%s: %s", self.kind.key, error)
             return
         if self._looking.wanted:
             self._sink(value)
