@@ -137,6 +137,6 @@ def frame_parameter(node: NodeInterface, name: str, default: str) -> str:
     return tf_prefix() + str(node.param(name, default)).lstrip("/")
 
 
-def rate_parameter(node: NodeInterface, name: str, default: float) -> float:
-    """A parameter that is a rate in Hz. Raises NaoError if it is none that a node can keep."""
-    return number_parameter(name, node.param(name, default), limit("reading rate"))
+def number(node: NodeInterface, name: str, default: float, kind: str) -> float:
+    """A parameter that is a number; NaoError if it is none within the declared bounds of its kind, see `limit`."""
+    return number_parameter(name, node.param(name, default), limit(kind))

@@ -14,15 +14,13 @@ from tf2_msgs.msg import TFMessage
 
 from nao_library_msgs.srv import SetTransform
 
-from ...base.field_checks import number_parameter
-from ...base.limits import limit
 from ...base.once_per_connection import OncePerConnection
 from ...nao.joint_names import JointNames
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
-from ..base.node import frame_parameter, publish
+from ..base.node import frame_parameter, number, publish
 from ..base.polling import Polling
 from . import state_messages as messages
 from .feet import LEG_JOINTS, footprint
@@ -57,8 +55,7 @@ class NaoJointStates:
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
-        rate = node.param("~sensor_rate", node.param("~torso_odom_rate", DEFAULT_RATE))
-        rate = number_parameter("~sensor_rate", rate, limit("reading rate"))
+        rate = number(node, "~sensor_rate", node.param("~torso_odom_rate", DEFAULT_RATE), "reading rate")
         self._base = frame_parameter(node, "~base_frame_id", "base_link")
         self._footprint = frame_parameter(node, "~footprint_frame_id", "base_footprint")
         self._odom = frame_parameter(node, "~odom_frame_id", "odom")

@@ -33,15 +33,13 @@ from nao_library_msgs.srv import (
 from naoqi.errors import NaoError
 
 from ...base.answers import json_of
-from ...base.field_checks import number_parameter
-from ...base.limits import limit
 from ...base.suggestion import did_you_mean
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
 from ..base.lazy_topic import LazyTopic
-from ..base.node import publish
+from ..base.node import number, publish
 from .memory_access import MemoryAccess, check_pattern
 from .memory_names import is_pattern, matching
 from .memory_rules import MemoryRule, read_rules
@@ -76,8 +74,7 @@ class NaoMemory:
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._node = node
-        largest = self._node.param("~max_topics", MOST_TOPICS)
-        largest = int(number_parameter("~max_topics", largest, limit("topics")))
+        largest = int(number(node, "~max_topics", MOST_TOPICS, "topics"))
         rules = read_rules(self._node.param("~keys", []), "~keys")
         self._robot = robot
         self._memory = MemoryAccess(robot)

@@ -16,12 +16,10 @@ from naoqi.errors import NaoError, UnknownMethod, UnknownModule
 
 from ...base.answers import json_of
 from ...base.cancellation import CancellationToken
-from ...base.field_checks import number_parameter
-from ...base.limits import Limit, limit
 from ...nao.joint_names import JointNames
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ..base.node import publish
+from ..base.node import number, publish
 from ..base.robot_facts import KEYS, facts_of, info_fields
 from .body_reports import Thresholds, body_reports, keys_of, network_reports, part_of
 
@@ -30,7 +28,7 @@ log = logging.getLogger(__name__)
 MEMORY, NETWORKS = "ALMemory", "ALConnectionManager"
 ANSWER_LIMIT = 2.0
 SHUTDOWN_LIMIT = 3.0
-DEFAULT_RATE, RATE, SETTING = 0.5, limit("report rate"), limit("setting")
+DEFAULT_RATE = 0.5
 THRESHOLDS = {
     "warning_threshold": "warm",
     "error_threshold": "hot",
@@ -62,10 +60,10 @@ class NaoDiagnosticUpdater:
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._node = node
         self._robot = robot
-        self._period = 1.0 / _number(node, "~update_rate", DEFAULT_RATE, RATE)
-        defaults = Thresholds()
+        self._period = 1.0 / number(node, "~update_rate", DEFAULT_RATE, "report rate")
+        defaults = vars(Thresholds())
         self._limits = Thresholds(
-            **{field: _number(node, f"~{name}", getattr(defaults, field)) for name, field in THRESHOLDS.items()}
+            **{field: number(node, f"~{name}", defaults[field], "setting") for name, field in THRESHOLDS.items()}
         )
         self._names = JointNames(robot)
         namespace = node.namespace.strip("/")
@@ -166,7 +164,3 @@ class NaoDiagnosticUpdater:
             message.status.append(status)
         if message.status:
             publish(self._diagnostics, message)
-
-
-def _number(node: NodeInterface, name: str, default: float, kind: Limit = SETTING) -> float:
-    return number_parameter(name, node.param(name, default), kind)

@@ -14,7 +14,7 @@ from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
-from ..base.node import name_for_robot, publish, rate_parameter
+from ..base.node import name_for_robot, number, publish
 from .sonars import CONE, Sonars
 
 QUEUE = 10
@@ -33,7 +33,7 @@ class NaoSonar:
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._prefix = tf_prefix()
-        rate = rate_parameter(node, "~sonar_rate", DEFAULT_RATE)
+        rate = number(node, "~sonar_rate", DEFAULT_RATE, "reading rate")
         self._sonars = Sonars(robot, name_for_robot(node.name), rate, RosClock(), self._publish)
         self._topics = [
             (side, node.publisher(name, Range, queue_size=QUEUE))

@@ -15,7 +15,7 @@ from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
-from ..base.node import publish, rate_parameter
+from ..base.node import number, publish
 from ..base.polling import Polling
 from .foot_pressure import SIDES, FootPressure, read_feet
 from .touch_sensors import BUMPER, CHEST, FEET, HAND, HEAD, TouchSensor, TouchSensors
@@ -48,9 +48,8 @@ class NaoTactileNode:
         self._chest = node.publisher("chest_button", ChestButton, queue_size=QUEUE)
         self._contact = node.publisher("foot_contact", Bool, queue_size=1, latch=True)
         self._prefix = tf_prefix()
-        self._pressure = Polling(
-            robot, "foot pressure", rate_parameter(node, "~fsr_rate", DEFAULT_RATE), RosClock(), self._read
-        )
+        rate = number(node, "~fsr_rate", DEFAULT_RATE, "reading rate")
+        self._pressure = Polling(robot, "foot pressure", rate, RosClock(), self._read)
         self._feet = {side: node.publisher(f"nao_robot/fsr/{side}", Fsr, queue_size=QUEUE) for side in SIDES}
         self._lazy = LazyTopic(self._pressure.want, *self._feet.values())
         self._sensors = TouchSensors(robot, self._on_touch, self._on_clicks)

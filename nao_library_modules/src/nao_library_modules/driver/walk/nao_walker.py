@@ -16,14 +16,12 @@ from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import CmdPoseService, CmdVelService, SetArmsEnabled, StepTargetService
 from naoqi.errors import NaoError
 
-from ...base.field_checks import number_parameter
-from ...base.limits import limit
 from ...nao.joint_names import MOTION
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
-from ..base.node import whenever
+from ..base.node import number, whenever
 from ..joints.joint_controller import QUICK_LIMIT, InitialStiffness, JointController
 from .head_scan import HeadScan
 from .walk_commands import Velocity, read_gait_config, read_step, read_target, read_velocity
@@ -67,12 +65,12 @@ class NaoWalker:
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._node = node
         self._robot = robot
-        timeout = number_parameter("~cmd_vel_timeout", self._node.param("~cmd_vel_timeout", 0.5), limit("timeout"))
+        timeout = number(node, "~cmd_vel_timeout", 0.5, "timeout")
         joints = JointController(robot)
         self._init_stiffness = InitialStiffness(joints, node.param)
-        frequency = number_parameter("~step_frequency", self._node.param("~step_frequency", 0.5), limit("share"))
+        frequency = number(node, "~step_frequency", 0.5, "share")
         gait = self._gait()
-        head_speed = number_parameter("~max_head_speed", self._node.param("~max_head_speed", 0.2), limit("fraction"))
+        head_speed = number(node, "~max_head_speed", 0.2, "fraction")
         self._kept = node_file(self._node.name)
         self._inhibition = WalkInhibition(self._kept, rospy.get_name())
         self._journal = WalkJournal()
