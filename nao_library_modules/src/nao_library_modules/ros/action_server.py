@@ -13,10 +13,11 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from ..processes.heap import Heap
-from .soonest_end import SOONEST_END, let_the_client_note_the_goal
 
 log = logging.getLogger(__name__)
 
+SOONEST_END = 0.005
+"""s from when a goal is taken up to its end, at least; docs/functions.md has what it costs and what it saves."""
 SHUTDOWN_POLL = 0.1
 """s between two looks whether the node has ended, for nothing wakes the waiting thread then."""
 REMEMBERED = 10
@@ -33,6 +34,17 @@ class ActionServer(actionlib.ActionServer):
 
     def publish_status(self) -> None:
         publish_status(super().publish_status)
+
+
+def let_the_client_note_the_goal(taken_up: float, soonest_end: float = SOONEST_END) -> None:
+    """Wait until a goal may be over, so that actionlib's SimpleActionClient can note which goal it sent.
+
+    That client drops an end that comes before its `send_goal` has returned, and waits for ever (ros/actionlib #206).
+    `taken_up`: when it was taken up, by `time.monotonic`. `soonest_end`: s after which it may be over.
+    """
+    left = taken_up + soonest_end - time.monotonic()
+    if left > 0.0:
+        time.sleep(left)
 
 
 def publish_status(publish: Callable[[], None]) -> None:
@@ -60,7 +72,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
     goals that are over only the last few are told of at all: with hundreds of short ones in it, each status takes
     clients so long to read that they have no time for what comes of their goals.
 
-    A goal that is taken up and would be over at once ends `soonest_end` later; see there.
+    A goal that is taken up and would be over at once ends `soonest_end` later: see `let_the_client_note_the_goal`.
 
     Everything else is actionlib's.
     """

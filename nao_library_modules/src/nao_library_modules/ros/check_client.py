@@ -9,13 +9,23 @@ for problem in check_goals("NaoLights", goal).problems:
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
+import rospy
+
 from nao_library_msgs.srv import CheckGoals
+from naoqi.errors import NaoError
 
 from ..functions.check_service import CHECK, NotValidated, check_request, read_response
 from ..functions.goal_checks import GoalCheck
-from .service_call import LIMIT, NotAnswered, call_service
+
+LIMIT = 10.0
+"""s of the computer that a server has for its answer."""
+
+
+class NotAnswered(NaoError):  # noqa: N818  it says what became of the question
+    """A service is not there, refuses, or does not answer in time."""
 
 
 def check_goals(server: str, *goals: Any, limit: float = LIMIT) -> GoalCheck:
@@ -32,3 +42,35 @@ def check_goals(server: str, *goals: Any, limit: float = LIMIT) -> GoalCheck:
         return read_response(call_service(server + CHECK, CheckGoals, check_request(goals), limit))
     except NotAnswered as error:
         raise NotValidated(str(error)) from None
+
+
+def call_service(name: str, kind: type, request: Any, limit: float = LIMIT) -> Any:
+    """Call a service, if it is there; rospy's calls have no limit.
+
+    `limit`: s of the computer for the answer. Raises NotAnswered if it is not there, refuses, or does not answer in
+    time.
+    """
+    full = rospy.resolve_name(name)
+    try:
+        code, _, _ = rospy.get_master().lookupService(full)
+    except OSError as error:
+        raise NotAnswered(f"there is no ROS master: {error}") from None
+    if code != 1:
+        raise NotAnswered(f"there is no service {full}")
+    answers: list[Any] = []
+    errors: list[Exception] = []
+
+    def ask() -> None:
+        try:
+            answers.append(rospy.ServiceProxy(full, kind)(request))
+        except (rospy.ServiceException, rospy.ROSException) as error:
+            errors.append(error)
+
+    asking = threading.Thread(target=ask, daemon=True)  # a call of rospy cannot be ended
+    asking.start()
+    asking.join(limit)
+    if errors:
+        raise NotAnswered(f"{full}: {errors[0]}")
+    if not answers:
+        raise NotAnswered(f"{full} does not answer within {limit:g} s")
+    return answers[0]

@@ -14,8 +14,8 @@ from naoqi.errors import NaoError
 from ..base.cancellation import CancellationToken
 from ..base.errors import Preempted
 from ..base.limits import limit
+from .action_server import let_the_client_note_the_goal
 from .health import GoalCounter
-from .soonest_end import let_the_client_note_the_goal
 from .startup_grace import StartupGrace
 
 log = logging.getLogger(__name__)

@@ -18,12 +18,11 @@ from ..base.answers import json_of
 from ..base.kept import Kept
 from ..base.places import Place
 from ..functions.server_types import DESCRIBE
-from .action_server import PromptActionServer
+from .action_server import SOONEST_END, PromptActionServer
 from .diagnostics import DiagnosticsPublisher
 from .health import Report
 from .robot_frames import RobotFrames, tf_prefix
 from .ros_clock import RosClock
-from .soonest_end import SOONEST_END
 
 if TYPE_CHECKING:
     from .nao_robot_driver import NaoRobotDriver

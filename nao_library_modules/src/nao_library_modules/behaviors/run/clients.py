@@ -14,8 +14,7 @@ from nao_library_msgs.srv import DescribeFunctions, DescribeFunctionsRequest, De
 from ...functions.goal_checks import GoalCheck
 from ...functions.server_types import DESCRIBE, ServerType, servers_among, those_in
 from ...process_modules.robot.action_client import PlanActionClient
-from ...ros.check_client import check_goals
-from ...ros.service_call import NotAnswered, call_service
+from ...ros.check_client import NotAnswered, call_service, check_goals
 from ..language.servers import NotDescribed
 from .recording import BehaviorRecording
 
