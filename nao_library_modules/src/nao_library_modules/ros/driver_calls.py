@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 from concurrent import futures
 from concurrent.futures import Future, InvalidStateError
+from contextlib import suppress
 from typing import Any
 
 import actionlib
@@ -48,13 +49,11 @@ class DriverCall:
 
     def end(self, value: Any = None, error: NaoError | None = None) -> None:
         """It is over; the first end counts."""
-        try:
+        with suppress(InvalidStateError):
             if error is None:
                 self._answer.set_result(value)
             else:
                 self._answer.set_exception(error)
-        except InvalidStateError:
-            pass  # it has ended already
 
     def end_by(self, read: Callable[[], Any]) -> None:
         """It is over: with what a function answers, or with the error that it raises."""

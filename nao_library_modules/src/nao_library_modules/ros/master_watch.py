@@ -11,6 +11,7 @@ import logging
 import threading
 import xmlrpc.client
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Dict, Tuple
 
@@ -24,6 +25,7 @@ LIMIT = 2.0
 """s that an answer may take."""
 ANY_TYPE = "*"
 GONE = (OSError, http.client.HTTPException, xmlrpc.client.Error)
+"""What a call of a master or node raises that does not answer."""
 
 Registrations = Dict[str, Tuple[str, ...]]
 
@@ -90,15 +92,11 @@ def read_book(master: Api) -> Book:
     book.publishers, book.subscribers, book.services = ({name: tuple(who) for name, who in part} for part in state)
     book.types = dict(master.ask("getTopicTypes"))
     for name in sorted({node for part in state for _, who in part for node in who}):
-        try:
+        with suppress(Refused):
             book.nodes[name] = master.ask("lookupNode", name)
-        except Refused:
-            continue
     for service in book.services:
-        try:
+        with suppress(Refused):
             book.addresses[service] = master.ask("lookupService", service)
-        except Refused:
-            continue
     book.parameters = master.ask("getParam", "/")
     return book
 

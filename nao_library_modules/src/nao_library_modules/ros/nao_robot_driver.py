@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import http.client
 import logging
 import math
 import threading
 import time
-import xmlrpc.client
 from collections.abc import Callable, Container, Sequence
 from typing import Any
 
@@ -35,6 +33,7 @@ from ..functions.joint_trajectory import KeyFrames
 from ..nao.pose_tables import built_in
 from ..owners.line import SERVICE
 from .driver_calls import DriverAction, DriverCall, GoalCall, ServiceCall
+from .master_watch import GONE
 from .robot_frames import tf_prefix
 
 log = logging.getLogger(__name__)
@@ -53,7 +52,6 @@ LOOK_PERIOD = 1.0
 """s of this computer between two looks for a driver that is not there."""
 CONNECT_LIMIT = 2.0
 """s of this computer that the server of an action may take to be connected, once."""
-NO_MASTER = (OSError, http.client.HTTPException, xmlrpc.client.Error)
 NOT_THERE = "ended before time"
 """In the text of nao_walker for a walk that somebody or something stopped."""
 
@@ -135,7 +133,7 @@ class NaoRobotDriver:
             return ()
         try:
             return {*built_in(), *rospy.get_param("pose_manager/poses", {})}
-        except NO_MASTER:
+        except GONE:
             return ()
 
     def take_posture(self, name: str, speed: float) -> DriverCall | None:
@@ -168,7 +166,7 @@ def _address_of(service: str) -> str:
     """Where the master says that a service is; empty if nowhere, or without a master."""
     try:
         code, _, address = rospy.get_master().lookupService(rospy.resolve_name(service))
-    except NO_MASTER as error:
+    except GONE as error:
         log.debug("no driver is looked for: %s", error)
         return ""
     return address if code == 1 else ""

@@ -78,11 +78,8 @@ class NodeInterface:
     def offer(self, name: str, kind: type, answer: Callable[[Any], Any]) -> None:
         """Offer a service whose client gets the text of what goes wrong.
 
-        Args:
-            name: Name of the service.
-            kind: Its type.
-            answer: Gets the request and gives the response; None stands for an empty one. A NaoError is told and
-                logged; Preempted means that the part ends.
+        `answer` gets the request and gives the response; None stands for an empty one. A NaoError of it is told and
+        logged; Preempted means that the part ends.
         """
 
         def serve(request: Any) -> Any:
@@ -125,8 +122,6 @@ def node_that_offers(service: str) -> str:
         host, _, port = address.rpartition(":")
         socket.create_connection((host, int(port)), PROBE_LIMIT).close()
         node = next(nodes[0] for name, nodes in master.getSystemState()[2] if name == service)
-    except (rosgraph.MasterError, StopIteration):
+    except (rosgraph.MasterError, StopIteration, OSError):  # of one that was killed the master does not know
         return ""
-    except OSError:
-        return ""  # it was killed, and the master does not know
     return "" if node == own else node

@@ -6,7 +6,6 @@ as a process, and waits there, without a connection to anything, until the name 
 
 from __future__ import annotations
 
-import http.client
 import json
 import os
 import sys
@@ -16,6 +15,8 @@ import xmlrpc.client
 
 import rosgraph
 import rospy
+
+from .master_watch import GONE
 
 LAUNCHED = "__log:="
 """How an argument begins that roslaunch gives to its nodes, and nobody else does."""
@@ -51,13 +52,13 @@ def _in_use(name: str) -> bool:
         uri = rosgraph.Master(f"{name}_waiting").lookupNode(name)
     except rosgraph.MasterError:
         return False
-    except (OSError, http.client.HTTPException, xmlrpc.client.Error):
+    except GONE:
         return True
     try:
         xmlrpc.client.ServerProxy(uri).getPid(name)
     except ConnectionRefusedError:  # it died without a word
         return False
-    except (OSError, http.client.HTTPException, xmlrpc.client.Error):
+    except GONE:
         pass
     return True
 

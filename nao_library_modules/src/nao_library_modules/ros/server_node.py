@@ -29,6 +29,16 @@ if TYPE_CHECKING:
 
 EVENT_TOPIC = "memory_events"
 LONGEST_SECONDS = 1.0
+TYPES = {
+    type(None): "null",
+    bool: "bool",
+    int: "int",
+    float: "float",
+    dict: "object",
+    list: "list",
+    tuple: "list",
+}
+"""Type of an event's value in Python -> in MemoryEvent; others are of type string."""
 
 
 class ServerNode:
@@ -61,11 +71,8 @@ class ServerNode:
     ) -> PromptActionServer:
         """Make an action server; it is not started.
 
-        Args:
-            name: Relative name of the action.
-            action: Its type.
-            execute: Carries out a goal, in the server's own thread.
-            on_preempt: Called under actionlib's lock: it must do no more than set a flag.
+        `execute` carries out a goal, in the server's own thread. `on_preempt` is called under actionlib's lock: it must
+        do no more than set a flag.
         """
         server = PromptActionServer(
             name, action, execute_cb=execute, auto_start=False, soonest_end=self.seconds("soonest_end", SOONEST_END)
@@ -85,7 +92,7 @@ class ServerNode:
         publisher = rospy.Publisher(EVENT_TOPIC, MemoryEvent, queue_size=100)
 
         def publish(name: str, value: Any) -> None:
-            event = MemoryEvent(name=name, value=json_of(value), type=_json_type(value))
+            event = MemoryEvent(name=name, value=json_of(value), type=TYPES.get(type(value), "string"))
             event.header.stamp = rospy.Time.now()
             publisher.publish(event)
 
@@ -97,31 +104,15 @@ class ServerNode:
         return DiagnosticsPublisher(hardware_id, reports)
 
     def serve_description(self, name: str, answer: Callable[[Any], Any]) -> None:
-        """Answer what the functions of an action server are, on the service `NAME/describe`.
-
-        `name`: relative name of the action. `answer`: request -> response of DescribeFunctions; called in a thread of
-        each client.
-        """
-        rospy.Service(name + DESCRIBE, DescribeFunctions, answer)
+        """Answer what the functions of an action server are, on the service `NAME/describe`; see `serve`."""
+        self.serve(name + DESCRIBE, DescribeFunctions, answer)
 
     def serve(self, name: str, kind: type, answer: Callable[[Any], Any]) -> None:
-        """Answer a service.
-
-        Args:
-            name: Relative name of the service.
-            kind: Its type.
-            answer: Request -> response; called in a thread of each client.
-        """
+        """Answer a service: `answer` makes the response of a request, in a thread of each client."""
         rospy.Service(name, kind, answer)
 
     def subscribe(self, topic: str, kind: type, callback: Callable[[Any], None]) -> None:
-        """Have every message of a topic, until the node ends.
-
-        Args:
-            topic: Relative name of the topic.
-            kind: Type of its messages.
-            callback: Gets each message, in a thread of each publisher.
-        """
+        """Have every message of a topic, in a thread of each publisher, until the node ends."""
         rospy.Subscriber(topic, kind, callback, queue_size=1000)
 
     def driver(self) -> NaoRobotDriver:
@@ -152,21 +143,6 @@ def node_file(name: str) -> Kept:
     """The file of a node, or of a part of one, for this run of the ROS master. `name`: its full name."""
     file = name.strip("/").replace("/", "_")
     return Kept(Path(get_ros_home()) / "nao_library" / f"{file}.json", str(rospy.get_param("/run_id", "")))
-
-
-def _json_type(value: Any) -> str:
-    if value is None:
-        return "null"
-    for kind, name in (
-        (bool, "bool"),
-        (int, "int"),
-        (float, "float"),
-        (dict, "object"),
-        ((list, tuple), "list"),
-    ):
-        if isinstance(value, kind):
-            return name
-    return "string"
 
 
 class RosoutHandler(logging.Handler):
