@@ -34,7 +34,7 @@ from ..nao.pose_tables import built_in
 from ..owners.line import SERVICE
 from .driver_calls import DriverAction, DriverCall, GoalCall, ServiceCall
 from .master_watch import GONE
-from .robot_frames import tf_prefix
+from .robot_frames import pose_of, tf_prefix
 
 log = logging.getLogger(__name__)
 
@@ -101,9 +101,7 @@ class NaoRobotDriver:
         """Walk to a place seen from the robot, by who plans walks; False if somebody stopped it."""
         goal = MoveBaseGoal()
         goal.target_pose.header.frame_id = tf_prefix() + "base_footprint"
-        pose = goal.target_pose.pose
-        pose.position.x, pose.position.y = place.x, place.y
-        pose.orientation.z, pose.orientation.w = math.sin(place.yaw / 2.0), math.cos(place.yaw / 2.0)
+        goal.target_pose.pose = pose_of((place.x, place.y, 0.0, 0.0, 0.0, place.yaw))
         return self._send("walk_target", goal, _walked) if self.there() else None
 
     def walk_at(self, x: float, y: float, theta: float) -> DriverCall | None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import rospy
 import tf2_ros
+from geometry_msgs.msg import Point, Pose, Quaternion
 
 from naoqi.errors import NaoError
 
 from ..base.places import Place, yaw_of_quaternion
+from ..base.rotations import from_roll_pitch_yaw
 
 ROBOT = "base_footprint"
 """The frame of the robot: on the floor between its feet, as nao_joint_states publishes it."""
@@ -42,6 +45,11 @@ def seen_from_above(transform: Any) -> Place:
     """Place and heading of a geometry_msgs/Transform on the floor; heading 0 where its rotation is none."""
     move, turn = transform.translation, transform.rotation
     return Place(move.x, move.y, yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w) or 0.0)
+
+
+def pose_of(position6d: Sequence[float]) -> Pose:
+    """A pose from x, y, z in m, roll, pitch, yaw in rad."""
+    return Pose(Point(*position6d[:3]), Quaternion(*from_roll_pitch_yaw(*position6d[3:])))
 
 
 def tf_prefix() -> str:

@@ -20,10 +20,9 @@ from nao_library_msgs.srv import (
 from ...base.cancellation import CancellationToken
 from ...base.field_checks import number_parameter
 from ...base.limits import limit
-from ...base.rotations import from_roll_pitch_yaw
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import tf_prefix
+from ...ros.robot_frames import pose_of, tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
 from ..base.node import name_for_robot, publish
@@ -103,8 +102,5 @@ class NaoAudioServices:
         message.header.frame_id = self._frame
         for field in ("azimuth", "elevation", "confidence", "energy"):
             getattr(message, field).data = getattr(direction, field)
-        position, orientation = message.head_pose.position, message.head_pose.orientation
-        position.x, position.y, position.z = direction.head_in_torso[:3]
-        turned = from_roll_pitch_yaw(*direction.head_in_torso[3:])
-        orientation.x, orientation.y, orientation.z, orientation.w = turned
+        message.head_pose = pose_of(direction.head_in_torso)
         publish(self._topic, message)

@@ -10,8 +10,9 @@ from typing import Any
 import rospy
 import tf2_ros
 import yaml
-from geometry_msgs.msg import PoseStamped, Quaternion, Transform, TransformStamped
+from geometry_msgs.msg import PoseStamped, Transform, TransformStamped
 from nav_msgs.msg import Path
+from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
@@ -20,8 +21,8 @@ from ...base.errors import BadGoal
 from ...base.field_checks import require_length, require_within
 from ...base.limits import limit
 from ...base.places import Place, yaw_of_quaternion
-from ...base.rotations import from_roll_pitch_yaw, product, rotate
-from ...ros.robot_frames import seen_from_above
+from ...base.rotations import product, rotate
+from ...ros.robot_frames import pose_of, seen_from_above
 
 PLACE, PLACES = limit("place"), limit("places")
 PATIENCE = 2.0
@@ -170,8 +171,5 @@ def read_transform(transform: Transform) -> Place:
 
 
 def pose_stamped(place: Place, frame: str, stamp: rospy.Time) -> PoseStamped:
-    message = PoseStamped()
-    message.header.frame_id, message.header.stamp = frame, stamp
-    message.pose.position.x, message.pose.position.y = place.x, place.y
-    message.pose.orientation = Quaternion(*from_roll_pitch_yaw(0.0, 0.0, place.yaw))
-    return message
+    pose = pose_of((place.x, place.y, 0.0, 0.0, 0.0, place.yaw))
+    return PoseStamped(Header(stamp=stamp, frame_id=frame), pose)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from geometry_msgs.msg import Point, Quaternion, TransformStamped, Twist, Vector3
+from geometry_msgs.msg import Quaternion, TransformStamped, Twist, Vector3
 from nav_msgs.msg import Odometry
 from rospy import Time
 from sensor_msgs.msg import Imu, JointState
+from std_msgs.msg import Header
 
 from ...base.rotations import from_roll_pitch_yaw, inverse, rotate
+from ...ros.robot_frames import pose_of
 from .joint_sensors import Reading
 
 # Rough figures for filters that fuse sensors, on the diagonal: the robot publishes none.
@@ -20,16 +22,13 @@ PLACE_VARIANCE, HEIGHT_VARIANCE, VELOCITY_VARIANCE = 1e-2, 1e-3, 1e-3
 
 def joint_state(stamp: Time, joints: Sequence[str], reading: Reading, velocities: Sequence[float]) -> JointState:
     """Positions (rad), velocities (rad/s) and efforts (N m) of the joints."""
-    message = JointState(name=list(joints), position=reading.positions, velocity=velocities, effort=reading.efforts)
-    message.header.stamp = stamp
-    return message
+    positions, efforts = reading.positions, reading.efforts
+    return JointState(Header(stamp=stamp), list(joints), positions, velocities, efforts)
 
 
 def joint_stiffness(stamp: Time, joints: Sequence[str], stiffnesses: Sequence[float]) -> JointState:
     """Stiffnesses of the joints, 0 to 1, as efforts."""
-    message = JointState(name=list(joints), effort=stiffnesses)
-    message.header.stamp = stamp
-    return message
+    return JointState(header=Header(stamp=stamp), name=list(joints), effort=stiffnesses)
 
 
 def imu(stamp: Time, frame: str, reading: Reading) -> Imu:
@@ -53,12 +52,10 @@ def odometry(stamp: Time, frame: str, base: str, reading: Reading, velocity: Seq
 
     `velocity` is that of the torso in `frame`, (3,) m/s; the message has it in `base`, as REP 105 asks.
     """
-    x, y, z, roll, pitch, yaw = reading.torso
-    turn = from_roll_pitch_yaw(roll, pitch, yaw)
+    turn = from_roll_pitch_yaw(*reading.torso[3:])
     message = Odometry()
     message.header.stamp, message.header.frame_id, message.child_frame_id = stamp, frame, base
-    message.pose.pose.position = Point(x, y, z)
-    message.pose.pose.orientation = Quaternion(*turn)
+    message.pose.pose = pose_of(reading.torso)
     message.pose.covariance = diagonal(
         PLACE_VARIANCE, PLACE_VARIANCE, HEIGHT_VARIANCE, TILT_VARIANCE, TILT_VARIANCE, YAW_VARIANCE
     )

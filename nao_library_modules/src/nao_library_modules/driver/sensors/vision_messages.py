@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from geometry_msgs.msg import Point, Pose, Quaternion
+from geometry_msgs.msg import Point
 from std_msgs.msg import Float32, Header, Int32
 
 from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetected
 
-from ...base.rotations import from_roll_pitch_yaw
 from ...nao.camera_facts import CAMERA_NAMES
+from ...ros.robot_frames import pose_of
 from .vision_values import Face, Landmark, Movement, View
 
 
@@ -22,7 +22,7 @@ def to_face(face: Face, view: View, header: Header) -> FaceDetected:
     message.shape_sizeX.data, message.shape_sizeY.data = face.shape.width, face.shape.height
     for name, (x, y) in face.points.items():
         getattr(message, f"{name}_x").data, getattr(message, f"{name}_y").data = x, y
-    message.camera_0_pose, message.camera_1_pose = _pose(view.in_torso), _pose(view.in_robot)
+    message.camera_0_pose, message.camera_1_pose = pose_of(view.in_torso), pose_of(view.in_robot)
     message.camera_id.data = view.camera
     return message
 
@@ -34,7 +34,7 @@ def to_landmarks(marks: Sequence[Landmark], view: View, header: Header) -> Landm
     message.shape_beta = [Float32(mark.shape.beta) for mark in marks]
     message.shape_sizex = [Float32(mark.shape.width) for mark in marks]
     message.shape_sizey = [Float32(mark.shape.height) for mark in marks]
-    message.camera_local_pose, message.camera_world_pose = _pose(view.in_torso), _pose(view.in_robot)
+    message.camera_local_pose, message.camera_world_pose = pose_of(view.in_torso), pose_of(view.in_robot)
     message.camera_name.data = CAMERA_NAMES[view.camera]
     return message
 
@@ -48,8 +48,3 @@ def to_movement(movement: Movement, header: Header) -> MovementDetected:
         points_poses=[Point(*each, 0.0) for each in movement.points],
         points_speeds=[Point(*each, 0.0) for each in movement.velocities],
     )
-
-
-def _pose(position6d: Sequence[float]) -> Pose:
-    """A pose from x, y, z in m, roll, pitch, yaw in rad."""
-    return Pose(Point(*position6d[:3]), Quaternion(*from_roll_pitch_yaw(*position6d[3:])))

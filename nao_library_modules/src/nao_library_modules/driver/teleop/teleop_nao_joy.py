@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from contextlib import suppress
 from dataclasses import fields
 
 import rospy
@@ -59,10 +60,8 @@ class TeleopNaoJoy:
         self._thread.join(LOSE_LIMIT)
         with self._lock:
             self._control.release()
-            try:
+            with suppress(rospy.ROSException):  # where the topics are closed already nao_walker stops by itself
                 self._send()
-            except rospy.ROSException:
-                pass  # the topics are closed already; nao_walker stops by itself
         self._clients.close()
 
     def report(self) -> Report:

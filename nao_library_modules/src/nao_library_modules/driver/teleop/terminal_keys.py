@@ -7,7 +7,7 @@ import os
 import select
 import termios
 import tty
-from types import TracebackType
+from contextlib import suppress
 
 from naoqi.errors import NaoError
 
@@ -38,18 +38,14 @@ class TerminalKeys:
         tty.setcbreak(self._file)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.restore()
         atexit.unregister(self.restore)
 
     def restore(self) -> None:
         """Restore the settings of the terminal; keys not read yet are discarded."""
-        try:
+        with suppress(termios.error, OSError):  # where the terminal is gone, its settings are with it
             termios.tcsetattr(self._file, termios.TCSAFLUSH, self._before)
-        except (termios.error, OSError):
-            pass  # the terminal is gone, and its settings with it
 
     def read(self, limit: float) -> list[str]:
         """Keys since the last call, after waiting for one at most `limit` s.
