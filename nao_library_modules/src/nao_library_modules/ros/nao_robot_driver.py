@@ -11,7 +11,7 @@ from typing import Any
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from geometry_msgs.msg import Pose2D, Twist
+from geometry_msgs.msg import Pose2D, Twist, Vector3
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from trajectory_msgs.msg import JointTrajectoryPoint
 
@@ -106,8 +106,7 @@ class NaoRobotDriver:
 
     def walk_at(self, x: float, y: float, theta: float) -> DriverCall | None:
         """Begin to walk at shares -1..1 of the top speed, at the driver's step frequency."""
-        twist = Twist()
-        twist.linear.x, twist.linear.y, twist.angular.z = x, y, theta
+        twist = Twist(Vector3(x, y, 0.0), Vector3(0.0, 0.0, theta))
         return self._ask("cmd_vel_srv", CmdVelService, _no_answer, twist)
 
     def leave_walk(self) -> None:

@@ -77,24 +77,21 @@ class Polling:
                 if self._closed:
                     return
             try:
-                if not self._robot.connection.wait_connected(RETRY):
-                    self._problem = "the robot is not connected"
-                    self._interrupt.wait(RETRY)
+                if self._robot.connection.wait_connected(RETRY):
+                    self._read_on()
                     continue
-                self._read_on()
+                self._problem = "the robot is not connected"
             except RobotUnreachable as error:
                 self._problem = str(error)  # the log has it already, from the connection
-                self._interrupt.wait(RETRY)
             except NaoError as error:
                 self._problem = str(error)
                 if self._problem != self._logged:  # of several in a row only the first
                     log.warning("the %s cannot be read: %s", self._name, self._problem)
                     self._logged = self._problem
-                self._interrupt.wait(RETRY)
             except Exception as error:  # a mistake in here must not leave a node that lives and says nothing
                 self._problem = f"unexpected error: {error!r}"
                 log.exception("the %s cannot be read", self._name)
-                self._interrupt.wait(RETRY)
+            self._interrupt.wait(RETRY)
 
     def _read_on(self) -> None:
         rate = Rate(self._clock, self._period, min(FASTEST, self._period / 2), self._interrupt)

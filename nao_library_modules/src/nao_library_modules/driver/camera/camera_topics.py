@@ -65,8 +65,13 @@ class CameraTopics:
         self._robot = robot
         self._node = node
         self._camera = camera
-        self._frames = {each: _frame(node, each) for each in CAMERAS}
-        self._infos = {each: CameraInfos(_camera_name(node, each), _package_folder) for each in CAMERAS}
+        self._frames = {
+            each: frame_parameter(node, f"~camera_{name}_frame", f"{CAMERA_NAMES[each]}_optical_frame")
+            for each, name in CAMERAS.items()
+        }
+        # Names in calibration files; the namespace of the robot tells several apart.
+        names = {each: camera_name(f"{node.namespace}nao_camera_{name}") for each, name in CAMERAS.items()}
+        self._infos = {each: CameraInfos(name, _package_folder) for each, name in names.items()}
         self._config: Mapping[str, Any] = {}
         self._compression: Mapping[str, Any] = {}
         self._url = ""
@@ -100,7 +105,8 @@ class CameraTopics:
 
     def report(self) -> Report:
         report = self._stream.report()
-        return Report(report.level, report.message, {**report.values, "calibration": self._calibration_source()})
+        source = self._infos[self.camera].source(*SIZES[self._stream.settings.resolution])
+        return Report(report.level, report.message, {**report.values, "calibration": source})
 
     def close(self) -> None:
         self._stream.close()
@@ -120,8 +126,9 @@ class CameraTopics:
             self._show_compressed(picture, header)
 
     def _show_compressed(self, picture: Picture, header: Header) -> None:
+        chosen = self._compression
         try:
-            kind, file = compress(picture, **self._compression)
+            kind, file = compress(picture, chosen["format"], chosen["jpeg_quality"], chosen["png_level"])
         except NaoError as error:
             rospy.logwarn_throttle(WARN_PERIOD, f"{self._compressed.name}: {error}")
         else:
@@ -184,10 +191,7 @@ class CameraTopics:
         return after
 
     def _compress_as(self, _before: Mapping[str, Any], after: Mapping[str, Any]) -> Mapping[str, Any]:
-        if after["format"] not in FORMATS:
-            raise NaoError(f"format is {after['format']!r}: {' or '.join(FORMATS)}")
-        names = {"format": "kind", "jpeg_quality": "jpeg_quality", "png_level": "png_level"}
-        self._compression = {names[name]: value for name, value in after.items()}
+        self._compression = after
         return after
 
     # --- calibration ----------------------------------------------------------------------------------------------
@@ -199,18 +203,6 @@ class CameraTopics:
             rospy.logerr("set_camera_info: %s", error)
             return SetCameraInfoResponse(False, str(error))
         return SetCameraInfoResponse(True, f"kept in {path}")
-
-    def _calibration_source(self) -> str:
-        return self._infos[self.camera].source(*SIZES[self._stream.settings.resolution])
-
-
-def _frame(node: NodeInterface, camera: int) -> str:
-    return frame_parameter(node, f"~camera_{CAMERAS[camera]}_frame", f"{CAMERA_NAMES[camera]}_optical_frame")
-
-
-def _camera_name(node: NodeInterface, camera: int) -> str:
-    """Name of a camera in calibration files; the namespace of the robot tells several apart."""
-    return camera_name(f"{node.namespace}nao_camera_{CAMERAS[camera]}")
 
 
 def _package_folder(package: str) -> str:

@@ -6,7 +6,7 @@ import threading
 from typing import Any
 
 import rospy
-from geometry_msgs.msg import Pose2D, Twist
+from geometry_msgs.msg import Pose2D, Twist, Vector3
 from std_srvs.srv import Empty
 
 from naoqi.errors import NaoError, RobotError
@@ -74,9 +74,7 @@ class WalkTopics:
     def go_at(self, x: float, y: float, yaw: float) -> None:
         """Walk with shares -1..1 of the top speeds."""
         self._own_walk()
-        command = Twist()
-        command.linear.x, command.linear.y, command.angular.z = x, y, yaw
-        self._commands.publish(command)
+        self._commands.publish(Twist(Vector3(x, y, 0.0), Vector3(0.0, 0.0, yaw)))
 
     def walking(self) -> bool:
         return bool(self._robot.proxy(MOTION).call_async("moveIsActive").result(timeout=QUICK_LIMIT))

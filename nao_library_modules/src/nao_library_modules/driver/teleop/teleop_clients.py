@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 import rospy
 from actionlib_msgs.msg import GoalStatus
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, Vector3
 from std_msgs.msg import String
 from std_srvs.srv import Empty
 
@@ -52,9 +52,7 @@ class TeleopClients:
     # --- at once --------------------------------------------------------------------------------------------------
 
     def walk(self, velocity: Velocity) -> None:
-        twist = Twist()
-        twist.linear.x, twist.linear.y, twist.angular.z = velocity.x, velocity.y, velocity.theta
-        self._cmd_vel.publish(twist)
+        self._cmd_vel.publish(Twist(Vector3(velocity.x, velocity.y, 0.0), Vector3(0.0, 0.0, velocity.theta)))
 
     def turn_head(self, angles: Sequence[float]) -> None:
         """Turn the head to yaw and pitch, rad."""
