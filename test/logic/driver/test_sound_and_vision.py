@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from std_msgs.msg import Header
@@ -22,7 +23,8 @@ from nao_library_modules.driver.audio.speech_settings import (
 )
 from nao_library_modules.driver.sensors import vision_values as vision
 from nao_library_modules.driver.sensors.vision_messages import to_face, to_landmarks, to_movement
-from nao_library_modules.driver.sensors.vision_values import Face, Landmark, MovementReader, Shape, View
+from nao_library_modules.driver.sensors.vision_values import Face, MovementReader
+from nao_library_modules.vision.detection.events import FACE, LANDMARK, Detection, DetectionArray
 from nao_library_msgs.msg import FaceDetected
 from naoqi.errors import NaoError
 
@@ -143,12 +145,16 @@ MOUTH = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6] + [0.0] * 10
 EXTRA = [3, 0.75, "ada", LEFT_EYE, RIGHT_EYE, [], [], [0.5, 0.6, 0.7, 0.8, 0.9, 1.0], MOUTH]
 
 
+def shape(seen):
+    return seen.alpha, seen.beta, seen.size_x, seen.size_y
+
+
 def test_faces_with_all_their_points_and_what_is_new_about_them_is_no_face():
     second = [[0, -0.3, 0.0, 0.1, 0.1], [4, 0.0, ""]]
     value = [STAMP, [[[0, 0.1, -0.2, 0.15, 0.18], EXTRA], second, [2, ["ada"]]], TORSO, FEET, 1]
     view, (face, other) = vision.read_faces(value)
-    assert view == View(12.5, 1, tuple(TORSO), tuple(FEET))
-    assert face.shape == Shape(0.1, -0.2, 0.15, 0.18)
+    assert (view.time, view.camera, view.in_torso, view.in_robot) == (12.5, 1, tuple(TORSO), tuple(FEET))
+    assert shape(face.shape) == (0.1, -0.2, 0.15, 0.18)
     assert (face.number, face.score, face.label) == (3, 0.75, "ada")
     assert face.points["left_eye_earSideLimit"] == (0.04, 0.05)
     assert face.points["right_eye_noseSideLimit"] == (-0.02, -0.03)
@@ -160,16 +166,19 @@ def test_faces_with_all_their_points_and_what_is_new_about_them_is_no_face():
 
 def test_landmarks_are_read_and_their_number_may_be_bare():
     marks = [[[1, 0.1, 0.2, 0.05, 0.06, 0.0], [84]], [[1, -0.1, 0.3, 0.07, 0.08, 0.0], 119]]
-    view, found = vision.read_landmarks([STAMP, marks, TORSO, FEET, "CameraBottom"])
-    assert (view.time, view.camera, view.in_robot) == (12.5, 1, tuple(FEET))
-    assert found == [Landmark(Shape(0.1, 0.2, 0.05, 0.06), 84), Landmark(Shape(-0.1, 0.3, 0.07, 0.08), 119)]
+    seen = vision.read_landmarks([STAMP, marks, TORSO, FEET, "CameraBottom"])
+    assert (seen.time, seen.camera, seen.in_robot) == (12.5, 1, tuple(FEET))
+    told = [(mark.name, shape(mark)) for mark in seen.detections]
+    assert told == [("84", (0.1, 0.2, 0.05, 0.06)), ("119", (-0.1, 0.3, 0.07, 0.08))]
+    older = vision.read_landmarks([STAMP, marks])  # of a robot that does not tell where its camera is
+    assert (older.camera, older.in_torso, older.detections) == (0, (0.0,) * 6, seen.detections)
 
 
 def test_nothing_seen_is_none():
     for value in ([], None, [STAMP]):
         assert vision.read_faces(value) is None and MovementReader().read(value) is None
     assert vision.read_landmarks([]) is None
-    for empty in ([[]], [[4]]):
+    for empty in ([[]], [[4]], 5):
         assert vision.read_faces([STAMP, empty, TORSO, FEET, 0]) is None
     assert vision.read_landmarks([STAMP, [], TORSO, FEET, "CameraTop"]) is None
     assert MovementReader().read([STAMP, [], TORSO, FEET, 0]) is None
@@ -182,7 +191,7 @@ def movement(time, *clusters):
 def test_what_moved_and_how_fast_from_one_time_to_the_next():
     reader = MovementReader()
     first = reader.read(movement(5.0, ([0.2, 0.1], [0.25, 0.05, 0.1, 0.1], 0.5), ([-0.3, 0.0], [0, 0, 0.1, 0.1], 0.5)))
-    assert first.points == ((0.2, 0.1), (-0.3, 0.0)) and first.view == View(5.0, 0, tuple(TORSO), tuple(FEET))
+    assert first.points == ((0.2, 0.1), (-0.3, 0.0)) and (first.view.time, first.view.camera) == (5.0, 0)
     assert first.centre == (pytest.approx(-0.05), pytest.approx(0.05))
     assert first.velocity == (0.0, 0.0) and first.velocities == ((0.0, 0.0), (0.0, 0.0))
     then = reader.read(movement(5.2, ([-0.3, 0.02], [0, 0, 0.1, 0.1], 0.5), ([0.3, 0.1], [0, 0, 0.1, 0.1], 0.5)))
@@ -205,13 +214,14 @@ def test_what_moves_more_counts_more_and_the_layout_of_robots_before_2_0():
     assert [(each.x, each.y) for each in message.points_speeds] == [(0.3, 0.4), (0.7, 0.8)]
 
 
-VIEW = View(5.0, 1, (0.1, 0.2, 0.3, 0.0, 0.0, math.pi / 2), (0.4, 0.5, 0.6, math.pi, 0.0, 0.0))
+VIEW = DetectionArray(5.0, 1, (0.1, 0.2, 0.3, 0.0, 0.0, math.pi / 2), (0.4, 0.5, 0.6, math.pi, 0.0, 0.0), ())
 
 
 def test_every_point_of_a_face_has_its_field():
     names = [f"{part}_{point}" for part, points in vision.PARTS for point in points]
     points = {name: (0.01 * place, -0.01 * place) for place, name in enumerate(names)}
-    message = to_face(Face(Shape(0.1, -0.2, 0.15, 0.18), 3, 0.75, "ada", points), VIEW, HEADER)
+    seen = Detection(FACE, "ada", "#3", 0.75, 0.1, -0.2, 0.15, 0.18)
+    message = to_face(Face(seen, 3, 0.75, "ada", points), VIEW, HEADER)
     found = {name: (getattr(message, f"{name}_x").data, getattr(message, f"{name}_y").data) for name in names}
     assert found == points
     fields = {name for name in FaceDetected.__slots__ if name.endswith(("_x", "_y"))}
@@ -222,8 +232,9 @@ def test_every_point_of_a_face_has_its_field():
 
 
 def test_landmarks_are_in_one_message_with_the_poses_of_the_camera():
-    marks = [Landmark(Shape(0.1, 0.2, 0.05, 0.06), 84), Landmark(Shape(-0.1, 0.3, 0.07, 0.08), 119)]
-    message = to_landmarks(marks, VIEW, HEADER)
+    shapes = {"84": (0.1, 0.2, 0.05, 0.06), "119": (-0.1, 0.3, 0.07, 0.08)}
+    marks = tuple(Detection(LANDMARK, name, name, 1.0, *angles) for name, angles in shapes.items())
+    message = to_landmarks(replace(VIEW, detections=marks), HEADER)
     assert [each.data for each in message.mark_ids] == [84, 119]
     assert [each.data for each in message.shape_beta] == [0.2, 0.3]
     assert [each.data for each in message.shape_sizex] == [0.05, 0.07]

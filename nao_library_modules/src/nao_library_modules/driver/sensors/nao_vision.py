@@ -22,11 +22,12 @@ from ...robot.image_clock import ImageClock
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
+from ...vision.detection.events import DetectionArray
 from ..base.extractor import Extractor, ExtractorKind
 from ..base.node import name_for_robot, publish
 from ..camera.image_messages import header_of
 from .vision_messages import to_face, to_landmarks, to_movement
-from .vision_values import MovementReader, View, read_faces, read_landmarks
+from .vision_values import MovementReader, read_faces, read_landmarks
 
 FACES = ExtractorKind("face detection", "ALFaceDetection", "FaceDetected")
 LANDMARKS = ExtractorKind("landmark detection", "ALLandMarkDetection", "LandmarkDetected")
@@ -138,10 +139,9 @@ class NaoVisionServices:
                 publish(self._faces_topic, to_face(face, view, header))
 
     def _on_landmarks(self, value: Any) -> None:
-        found = read_landmarks(value)
-        if found is not None:
-            view, marks = found
-            publish(self._landmarks_topic, to_landmarks(marks, view, self._header(LANDMARKS, view)))
+        seen = read_landmarks(value)
+        if seen is not None:
+            publish(self._landmarks_topic, to_landmarks(seen, self._header(LANDMARKS, seen)))
 
     def _on_movement(self, value: Any) -> None:
         with self._lock:
@@ -149,7 +149,7 @@ class NaoVisionServices:
         if movement is not None:
             publish(self._movement_topic, to_movement(movement, self._header(MOVEMENT, movement.view)))
 
-    def _header(self, kind: ExtractorKind, view: View | None) -> Header:
+    def _header(self, kind: ExtractorKind, view: DetectionArray | None) -> Header:
         """Header of a detection; without a view, of now and the top camera."""
         frame = f"{self._prefix}{CAMERA_NAMES[TOP if view is None else view.camera]}_optical_frame"
         if view is None:

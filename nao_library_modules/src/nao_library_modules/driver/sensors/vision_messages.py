@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from geometry_msgs.msg import Point
 from std_msgs.msg import Float32, Header, Int32
 
@@ -11,15 +9,16 @@ from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetecte
 
 from ...nao.camera_facts import CAMERA_NAMES
 from ...ros.robot_frames import pose_of
-from .vision_values import Face, Landmark, Movement, View
+from ...vision.detection.events import DetectionArray
+from .vision_values import Face, Movement
 
 
-def to_face(face: Face, view: View, header: Header) -> FaceDetected:
+def to_face(face: Face, view: DetectionArray, header: Header) -> FaceDetected:
     """A face; points that the robot does not report are 0."""
     message = FaceDetected(header=header)
     message.face_id.data, message.score_reco.data, message.face_label.data = face.number, face.score, face.label
     message.shape_alpha.data, message.shape_beta.data = face.shape.alpha, face.shape.beta
-    message.shape_sizeX.data, message.shape_sizeY.data = face.shape.width, face.shape.height
+    message.shape_sizeX.data, message.shape_sizeY.data = face.shape.size_x, face.shape.size_y
     for name, (x, y) in face.points.items():
         getattr(message, f"{name}_x").data, getattr(message, f"{name}_y").data = x, y
     message.camera_0_pose, message.camera_1_pose = pose_of(view.in_torso), pose_of(view.in_robot)
@@ -27,15 +26,15 @@ def to_face(face: Face, view: View, header: Header) -> FaceDetected:
     return message
 
 
-def to_landmarks(marks: Sequence[Landmark], view: View, header: Header) -> LandmarkDetected:
+def to_landmarks(seen: DetectionArray, header: Header) -> LandmarkDetected:
     message = LandmarkDetected(header=header)
-    message.mark_ids = [Int32(mark.number) for mark in marks]
-    message.shape_alpha = [Float32(mark.shape.alpha) for mark in marks]
-    message.shape_beta = [Float32(mark.shape.beta) for mark in marks]
-    message.shape_sizex = [Float32(mark.shape.width) for mark in marks]
-    message.shape_sizey = [Float32(mark.shape.height) for mark in marks]
-    message.camera_local_pose, message.camera_world_pose = pose_of(view.in_torso), pose_of(view.in_robot)
-    message.camera_name.data = CAMERA_NAMES[view.camera]
+    message.mark_ids = [Int32(int(mark.name)) for mark in seen.detections]
+    message.shape_alpha = [Float32(mark.alpha) for mark in seen.detections]
+    message.shape_beta = [Float32(mark.beta) for mark in seen.detections]
+    message.shape_sizex = [Float32(mark.size_x) for mark in seen.detections]
+    message.shape_sizey = [Float32(mark.size_y) for mark in seen.detections]
+    message.camera_local_pose, message.camera_world_pose = pose_of(seen.in_torso), pose_of(seen.in_robot)
+    message.camera_name.data = CAMERA_NAMES[seen.camera]
     return message
 
 

@@ -1,13 +1,20 @@
-"""Detections of NAOqi's vision modules, from the values of their events. No ROS."""
+"""Detections of NAOqi's vision modules, as the driver's messages have them, from the values of their events. No ROS."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Tuple
 
-from ...nao.camera_facts import TOP, camera_number
+from ...nao.camera_facts import TOP
+from ...vision.detection.events import (
+    Detection,
+    DetectionArray,
+    face_detections,
+    landmark_detections,
+    movement_detections,
+)
 
 Pair = Tuple[float, float]
 
@@ -43,33 +50,15 @@ PARTS = (
 """Parts of a face and their points, in the order of the event; message fields are named after them."""
 LONGEST_STEP = 0.5
 """s between two events above which velocities are unknown."""
-
-
-@dataclass(frozen=True)
-class View:
-    """Time and camera of a picture."""
-
-    time: float  # s, the robot's clock
-    camera: int  # NAOqi's number
-    in_torso: tuple[float, ...]  # pose of the camera: x, y, z in m, roll, pitch, yaw in rad
-    in_robot: tuple[float, ...]  # the same in FRAME_ROBOT, between the feet
-
-
-@dataclass(frozen=True)
-class Shape:
-    """Where something is, seen from the camera, rad."""
-
-    alpha: float  # of the centre, positive to the left
-    beta: float  # of the centre, positive downwards
-    width: float
-    height: float
+NOT_TOLD = ((0.0,) * 6, (0.0,) * 6, TOP)
+"""What stands for the end of an event that lacks it: poses of the camera in torso and FRAME_ROBOT, and which it is."""
 
 
 @dataclass(frozen=True)
 class Face:
     """A face."""
 
-    shape: Shape
+    shape: Detection
     number: int
     score: float  # of the recognition, 0 to 1
     label: str  # name of the person; empty if not known
@@ -77,45 +66,38 @@ class Face:
 
 
 @dataclass(frozen=True)
-class Landmark:
-    """A mark and its number."""
-
-    shape: Shape
-    number: int
-
-
-@dataclass(frozen=True)
 class Movement:
     """Movement in a picture; positions are alpha, beta in rad, velocities in rad/s."""
 
-    view: View | None  # None if the robot does not report it
+    view: DetectionArray | None  # None if the robot does not report it
     centre: Pair  # mean
     velocity: Pair  # mean
     points: tuple[Pair, ...]  # of each part that moved
     velocities: tuple[Pair, ...]  # of the same parts
 
 
-def read_faces(value: Any) -> tuple[View, list[Face]] | None:
-    """Faces from [[s, us], [face, ..., recognition], camera in torso, in robot, camera]; None if there are none."""
-    if not _is_list(value, 2) or not _is_list(value[1], 1):
+def _seen(read: Callable[[Any], DetectionArray], value: Any) -> DetectionArray | None:
+    """What an event tells, which may lack its end; None if it tells of nothing, or is no such event."""
+    try:
+        seen = read([*value, *NOT_TOLD[len(value) - 2 :]]) if value else None
+    except (TypeError, ValueError):
+        return None
+    return seen if seen is not None and seen.detections else None
+
+
+def read_faces(value: Any) -> tuple[DetectionArray, list[Face]] | None:
+    """Faces of an event, as `face_detections` describes it; None if there are none."""
+    seen = _seen(face_detections, value)
+    if seen is None:
         return None
     # Behind the faces comes what the recognition has to say over time: that has no shape.
-    faces = [_face(each) for each in value[1] if _is_list(each, 2) and _is_list(each[0], 5)]
-    return (_view(value), faces) if faces else None
+    extras = [each[1] for each in value[1] if len(each) == 2 and _is_list(each[0], 0)]
+    return seen, [_face(shape, extra) for shape, extra in zip(seen.detections, extras)]
 
 
-def read_landmarks(value: Any) -> tuple[View, list[Landmark]] | None:
-    """Landmarks from an event; None if there are none.
-
-    `value`: [[s, us], [[[1, alpha, beta, width, height, heading], [number]], ...], camera in torso, camera in robot,
-    name of the camera], or [].
-    """
-    if not _is_list(value, 2) or not _is_list(value[1], 1):
-        return None
-    marks = []
-    for shape, number in (each[:2] for each in value[1] if _is_list(each, 2) and _is_list(each[0], 5)):
-        marks.append(Landmark(_shape(shape), int(number[0] if _is_list(number, 1) else number)))
-    return (_view(value), marks) if marks else None
+def read_landmarks(value: Any) -> DetectionArray | None:
+    """Landmarks of an event, as `landmark_detections` describes it; None if there are none."""
+    return _seen(landmark_detections, value)
 
 
 class MovementReader:
@@ -125,21 +107,17 @@ class MovementReader:
         self._last: tuple[float, tuple[Pair, ...], Pair] | None = None
 
     def read(self, value: Any) -> Movement | None:
-        """Movement from the value in the robot's memory; None if there is none.
+        """Movement from the value in the robot's memory, as `movement_detections` describes it; None if there is none.
 
-        `value`: [[s, us], [[[alpha, beta], [x, y, width, height], share], ...], camera in torso, camera in robot,
-        camera]; of NAOqi before 2.0 [[centre, velocity, [point, ...], [velocity, ...]]].
+        The value of NAOqi before 2.0: [[centre, velocity, [point, ...], [velocity, ...]]].
         """
         if _is_list(value, 1) and _is_list(value[0], 4):
             return _former_movement(value[0])
-        if not _is_list(value, 2) or not _is_list(value[1], 1):
+        view = _seen(movement_detections, value)
+        if view is None:
             return None
-        clusters = [each for each in value[1] if _is_list(each, 2) and _is_list(each[0], 2)]
-        if not clusters:
-            return None
-        view = _view(value)
-        points = tuple((float(each[0][0]), float(each[0][1])) for each in clusters)
-        centre = _centre(points, [_extent(each) for each in clusters])
+        points = tuple((each.alpha, each.beta) for each in view.detections)
+        centre = _centre(points, [_extent(each) for each in value[1]])
         velocity, velocities = self._velocities(view.time, points, centre)
         self._last = (view.time, points, centre)
         return Movement(view, centre, velocity, points, velocities)
@@ -163,9 +141,8 @@ def _velocity(begin: Pair, end: Pair, step: float) -> Pair:
 def _extent(cluster: Sequence[Any]) -> float:
     """Size of a cluster in the picture, in any unit."""
     region = cluster[1]
-    area = abs(float(region[2]) * float(region[3])) if _is_list(region, 4) else 1.0
-    share = float(cluster[2]) if len(cluster) > 2 and not _is_list(cluster[2], 0) else 1.0
-    return area * share
+    share = 1.0 if _is_list(cluster[2], 0) else float(cluster[2])
+    return abs(float(region[-2]) * float(region[-1])) * share
 
 
 def _centre(points: Sequence[Pair], weights: Sequence[float]) -> Pair:
@@ -183,35 +160,14 @@ def _former_movement(entry: Sequence[Any]) -> Movement:
     return Movement(None, centre, velocity, tuple(map(_pair, entry[2])), tuple(map(_pair, entry[3])))
 
 
-def _face(entry: Sequence[Any]) -> Face:
-    shape, extra = _shape(entry[0]), entry[1]
-    number, score, label = (*extra[:3], *(0, 0.0, "")[len(extra) :])
+def _face(shape: Detection, extra: Sequence[Any]) -> Face:
+    number, score, label = extra[:3]
     points = {}
     for (part, names), values in zip(PARTS, extra[3:]):
         if _is_list(values, 2):
             pairs = zip(names, zip(values[::2], values[1::2]))
             points.update({f"{part}_{name}": (float(x), float(y)) for name, (x, y) in pairs})
     return Face(shape, int(number), float(score), str(label), points)
-
-
-def _shape(values: Sequence[Any]) -> Shape:
-    return Shape(*(float(each) for each in values[1:5]))
-
-
-def _view(value: Sequence[Any]) -> View:
-    stamp = value[0] if _is_list(value[0], 2) else (0, 0)
-    poses = [_pose(value[place]) if len(value) > place else (0.0,) * 6 for place in (2, 3)]
-    return View(stamp[0] + 1e-6 * stamp[1], _camera(value[4] if len(value) > 4 else TOP), *poses)
-
-
-def _camera(value: Any) -> int:
-    """Number of a camera given by number or name; the top one for an unknown one."""
-    number = camera_number(value)
-    return TOP if number is None else number
-
-
-def _pose(value: Any) -> tuple[float, ...]:
-    return tuple(float(each) for each in value) if _is_list(value, 6) else (0.0,) * 6
 
 
 def _pair(value: Sequence[Any]) -> Pair:

@@ -131,12 +131,12 @@ def _ball(content: Any) -> list[Detection]:
 
 
 def _landmarks(content: Any) -> list[Detection]:
-    """From LandmarkDetected: [[[1, alpha, beta, width, height, heading], [number]], ...]."""
+    """From LandmarkDetected: [[[1, alpha, beta, width, height, heading], [number]], ...]; the number may be bare."""
     detections = []
-    for shape, (number, *_) in content:
+    for shape, number in content:
         _, alpha, beta, width, height, *heading = _finite(shape)
         turn = heading[0] if heading else 0.0
-        name = str(int(number))
+        name = str(int(number[0] if isinstance(number, (list, tuple)) else number))
         detections.append(Detection(LANDMARK, name, name, 1.0, alpha, beta, width, height, turn))
     return detections
 
