@@ -137,10 +137,8 @@ class RobotSpeech:
             values = {name: str(count) for name, count in self._counts.items()}
             values["waiting"] = str(len(self._waiting))
             values["last error"] = self._last_error
-            current = self._current
-        if current is not None:
-            return Report(Level.OK, "speaks", values)
-        return Report(Level.OK, "ready for texts", values)
+            speaks = self._current is not None
+        return Report(Level.OK, "speaks" if speaks else "ready for texts", values)
 
     def close(self) -> None:
         """Be silent, now and for all texts to come, and restore the voice."""

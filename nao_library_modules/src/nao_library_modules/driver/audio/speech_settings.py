@@ -56,7 +56,7 @@ def given_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
     given: dict[str, Any] = {}
     for name in ("voice", "language"):
         if name in parameters:
-            given[name] = _text(name, parameters[name])
+            given[name] = _checked(name, parameters[name], str, "a text")
     if "volume" in parameters:
         given["volume"] = percent(parameters["volume"])
     if "vocabulary" in parameters:
@@ -64,7 +64,7 @@ def given_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
     for name, former in FORMER_NAMES.items():
         for each in (name, former):  # the node takes former names away when it has read them: one there is new
             if each in parameters:
-                given[name] = _switch(each, parameters[each])
+                given[name] = _checked(each, parameters[each], bool, "true or false")
     return given
 
 
@@ -104,13 +104,7 @@ def _vocabulary(value: Any) -> str:
     raise NaoError(f"~vocabulary is {value!r}: a text as 'yes / no', or a list of texts")
 
 
-def _text(name: str, value: Any) -> str:
-    if not isinstance(value, str):
-        raise NaoError(f"~{name} is {value!r}: a text")
-    return value
-
-
-def _switch(name: str, value: Any) -> bool:
-    if not isinstance(value, bool):
-        raise NaoError(f"~{name} is {value!r}: true or false")
+def _checked(name: str, value: Any, kind: type, allowed: str) -> Any:
+    if not isinstance(value, kind):
+        raise NaoError(f"~{name} is {value!r}: {allowed}")
     return value

@@ -55,8 +55,6 @@ class CameraTopics:
         """Raises NaoError for a wrong parameter. The robot need not be connected yet.
 
         Args:
-            robot: Gives proxies and the connection.
-            node: Of the topics.
             camera: NAOqi's number.
             folder: Prefix of the topics, with its slash.
             part: Prefix of the parameters; may be empty.

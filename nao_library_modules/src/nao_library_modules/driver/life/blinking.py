@@ -73,15 +73,8 @@ def blink(
 ) -> bool:
     """Blink until the interrupt comes; the eyes have the background colour then.
 
-    Returns whether a newer goal replaces this one. Raises NaoError if the robot refuses or is lost.
-
-    Args:
-        robot: Gives proxies.
-        blinks: Colours and times.
-        clock: Time of holds and pauses.
-        interrupt: Ends it.
-        tell: Gets the colour of each blink that begins.
-        chance: Picks colours and pauses.
+    `clock` is the time of holds and pauses. `tell` gets the colour of each blink that begins. `chance` picks colours
+    and pauses. Returns whether a newer goal replaces this one. Raises NaoError if the robot refuses or is lost.
     """
     third = blinks.duration / 3.0
     try:

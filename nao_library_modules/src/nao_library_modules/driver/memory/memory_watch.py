@@ -39,7 +39,6 @@ class MemoryWatch:
         """Watch nothing yet; the robot need not be connected.
 
         Args:
-            robot: Gives proxies and the connection.
             clock: Time base of rates.
             make_topic: Opens a topic, see `WatchedKey`.
             largest: Most keys that may be watched at once.
@@ -184,7 +183,6 @@ class MemoryWatch:
 
     def _look(self) -> float | None:
         """Do what is due; returns s until the next time, None if that does not work now."""
-        problem = ""
         try:
             if self._robot.connection.state == "connected":
                 with self._work:

@@ -83,11 +83,11 @@ class NaoMemory:
         self._kept = node_file(self._node.name)
         kept = self._kept.load()
         self._watch.watch(rules if kept is None else [MemoryRule(**told) for told in kept])
-        self._serve("~watch", WatchMemory, WatchMemoryResponse, self._on_watch)
-        self._serve("~unwatch", UnwatchMemory, UnwatchMemoryResponse, self._on_unwatch)
-        self._serve("~get", GetMemory, GetMemoryResponse, self._on_get)
-        self._serve("~set", SetMemory, SetMemoryResponse, self._on_set)
-        self._serve("~list", ListMemory, ListMemoryResponse, self._on_list)
+        self._serve("~watch", WatchMemory, self._on_watch)
+        self._serve("~unwatch", UnwatchMemory, self._on_unwatch)
+        self._serve("~get", GetMemory, self._on_get)
+        self._serve("~set", SetMemory, self._on_set)
+        self._serve("~list", ListMemory, self._on_list)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {"memory": self._watch.report}
@@ -145,14 +145,14 @@ class NaoMemory:
         names = [self._resolved(topics.get(key, "")) for key in keys]
         return ListMemoryResponse(True, "", keys, [known[key] for key in keys], names)
 
-    def _serve(self, name: str, kind: type, response: type, answer: Callable[[Any], Any]) -> None:
+    def _serve(self, name: str, kind: type, answer: Callable[[Any], Any]) -> None:
         """Offer a service whose response reports errors."""
 
         def serve(request: Any) -> Any:
             try:
                 return answer(request)
             except NaoError as error:
-                return response(success=False, message=str(error))
+                return kind._response_class(success=False, message=str(error))
 
         self._node.service(name, kind, serve)
 

@@ -40,8 +40,6 @@ MOVEMENT = ExtractorKind(
 QUEUE = 10
 LEARN_LIMIT = 30.0
 """s that the robot may take to learn a face: it waits for a good view."""
-SENSITIVITY_METHODS = ("setColorSensitivity", "setSensitivity")
-"""Newer name first."""
 
 
 class NaoVisionServices:
@@ -122,11 +120,10 @@ class NaoVisionServices:
         """Set the chosen sensitivity, if any; raises NaoError."""
         if self._sensitivity is None:
             return
-        newer, older = SENSITIVITY_METHODS
         try:
-            self._movement.call(newer, self._sensitivity)
-        except (UnknownMethod, BadArguments):
-            self._movement.call(older, self._sensitivity)
+            self._movement.call("setColorSensitivity", self._sensitivity)
+        except (UnknownMethod, BadArguments):  # an older robot, with the older name
+            self._movement.call("setSensitivity", self._sensitivity)
 
     # --- events, in threads of libqi ------------------------------------------------------------------------------
 
