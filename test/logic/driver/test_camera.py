@@ -15,8 +15,8 @@ from nao_library_modules.driver.camera.camera_calibration import Calibration, fr
 from nao_library_modules.driver.camera.camera_formats import Picture, read_picture
 from nao_library_modules.driver.camera.camera_info_files import camera_name, path_of, write
 from nao_library_modules.driver.camera.camera_infos import CameraInfos
-from nao_library_modules.driver.camera.camera_rate import PictureRate
 from nao_library_modules.driver.camera.camera_settings import changed_tunings, fields_of, settled, stream_settings
+from nao_library_modules.driver.camera.camera_stream import PictureRate
 from nao_library_modules.driver.camera.camera_subscriber import StreamSettings
 from nao_library_modules.driver.camera.image_compression import compress
 from nao_library_modules.driver.camera.image_messages import from_info, header_of, to_compressed, to_image, to_info
