@@ -14,6 +14,7 @@ import operator
 import threading
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
+from functools import reduce
 from typing import Any, Callable
 
 from .failures import PlanError
@@ -37,10 +38,13 @@ class AnyFluent(ABC):
 
     Comparing and computing with `<`, `<=`, `>`, `>=`, `+`, `-`, `*`, `/`, `&`, `|` and `~` makes networks. `==` stays
     Python's own (fluents are kept in sets): write `fluent.eq(value)`.
+
+    `inputs`: what it is computed from: it pulses when they do.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, inputs: Iterable[AnyFluent] = ()) -> None:
         self.name = name
+        self._inputs = tuple(inputs)
 
     @property
     @abstractmethod
@@ -48,21 +52,23 @@ class AnyFluent(ABC):
         """The value now; thread-safe."""
 
     @property
-    @abstractmethod
     def pulses(self) -> int:
         """Number of changes and calls of `pulse` so far."""
+        return sum(each.pulses for each in self._inputs)
 
-    @abstractmethod
     def listen(self, listener: Listener) -> None:
         """Call something at every pulse, in the thread of the change: it has to be quick and may not block."""
+        for each in self._inputs:
+            each.listen(listener)
 
-    @abstractmethod
     def unlisten(self, listener: Listener) -> None:
         """Call it no longer."""
+        for each in self._inputs:
+            each.unlisten(listener)
 
     def eq(self, other: Any) -> AnyFluent:
         """True while the values are equal."""
-        return fl_funcall(operator.eq, self, other, name=f"{self.name} == {_name(other)}")
+        return fl_eq(self, other)
 
     __lt__, __le__ = _operator(operator.lt, "{} < {}"), _operator(operator.le, "{} <= {}")
     __gt__, __ge__ = _operator(operator.gt, "{} > {}"), _operator(operator.ge, "{} >= {}")
@@ -146,26 +152,13 @@ class Network(AnyFluent):
     """A fluent computed from others, on request."""
 
     def __init__(self, function: Callable[..., Any], arguments: Iterable[Any], name: str) -> None:
-        super().__init__(name)
         self._function = function
         self._arguments = tuple(arguments)
-        self._inputs = tuple(each for each in self._arguments if isinstance(each, AnyFluent))
+        super().__init__(name, (each for each in self._arguments if isinstance(each, AnyFluent)))
 
     @property
     def value(self) -> Any:
-        return self._function(*(value_of(each) for each in self._arguments))
-
-    @property
-    def pulses(self) -> int:
-        return sum(each.pulses for each in self._inputs)
-
-    def listen(self, listener: Listener) -> None:
-        for each in self._inputs:
-            each.listen(listener)
-
-    def unlisten(self, listener: Listener) -> None:
-        for each in self._inputs:
-            each.unlisten(listener)
+        return self._function(*(each.value if isinstance(each, AnyFluent) else each for each in self._arguments))
 
 
 class Pulsed(AnyFluent):
@@ -177,24 +170,19 @@ class Pulsed(AnyFluent):
     def __init__(self, fluent: AnyFluent, missed: str = "once") -> None:
         if missed not in ("never", "once", "always"):
             raise PlanError(f"pulsed({fluent.name}): missed is {missed!r}: never, once or always")
-        super().__init__(f"pulsed({fluent.name})")
-        self._fluent = fluent
+        super().__init__(f"pulsed({fluent.name})", [fluent])
         self._missed = missed
         self._lock = threading.Lock()
-        self._taken = fluent.pulses
+        self._taken = self.pulses
 
     @property
     def value(self) -> bool:
-        return self._fluent.pulses > self._taken
-
-    @property
-    def pulses(self) -> int:
-        return self._fluent.pulses
+        return self.pulses > self._taken
 
     def take(self) -> bool:
         """Take one pulse; whether there was one."""
         with self._lock:
-            there = self._fluent.pulses
+            there = self.pulses
             if there == self._taken:
                 return False
             self._taken = self._taken + 1 if self._missed == "always" else there
@@ -204,13 +192,7 @@ class Pulsed(AnyFluent):
         """With "never", drop the pulses that came during the reaction to the last one."""
         with self._lock:
             if self._missed == "never":
-                self._taken = self._fluent.pulses
-
-    def listen(self, listener: Listener) -> None:
-        self._fluent.listen(listener)
-
-    def unlisten(self, listener: Listener) -> None:
-        self._fluent.unlisten(listener)
+                self._taken = self.pulses
 
 
 # --- networks ---------------------------------------------------------------------------------------------------------
@@ -224,12 +206,14 @@ def fl_funcall(function: Callable[..., Any], *arguments: Any, name: str = "") ->
 
 def fl_and(*fluents: Any) -> AnyFluent:
     """The first false value, or the last value; as Python's `and`."""
-    return Network(_all, fluents, f"({' and '.join(map(_name, fluents))})")
+    name = f"({' and '.join(map(_name, fluents))})"
+    return Network(lambda *values: reduce(lambda one, other: one and other, values, True), fluents, name)
 
 
 def fl_or(*fluents: Any) -> AnyFluent:
     """The first true value, or the last value; as Python's `or`."""
-    return Network(_any, fluents, f"({' or '.join(map(_name, fluents))})")
+    name = f"({' or '.join(map(_name, fluents))})"
+    return Network(lambda *values: reduce(lambda one, other: one or other, values, False), fluents, name)
 
 
 def fl_not(fluent: Any) -> AnyFluent:
@@ -249,24 +233,6 @@ def fl_value_changed(fluent: AnyFluent) -> AnyFluent:
 def pulsed(fluent: AnyFluent, missed: str = "once") -> Pulsed:
     """A fluent that remembers pulses; see `Pulsed`."""
     return Pulsed(fluent, missed)
-
-
-def value_of(thing: Any) -> Any:
-    return thing.value if isinstance(thing, AnyFluent) else thing
-
-
-def _all(*values: Any) -> Any:
-    for value in values:
-        if not value:
-            return value
-    return values[-1] if values else True
-
-
-def _any(*values: Any) -> Any:
-    for value in values:
-        if value:
-            return value
-    return values[-1] if values else False
 
 
 def _equal(first: Any, second: Any) -> bool:
