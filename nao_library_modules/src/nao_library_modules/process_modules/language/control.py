@@ -12,7 +12,8 @@ evaporated, and the construct waits until it has ended: nothing of a construct o
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Callable, NoReturn, Union
 
@@ -89,7 +90,7 @@ def top_level(
 
 def subtask(body: Branch, name: str = "") -> Any:
     """Run a branch as a task of its own, in this thread; its answer."""
-    return _task(_as_step(body), name=name).run()
+    return _task(body, name).run()
 
 
 # --- in order ---------------------------------------------------------------------------------------------------------
@@ -134,7 +135,7 @@ def par(*branches: Branch) -> list[Any]:
     """All at once; the answers in order. Fails with the first failure, and ends the others then."""
 
     def body() -> list[Any]:
-        return _all_of(_Started(map(_as_step, branches)))
+        return _all_of(map(_task, branches))
 
     return subtask(Step("par", body))
 
@@ -148,7 +149,7 @@ def pursue(*branches: Branch) -> Any:
     """All at once until the first one ends: its answer, or its failure. The others are ended."""
 
     def body() -> Any:
-        with _Started(map(_as_step, branches)) as tasks:
+        with _started(map(_task, branches)) as tasks:
             wait_until(lambda: any(task.state.over for task in tasks), [task.status for task in tasks])
             return _first(task for task in tasks if task.state.over).value()
 
@@ -161,7 +162,7 @@ def try_all(*branches: Branch) -> Any:
     """All at once until one succeeds: its answer. The others are ended. CompositeFailure if all fail."""
 
     def body() -> Any:
-        with _Started(map(_as_step, branches)) as tasks:
+        with _started(map(_task, branches)) as tasks:
             wait_until(lambda: _succeeded(tasks) or _bug(tasks) or _over(tasks), [task.status for task in tasks])
             bug = _bug(tasks)
             if bug:
@@ -193,8 +194,7 @@ def partial_order(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]
         for name, branch in branches.items():
             step = _as_step(branch)
             tasks[name] = _task(Step(name, lambda name=name, step=step: when_ready(name, step), step.facts))
-        started = _Started((), tasks.values())
-        return dict(zip(tasks, _all_of(started)))
+        return dict(zip(tasks, _all_of(tasks.values())))
 
     return subtask(Step("partial_order", body))
 
@@ -210,12 +210,8 @@ def wait_for(fluent: AnyFluent, timeout: float | None = None) -> Any:
     seen: list[Any] = []
 
     def look() -> bool:
-        if isinstance(fluent, Pulsed):
-            value: Any = fluent.take()
-        else:
-            value = fluent.value
-        seen[:] = [value]
-        return bool(value)
+        seen[:] = [fluent.take() if isinstance(fluent, Pulsed) else fluent.value]
+        return bool(seen[0])
 
     return seen[0] if wait_until(look, [fluent], timeout) else False
 
@@ -245,45 +241,36 @@ def whenever(fluent: AnyFluent, body: Callable[[], Any], missed: str = "once") -
 # --- inside -----------------------------------------------------------------------------------------------------------
 
 
-class _Started:
+@contextmanager
+def _started(tasks: Iterable[Task]) -> Iterator[list[Task]]:
     """Tasks that run at the same time while a block lasts; at its end the remaining ones are ended."""
-
-    def __init__(self, steps: Iterable[Step], tasks: Iterable[Task] = ()) -> None:
-        self.tasks = [*tasks, *(_task(step) for step in steps)]
-
-    def __enter__(self) -> list[Task]:
-        try:
-            for task in self.tasks:
-                task.start()
-        except BaseException:
-            self._end()
-            raise
-        return self.tasks
-
-    def __exit__(self, *_: object) -> None:
-        self._end()
-
-    def _end(self) -> None:
-        running = [task for task in self.tasks if not task.state.over]
+    tasks = list(tasks)
+    try:
+        for task in tasks:
+            task.start()
+        yield tasks
+    finally:
+        running = [task for task in tasks if not task.state.over]
         for task in running:
             task.evaporate("not needed any more")
         with uninterrupted():
-            for task in self.tasks:
+            for task in tasks:
                 while not task.join(PATIENCE):
                     log.warning("the task %s was evaporated %g s ago and does not end", task.path, PATIENCE)
 
 
-def _all_of(started: _Started) -> list[Any]:
-    with started as tasks:
-        statuses = [task.status for task in tasks]
-        wait_until(lambda: any(failed(task) for task in tasks) or _over(tasks), statuses)
-        losers = [task for task in tasks if failed(task)]
+def _all_of(tasks: Iterable[Task]) -> list[Any]:
+    with _started(tasks) as started:
+        statuses = [task.status for task in started]
+        wait_until(lambda: any(failed(task) for task in started) or _over(started), statuses)
+        losers = [task for task in started if failed(task)]
         if losers:
             _first(losers).value()
-        return [task.value() for task in tasks]
+        return [task.value() for task in started]
 
 
-def _task(step: Step, name: str = "") -> Task:
+def _task(branch: Branch, name: str = "") -> Task:
+    step = _as_step(branch)
     task = Task(name or step.name, step.call, current_task())
     task.facts.update(step.facts)
     return task
