@@ -14,6 +14,7 @@ the failure is passed up.
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, NoReturn, Tuple, Type, Union
@@ -86,18 +87,13 @@ def give(value: Any = None) -> NoReturn:
 @contextmanager
 def with_retry_counters(**counters: int) -> Iterator[None]:
     """Counters that `do_retry` counts down in this block, by name."""
-    task = current_task()
-    kept = task.scope.get(COUNTERS)
-    task.scope[COUNTERS] = {name: [left, left] for name, left in counters.items()}
-    if kept is not None:
-        task.scope[COUNTERS] = {**kept, **task.scope[COUNTERS]}
+    scope = current_task().scope
+    kept = scope.get(COUNTERS, {})
+    scope[COUNTERS] = {**kept, **{name: [left, left] for name, left in counters.items()}}
     try:
         yield
     finally:
-        if kept is None:
-            del task.scope[COUNTERS]
-        else:
-            task.scope[COUNTERS] = kept
+        scope[COUNTERS] = kept
 
 
 def do_retry(counter: str, before: Callable[[], Any] | None = None) -> None:
@@ -126,21 +122,20 @@ def reset_counter(counter: str) -> None:
 
 def _check_handling(what: str) -> None:
     """PlanError outside of a handler: the signal would leave the plan."""
-    task: Task | None = current_task()
-    while task is not None:
-        if HANDLING in task.scope:
-            return
-        task = task.parent
-    raise PlanError(f"{what} outside of a handler: see with_failure_handling")
+    if not any(HANDLING in scope for scope in _scopes()):
+        raise PlanError(f"{what} outside of a handler: see with_failure_handling")
 
 
 def _counter(name: str) -> list[int]:
-    known: list[str] = []
+    counters = ChainMap(*(scope.get(COUNTERS, {}) for scope in _scopes()))
+    if name not in counters:
+        raise PlanError(f"no retry counter {name!r}{of_those(name, counters)}; see with_retry_counters")
+    return counters[name]
+
+
+def _scopes() -> Iterator[dict[str, Any]]:
+    """Variables of this task and those above, the innermost first."""
     task: Task | None = current_task()
     while task is not None:
-        counters = task.scope.get(COUNTERS, {})
-        if name in counters:
-            return counters[name]
-        known += counters
+        yield task.scope
         task = task.parent
-    raise PlanError(f"no retry counter {name!r}{of_those(name, known)}; see with_retry_counters")
