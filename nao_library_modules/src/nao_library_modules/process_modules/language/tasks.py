@@ -46,6 +46,7 @@ class Task:
         ending: Rank in the order of ends in the tree, None until then: two may end at the same time.
         facts: For the trace, by name: arguments, designators, ...
         scope: Variables of constructs for the tasks below, by name.
+        evaporating: Whether it is to end.
     """
 
     def __init__(self, name: str, body: Callable[[], Any], parent: Task | None, tree: Any = None) -> None:
@@ -66,14 +67,14 @@ class Task:
         self._body = body
         self._flow: Flow | None = None
         self._thread: threading.Thread | None = None
-        self._evaporating = False
+        self.evaporating = False
         self._suspensions = 0
         with self.tree.lock:
             self.number = next(self.tree.numbers)
             if parent is not None:
                 parent.children = (*parent.children, self)
-                self._evaporating = parent._evaporating and parent._flow is not here()
-                self.reason = parent.reason if self._evaporating else ""
+                self.evaporating = parent.evaporating and parent._flow is not here()
+                self.reason = parent.reason if self.evaporating else ""
         self.tree.changed(self)
 
     # --- what it is ---------------------------------------------------------------------------------------------------
@@ -175,9 +176,9 @@ class Task:
     def evaporate(self, reason: str = "evaporated") -> None:
         """End it and all below; returns at once, `join` waits. Finished tasks stay as they are."""
         with self.tree.lock:
-            tasks = [task for task in self if not task.state.over and not task._evaporating]
+            tasks = [task for task in self if not task.state.over and not task.evaporating]
             for task in tasks:
-                task._evaporating = True
+                task.evaporating = True
                 task.reason = reason
             flows = {task._flow for task in tasks if task._flow is not None}
         for task in tasks:
@@ -198,10 +199,6 @@ class Task:
     def suspended(self) -> bool:
         """Whether it, or a task above, is to pause."""
         return self._suspensions > 0 or (self.parent is not None and self.parent.suspended)
-
-    @property
-    def evaporating(self) -> bool:
-        return self._evaporating
 
     # --- inside -------------------------------------------------------------------------------------------------------
 
@@ -246,7 +243,7 @@ class Task:
             if self._suspensions + by < 0:
                 raise PlanError(f"the task {self.path} is not suspended")
             self._suspensions += by
-            if not self._evaporating:  # why it ends says more
+            if not self.evaporating:  # why it ends says more
                 self.reason = reason
             changed = [task for task in self if task._flow is not None and not task.state.over]
             for task in changed:
