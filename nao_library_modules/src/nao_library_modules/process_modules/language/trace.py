@@ -50,7 +50,15 @@ class Trace:
 
     def __str__(self) -> str:
         """The tree as text, one line per task."""
-        return "\n".join(self._lines(None, 0))
+        return "\n".join(
+            f"{'  ' * depth}{MARKS[record.state]} {record.name}{_details(record)}" for record, depth in self.walk()
+        )
+
+    def walk(self, parent: int | None = None, depth: int = 0) -> Iterator[tuple[Record, int]]:
+        """The tasks in the order of the tree, each with its depth."""
+        for record in self.children(parent):
+            yield record, depth
+            yield from self.walk(record.number, depth + 1)
 
     def to_json(self) -> str:
         """The tree as JSON: {"tasks": [...]}, with a `Record` each."""
@@ -59,11 +67,6 @@ class Trace:
     @staticmethod
     def from_json(text: str) -> Trace:
         return Trace(tuple(Record(**entry) for entry in json.loads(text)["tasks"]))
-
-    def _lines(self, parent: int | None, depth: int) -> Iterator[str]:
-        for record in self.children(parent):
-            yield f"{'  ' * depth}{MARKS[record.state]} {record.name}{_details(record)}"
-            yield from self._lines(record.number, depth + 1)
 
 
 def trace_of(root: Task) -> Trace:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 from PIL import Image, ImageDraw, ImageFont
@@ -36,7 +35,7 @@ FINE = 2
 
 def draw(trace: Trace) -> Image.Image:
     """The picture of a trace; of a very long one the first tasks. Raises NaoError if it has no task."""
-    lines = list(_lines(trace, None, 0))
+    lines = list(trace.walk())
     if not lines:
         raise NaoError("a trace without a task cannot be drawn")
     left_out, lines = max(0, len(lines) - MOST_LINES), lines[:MOST_LINES]
@@ -74,12 +73,6 @@ def main(argv: list[str] | None = None) -> int:
         print(f"{options.trace}: {error}", file=sys.stderr)
         return 1
     return 0
-
-
-def _lines(trace: Trace, parent: int | None, depth: int) -> Iterator[tuple[Record, int]]:
-    for record in trace.children(parent):
-        yield record, depth
-        yield from _lines(trace, record.number, depth + 1)
 
 
 def _draw_time(pen: ImageDraw.ImageDraw, end: float, top: int, bottom: int) -> None:
