@@ -193,7 +193,7 @@ def perform(desig: Union[Designator, Command]) -> Any:
             return None
         solution = desig.reference()
         answer = solution() if callable(solution) else pm_execute_matching(desig)
-        if goal is not None and goal.goal.check is not None and not holds(goal):
+        if goal is not None and not holds(goal):
             raise GoalNotAchieved(f"{goal} does not hold after {desig}", goal=goal)
         return answer
 

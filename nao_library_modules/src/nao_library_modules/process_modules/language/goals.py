@@ -58,7 +58,7 @@ class Goal:
     """
 
     name: str
-    check: Callable[..., Any] | None
+    check: Callable[..., Any]
     parameters: tuple[str, ...]
     defaults: dict[str, Any] = field(default_factory=dict)
     plans: list[tuple[tuple[Any, ...], Plan]] = field(default_factory=list)
@@ -125,8 +125,7 @@ def achieved_by(function: Plan, goal: Goal) -> None:
 def holds(goal: Occasion | Goal, *arguments: Any) -> bool:
     """Whether an occasion is true now; False if unknown."""
     occasion = _occasion(goal, arguments)
-    check = occasion.goal.check
-    return bool(check(*occasion.arguments)) if check is not None else False
+    return bool(occasion.goal.check(*occasion.arguments))
 
 
 def perceive_state(goal: Occasion | Goal, *arguments: Any) -> dict[str, Any] | None:
@@ -148,11 +147,10 @@ def achieve(goal: Occasion | Goal, *arguments: Any) -> Any:
     occasion = _occasion(goal, arguments)
 
     def body() -> Any:
-        check = occasion.goal.check
-        if check is not None and check(*occasion.arguments):
+        if holds(occasion):
             return None
         answer = _plan_for(occasion)()
-        if check is not None and check(*occasion.arguments) is False:
+        if occasion.goal.check(*occasion.arguments) is False:
             text = f"{occasion} does not hold, although what achieves it went through"
             raise GoalNotAchieved(text, goal=occasion)
         return answer
