@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Any, Tuple, Type, Union
+from typing import Any, Type, Union
 
 from ...base.suggestion import of_those
 from .control import Branch, Step, do, pursue, subtask, wait_for
@@ -120,9 +120,6 @@ def with_policies(policies: Iterable[Policy], body: Branch) -> Any:
     return subtask(inner)
 
 
-NamedPolicies = Iterable[Tuple[str, Iterable[Any]]]
-
-
-def with_named_policies(policies: NamedPolicies, body: Branch) -> Any:
+def with_named_policies(policies: Iterable[tuple[str, Iterable[Any]]], body: Branch) -> Any:
     """As `with_policies`, with pairs of a name and parameters; PolicyNotFound if there is none of a name."""
     return with_policies([named_policy(name)(*parameters) for name, parameters in policies], body)
