@@ -15,7 +15,7 @@ import itertools
 import threading
 import time
 from collections.abc import Callable, Iterator
-from typing import Any, Iterable, Mapping, Union
+from typing import Any, ClassVar, Iterable, Mapping, Union
 
 import yaml
 
@@ -51,6 +51,9 @@ class Designator:
         quantifier: "a" for any match, "the" for the only one, "all" for all.
         resolve: Gives the solutions one by one; default: by the rules.
     """
+
+    by_rules: ClassVar[Callable[[Designator], Iterable[Any]]]
+    """Set by `rules`, which imports this module."""
 
     def __init__(
         self,
@@ -153,8 +156,8 @@ class Designator:
 
     def _has(self, place: int) -> bool:
         if self._solutions is None:
-            solutions = iter(self._resolve(self) if self._resolve is not None else _Usual.solutions(self))
-            self._solutions = itertools.islice(solutions, len(self._found), None)
+            resolve = self._resolve or Designator.by_rules
+            self._solutions = itertools.islice(resolve(self), len(self._found), None)
         while len(self._found) <= place:
             try:
                 self._found.append(next(self._solutions))
@@ -181,13 +184,11 @@ action, motion, location, object_ = KINDS
 
 
 def a(kind: str, **description: Any) -> Designator:
-    """Any match: `a(location, near=...)`."""
+    """Any match: `a(location, near=...)`, `an(action, type="opening", gripper="left")`."""
     return Designator(kind, description)
 
 
-def an(kind: str, **description: Any) -> Designator:
-    """As `a`: `an(action, type="opening", gripper="left")`."""
-    return Designator(kind, description)
+an = a
 
 
 def the(kind: str, **description: Any) -> Designator:
@@ -338,17 +339,6 @@ def _newest(desig: Designator) -> Designator:
     while desig.successor is not None:
         desig = desig.successor
     return desig
-
-
-class _Usual:
-    """Holds the default resolver."""
-
-    solutions: Callable[[Designator], Iterable[Any]]
-
-
-def resolve_by(solutions: Callable[[Designator], Iterable[Any]]) -> None:
-    """Set the default resolver; called by `rules`, which imports this module."""
-    _Usual.solutions = staticmethod(solutions)
 
 
 def _shown(value: Any) -> str:

@@ -19,7 +19,7 @@ from typing import Any
 
 from ..language.failures import DesignatorError, PlanError
 from ..language.short_text import short_repr
-from .designator import KINDS, Designator, plain_key, resolve_by
+from .designator import KINDS, Designator, plain_key
 from .patterns import Mismatch, Pattern, as_pattern
 
 MOST_SHOWN = 4
@@ -148,7 +148,7 @@ class Rules:
 
 RULES = Rules()
 """Those of this package, and what users add."""
-resolve_by(RULES.solutions)
+Designator.by_rules = RULES.solutions
 
 
 def rule(
