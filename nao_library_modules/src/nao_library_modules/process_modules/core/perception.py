@@ -13,7 +13,7 @@ from typing import Any
 from ...base.places import Place, wrapped
 from ..designators.designator import Designator, action, an, current_desig, equate, location, object_
 from ..designators.locations import next_different_location_solution
-from ..designators.objects import BELIEFS, KnownObject
+from ..designators.objects import BELIEFS
 from ..language.control import Branch, Step, do, pursue, subtask
 from ..language.failures import (
     AmbiguousPerception,
@@ -62,9 +62,8 @@ def perceive(
         if wanted == "the" and len(seen) > 1:
             raise AmbiguousPerception(desig, f"{len(seen)} were seen that fit")
         if wanted in ("all", "currently-visible"):
-            return [_designator_of(_believe(each, desig), each, desig) for each in seen]
-        best = max(seen, key=lambda each: each.confidence)
-        return equate(desig, _designator_of(_believe(best, desig), best, desig))
+            return [_designator_of(each, desig) for each in seen]
+        return equate(desig, _designator_of(max(seen, key=lambda each: each.confidence), desig))
 
     return subtask(Step(f"perceive {desig}", body))
 
@@ -130,12 +129,12 @@ def at_location(desig: Designator, body: Branch, position: AnyFluent, distance: 
     return subtask(Step(f"at {desig}", run))
 
 
-def _believe(seen: Any, desig: Designator) -> KnownObject:
+def _designator_of(seen: Any, desig: Designator) -> Designator:
+    """Stands for what was seen, which is known from now on.
+
+    Describes what the requested one describes, and the name that was seen: not the name in the beliefs.
+    """
     facts = {key: value for key, value in desig.description.items() if key not in ("type", "name", "position", "size")}
-    return BELIEFS.saw(desig["type"], seen.name, seen.position, seen.time, **facts)
-
-
-def _designator_of(thing: KnownObject, seen: Any, desig: Designator) -> Designator:
-    """Describes what the requested one describes, and the name that was seen: not the name in the beliefs."""
+    thing = BELIEFS.saw(desig["type"], seen.name, seen.position, seen.time, **facts)
     description = {**desig.description, **({"name": seen.name} if seen.name else {})}
     return Designator(object_, description, resolve=lambda _: [thing])
