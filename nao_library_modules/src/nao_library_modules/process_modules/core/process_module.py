@@ -107,14 +107,9 @@ class ProcessModule(ABC):
 
     def start(self) -> ProcessModule:
         """Run `pm_run` in a thread of its own; see `stop`."""
-        with self._lock:
-            if self._thread is not None:
-                raise ProcessModuleRunning(f"the process module {self.name} runs already")
-            self._ending = False
-            self._left.clear()
-            self._own_thread = True
-            self._thread = threading.Thread(target=self.run, name=f"process module {self.name}", daemon=True)
-        self._thread.start()
+        thread = threading.Thread(target=self.run, name=f"process module {self.name}", daemon=True)
+        self._take(thread, own=True)
+        thread.start()
         return self
 
     def stop(self) -> None:
@@ -166,6 +161,16 @@ class ProcessModule(ABC):
             self._tell(each)
 
     # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _take(self, thread: threading.Thread, own: bool) -> None:
+        """Note the thread that is about to run it; `own`: whether that ends with it."""
+        with self._lock:
+            if self._thread is not None:
+                raise ProcessModuleRunning(f"the process module {self.name} runs already")
+            self._ending = False
+            self._left.clear()
+            self._own_thread = own
+            self._thread = thread
 
     def _serve(self) -> None:
         self.on_started()
@@ -257,13 +262,7 @@ class AsynchronousProcessModule(ProcessModule):
 
 def pm_run(module: ProcessModule) -> None:
     """Run the event loop of a module in this thread, until `stop`. `with_process_modules_running` is easier."""
-    with module._lock:
-        if module._thread is not None:
-            raise ProcessModuleRunning(f"the process module {module.name} runs already")
-        module._ending = False
-        module._left.clear()
-        module._own_thread = False
-        module._thread = threading.current_thread()
+    module._take(threading.current_thread(), own=False)
     try:
         module.run()
     finally:

@@ -6,7 +6,6 @@ with with_process_modules_running(Manipulation(robot), Speech(robot), voice="spe
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,12 +24,10 @@ from ..language.failures import (
     ProcessModuleRunning,
     UnknownProcessModule,
 )
-from ..language.flow import wait_until
+from ..language.flow import Flow, wait_until
 from ..language.fluents import Fluent
 from ..language.goals import Occasion, holds
 from .process_module import ModuleState, ProcessModule, Request, execute_on
-
-log = logging.getLogger(__name__)
 
 Named = Union[ProcessModule, str]
 
@@ -232,11 +229,5 @@ def _command_of(desig: Designator) -> Command:
 
 
 def _wait_started(module: ProcessModule) -> None:
-    started = threading.Event()
-    module.status.listen(started.set)
-    try:
-        while module.state is ModuleState.OFFLINE:
-            started.wait()
-            started.clear()
-    finally:
-        module.status.unlisten(started.set)
+    # A flow of its own: also outside of plans, and the end of a plan does not cut it short.
+    Flow(module.clock).wait(lambda: module.state is not ModuleState.OFFLINE, [module.status], None)
