@@ -15,6 +15,8 @@ import numpy as np
 
 from naoqi.errors import NaoError
 
+from ...base.rotations import Quaternion, about, from_roll_pitch_yaw, rotate
+
 MARGIN = 0.02
 """rad that solutions stay away from the limits of joints: a motor does not get to its end."""
 CLOSE = 1e-4
@@ -120,7 +122,7 @@ class Chain:
                 continue
             frames.append((here, here[:3, :3] @ joint.axis))
             here = here.copy()
-            here[:3, :3] = here[:3, :3] @ _turn(joint.axis, float(angles[place]))
+            here[:3, :3] = here[:3, :3] @ _matrix(about(joint.axis.tolist(), float(angles[place])))
             place += 1
         return [*frames, (here, np.zeros(3))]
 
@@ -154,10 +156,7 @@ def _joint(joint: ElementTree.Element) -> Joint:
     origin = np.eye(4)
     place = joint.find("origin")
     if place is not None:
-        roll, pitch, yaw = _floats(place.get("rpy", "0 0 0"))
-        turns = (((0, 0, 1), yaw), ((0, 1, 0), pitch), ((1, 0, 0), roll))
-        for axis, angle in turns:
-            origin[:3, :3] = origin[:3, :3] @ _turn(np.array(axis, dtype=float), angle)
+        origin[:3, :3] = _matrix(from_roll_pitch_yaw(*_floats(place.get("rpy", "0 0 0"))))
         origin[:3, 3] = _floats(place.get("xyz", "0 0 0"))
     if joint.get("type") not in ("revolute", "continuous"):
         return Joint("", origin, np.zeros(3), 0.0, 0.0)
@@ -176,18 +175,9 @@ def _floats(text: str) -> list[float]:
     return [float(word) for word in text.split()]
 
 
-def _turn(axis: np.ndarray, angle: float) -> np.ndarray:
-    """(3, 3) rotation about a unit axis (Rodrigues)."""
-    x, y, z = axis
-    c, s = math.cos(angle), math.sin(angle)
-    t = 1.0 - c
-    return np.array(
-        [
-            [c + x * x * t, x * y * t - z * s, x * z * t + y * s],
-            [y * x * t + z * s, c + y * y * t, y * z * t - x * s],
-            [z * x * t - y * s, z * y * t + x * s, c + z * z * t],
-        ]
-    )
+def _matrix(turn: Quaternion) -> np.ndarray:
+    """(3, 3) of a rotation."""
+    return np.array([rotate(turn, axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))]).T
 
 
 def _signs(count: int) -> list[list[int]]:
