@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -92,13 +93,14 @@ class PlanActionClient:
             raise ActionlibActionTimedOut(f"there is no server for {where} after {timeout:g} s", action=self.name)
 
     def _wait_for_end(self, done: Fluent, connection: Any, limit: float | None) -> None:
-        while limit is None or limit > 0.0:
-            period = LOOK_PERIOD if limit is None else min(LOOK_PERIOD, limit)
+        left = math.inf if limit is None else limit
+        while left > 0.0:
+            period = min(LOOK_PERIOD, left)
             if wait_until(lambda: done.value, [done], period):
                 return
             if server_connection(self._client) is not connection:
                 raise LowLevelFailure(f"the server of {self.name} has gone, and its goal with it")
-            limit = None if limit is None else limit - period
+            left -= period
 
     def _look_for_server(self) -> None:
         if self._client.wait_for_server():

@@ -91,7 +91,7 @@ class RobotLink:
         self._chains: dict[str, Chain] = {}
         self._buffer = tf2_ros.Buffer()
         self._listener = tf2_ros.TransformListener(self._buffer)
-        self._subscriber = rospy.Subscriber("joint_states", JointState, self._on_joints, queue_size=1)
+        self._subscriber = rospy.Subscriber("joint_states", JointState, self._take, queue_size=1)
 
     def action(self, name: str, kind: type) -> PlanActionClient:
         """The client of an action; one for each name."""
@@ -167,10 +167,7 @@ class RobotLink:
             raise LowLevelFailure(f"the frame {of} cannot be told in {to}: {problem or 'is a driver running?'}")
         return self._buffer.lookup_transform_core(target, source, rospy.Time()).transform
 
-    def _on_joints(self, message: JointState) -> None:
-        self._take(message, learned=False)
-
-    def _take(self, state: JointState, learned: bool) -> None:
+    def _take(self, state: JointState, learned: bool = False) -> None:
         stamp, angles = state.header.stamp.to_sec(), dict(zip(state.name, state.position))
         with self._lock:
             if learned:
