@@ -10,7 +10,6 @@ from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_msgs.msg import LedFunction
 
 from ..language.failures import LightsLowLevelFailure
-from ..robot.robot_link import RobotLink
 from .robot_module import RobotModule
 
 ACTION = "NaoLights"
@@ -22,10 +21,7 @@ class Lights(RobotModule):
     """Changes the colour and the brightness of lights."""
 
     name = "lights"
-
-    def __init__(self, robot: RobotLink, name: str = "") -> None:
-        super().__init__(robot, name)
-        self.commands = {"set_color": self.set_color, "set_intensity": self.set_intensity}
+    methods = ("set_color", "set_intensity")
 
     def set_color(self, color: str, lights: Sequence[str] = (FACE,), time: float = 0.0, revert: bool = False) -> None:
         """Give lights a colour, by name or #RRGGBB; wait `time` s, then restore the former one with `revert`.

@@ -22,7 +22,7 @@ from ..language.failures import (
     PtuGoalUnreachable,
 )
 from ..language.space import Point3, head_angles
-from ..robot.robot_link import TORSO, RobotLink
+from ..robot.robot_link import TORSO
 from .robot_module import RobotModule
 
 ACTION = "joint_trajectory"
@@ -58,24 +58,21 @@ class Manipulation(RobotModule):
     """
 
     name = "manipulation"
-
-    def __init__(self, robot: RobotLink, name: str = "") -> None:
-        super().__init__(robot, name)
-        self.commands = {
-            "open_gripper": self.open_gripper,
-            "close_gripper": self.close_gripper,
-            "move_gripper": self.move_gripper,
-            "move_head": self.move_head,
-            "turn_head": self.turn_head,
-            "move_arm": self.move_arm,
-            "point_at": self.point_at,
-            "move_joints": self.move_joints,
-            "go_stable": self.go_stable,
-        }
+    methods = (
+        "open_gripper",
+        "close_gripper",
+        "move_gripper",
+        "move_head",
+        "turn_head",
+        "move_arm",
+        "point_at",
+        "move_joints",
+        "go_stable",
+    )
 
     def resources(self, command: Command) -> frozenset[str]:
         """The limbs that a command moves."""
-        side = self.side_of(command.arguments)
+        side = str(command.arguments.get("side", ""))
         arms = {f"{side} arm"} if side else {f"{each} arm" for each in SIDES}
         limbs = {"gripper": {f"{side} hand"}, "head": {"head"}, "arm": arms, "at": arms}
         needed = limbs.get(command.name.rpartition("_")[2])

@@ -24,11 +24,11 @@ class Navigation(RobotModule):
     """Walks to places; `position` is a fluent with the (Place, frame) of the last feedback of a walk."""
 
     name = "navigation"
+    methods = ("walk_to",)
 
     def __init__(self, robot: RobotLink, name: str = "") -> None:
         super().__init__(robot, name)
         self.position = Fluent("position on the way", None)
-        self.commands = {"walk_to": self.walk_to}
 
     def walk_to(self, target: Place, frame: str = ODOM) -> Place:
         """Walk to a place; returns where the robot is then, in odom. A heading of nan stands for that of the way there.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 from ...base.suggestion import of_those
@@ -14,13 +14,18 @@ from ..robot.robot_link import RobotLink
 
 
 class RobotModule(AsynchronousProcessModule):
-    """A module whose commands are functions; one more is one key-value pair in `commands`."""
+    """A module whose commands are functions; one more is one key-value pair in `commands`.
+
+    `methods`: those of its methods that are commands from the beginning.
+    """
+
+    methods: tuple[str, ...] = ()
 
     def __init__(self, robot: RobotLink, name: str = "") -> None:
         super().__init__(name)
         self.robot = robot
         self.clock = robot.clock
-        self.commands: dict[str, Callable[..., Any]] = {}
+        self.commands: dict[str, Callable[..., Any]] = {each: getattr(self, each) for each in self.methods}
 
     def execute(self, command: Command) -> Any:
         function = self.commands.get(command.name)
@@ -36,8 +41,3 @@ class RobotModule(AsynchronousProcessModule):
     def resources(self, command: Command) -> frozenset[str]:
         """One command at a time, unless a module knows better."""
         return frozenset({self.name})
-
-    @staticmethod
-    def side_of(arguments: Mapping[str, Any]) -> str:
-        """The side in a command's arguments; empty for none."""
-        return str(arguments.get("side", ""))

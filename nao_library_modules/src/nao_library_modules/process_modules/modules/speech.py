@@ -8,7 +8,6 @@ from std_msgs.msg import String
 from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
 
 from ..language.failures import SpeechLowLevelFailure
-from ..robot.robot_link import RobotLink
 from .robot_module import RobotModule
 
 TOPIC = "speech"
@@ -23,10 +22,7 @@ class Speech(RobotModule):
     """Says texts."""
 
     name = "speech"
-
-    def __init__(self, robot: RobotLink, name: str = "") -> None:
-        super().__init__(robot, name)
-        self.commands = {"say": self.say, "text_to_speech": self.text_to_speech}
+    methods = ("say", "text_to_speech")
 
     def text_to_speech(self, text: str) -> None:
         """Say a text without waiting for its end; SpeechLowLevelFailure if there is no subscriber."""

@@ -11,7 +11,6 @@ from nao_library_msgs.msg import VisionFunction
 from ...base.suggestion import of_those
 from ..language.failures import PerceptionLowLevelFailure, PerceptionObjectNotFound
 from ..language.space import Point3
-from ..robot.robot_link import RobotLink
 from .robot_module import RobotModule
 
 ACTION = "NaoVision"
@@ -45,10 +44,7 @@ class Vision(RobotModule):
     """Looks for things."""
 
     name = "vision"
-
-    def __init__(self, robot: RobotLink, name: str = "") -> None:
-        super().__init__(robot, name)
-        self.commands = {"detect": self.detect}
+    methods = ("detect",)
 
     def detect(
         self, type: str, name: str = "", timeout: float = 2.0, search: bool = False, camera: str = "", size: float = 0.0
