@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any
 
 from ..designators.designator import Designator, action
@@ -11,12 +12,11 @@ from ..designators.rules import Command, command, rule
 from ..language.failures import DesignatorError
 from ..language.settings import numbers_of_nao
 from ..language.space import Point3
-from .values import BOTH, SIDE, a_point, a_position, points_of
+from .values import BOTH, SIDE, a_point, a_position, points_of, rule_about
 
 MANIPULATION = "manipulation"
-OPENING = ("open", "to open", "opening")
-CLOSING = ("close", "to close", "closing")
 HOW = one_of("open", "close", "grasp")
+TO_LOOK = one_of("to look", "to move head", "move head", "to turn head", "turn head")
 
 
 # --- arms and the whole body ------------------------------------------------------------------------------------------
@@ -36,53 +36,36 @@ def _arm_target(desig: Designator, side: str, target: Any) -> Point3:
         raise DesignatorError(desig, f"the {side} hand is to get to {target!r}: not {allowed}") from None
 
 
-@rule(BOTH, type=one_of("moving tcp"), left_target=anything())
-def moving_left_tcp(left_target: Any, desig: Designator) -> Command:
-    """Resolve {type: moving-tcp, left-target: ...}."""
-    return command(MANIPULATION, "move_arm", side="left", target=_arm_target(desig, "left", left_target))
+def _reaching(side: str, desig: Designator, target: Any) -> Command:
+    return command(MANIPULATION, "move_arm", side=side, target=_arm_target(desig, side, target))
 
 
-@rule(BOTH, type=one_of("moving tcp"), right_target=anything())
-def moving_right_tcp(right_target: Any, desig: Designator) -> Command:
-    """Resolve {type: moving-tcp, right-target: ...}."""
-    return command(MANIPULATION, "move_arm", side="right", target=_arm_target(desig, "right", right_target))
+for _side in ("left", "right"):
+    rule_about(f"{_side}_target", partial(_reaching, _side), called=f"moving {_side} tcp", type="moving tcp")
 
 
+@rule(action, name=one_of("to move arm", "to reach", "move arm"), side=SIDE, target=anything(), called="to reach")
 @rule(BOTH, type=one_of("moving arm", "reaching"), side=SIDE, target=anything())
 def moving_arm(side: str, target: Any, desig: Designator) -> Command:
-    """Resolve {type: reaching, side: left, target: ...}."""
-    return command(MANIPULATION, "move_arm", side=side, target=_arm_target(desig, side, target))
+    return _reaching(side, desig, target)
 
 
 @rule(BOTH, type=one_of("moving joints", "moving arm joints"), angles=anything())
 def moving_joints(angles: Any, desig: Designator) -> Command:
-    """Resolve {type: moving-joints, angles: {HeadYaw: 0.5}}."""
     if not isinstance(angles, Mapping) or not angles:
         raise DesignatorError(desig, f"its angles are {angles!r}, not angles in rad by the names of joints")
     return command(MANIPULATION, "move_joints", angles=dict(angles))
 
 
+@rule(action, name=one_of("to stand", "go stable", "to go stable"), called="to stand")
 @rule(BOTH, type=one_of("parking arms", "going stable", "standing"))
 def going_stable() -> Command:
-    """Resolve {type: standing}."""
-    return command(MANIPULATION, "go_stable")
-
-
-@rule(action, name=one_of("to move arm", "to reach", "move arm"), side=SIDE, target=anything())
-def to_reach(side: str, target: Any, desig: Designator) -> Command:
-    """Resolve {name: to reach, side: left, target: [0.2, 0.1, 0.1]}."""
-    return command(MANIPULATION, "move_arm", side=side, target=_arm_target(desig, side, target))
-
-
-@rule(action, name=one_of("to stand", "go stable", "to go stable"))
-def to_stand() -> Command:
-    """Resolve {name: go stable}."""
     return command(MANIPULATION, "go_stable")
 
 
 @rule(BOTH, type=one_of("pointing"), at=anything(), side=one_of("left", "right", "").or_else(""))
 def pointing(at: Any, side: str, desig: Designator) -> Iterator[Command]:
-    """Resolve {type: pointing, at: ...}: with the nearer arm, or that of a side."""
+    """With the nearer arm, or that of a side."""
     targets = points_of(at) if isinstance(at, Designator) else [_arm_target(desig, side or "left", at)]
     for target in targets:
         yield command(MANIPULATION, "point_at", target=target, side=side)
@@ -93,49 +76,44 @@ def pointing(at: Any, side: str, desig: Designator) -> Iterator[Command]:
 
 @rule(BOTH, type="opening", gripper=SIDE)
 def opening(gripper: str) -> Command:
-    """Resolve {type: opening, gripper: left}."""
     return command(MANIPULATION, "open_gripper", side=gripper)
 
 
 @rule(BOTH, type="closing", gripper=SIDE)
 def closing(gripper: str) -> Command:
-    """Resolve {type: closing, gripper: left}."""
     return command(MANIPULATION, "close_gripper", side=gripper)
 
 
 @rule(BOTH, type="gripping", gripper=SIDE)
 def gripping(gripper: str) -> Command:
-    """Resolve {type: gripping, gripper: left}: there is to be something in the hand."""
+    """There is to be something in the hand."""
     return command(MANIPULATION, "close_gripper", side=gripper, grasp=True)
 
 
 @rule(BOTH, type=one_of("moving gripper joint"), gripper=SIDE, joint_angle=number(0.0, 1.0))
 def moving_gripper_joint(gripper: str, joint_angle: float) -> Command:
-    """Resolve {type: moving-gripper-joint, gripper: left, joint-angle: 0.5}."""
     return command(MANIPULATION, "move_gripper", side=gripper, opening=joint_angle)
 
 
-@rule(action, name=one_of(*OPENING), side=SIDE)
+@rule(action, type="trajectory", to="open", side=SIDE, called="trajectory to open")
+@rule(action, name=one_of("open", "to open", "opening"), side=SIDE)
 def to_open(side: str) -> Command:
-    """Resolve {name: to open, side: left}."""
     return command(MANIPULATION, "open_gripper", side=side)
 
 
-@rule(action, name=one_of(*CLOSING), side=SIDE)
+@rule(action, type="trajectory", to="close", side=SIDE, called="trajectory to close")
+@rule(action, name=one_of("close", "to close", "closing"), side=SIDE)
 def to_close(side: str) -> Command:
-    """Resolve {name: to close, side: left}."""
     return command(MANIPULATION, "close_gripper", side=side)
 
 
 @rule(BOTH, left=HOW)
 def left_hand(left: str) -> Command:
-    """Resolve the pair (left, open), or close, or grasp."""
     return _by_word("left", left)
 
 
 @rule(BOTH, right=HOW)
 def right_hand(right: str) -> Command:
-    """Resolve the pair (right, open), or close, or grasp."""
     return _by_word("right", right)
 
 
@@ -143,18 +121,6 @@ def _by_word(side: str, word: str) -> Command:
     if word == "open":
         return command(MANIPULATION, "open_gripper", side=side)
     return command(MANIPULATION, "close_gripper", side=side, grasp=word == "grasp")
-
-
-@rule(action, type="trajectory", to=one_of("open"), side=SIDE)
-def trajectory_to_open(side: str) -> Command:
-    """Resolve {type: trajectory, to: open, side: left}."""
-    return command(MANIPULATION, "open_gripper", side=side)
-
-
-@rule(action, type="trajectory", to=one_of("close"), side=SIDE)
-def trajectory_to_close(side: str) -> Command:
-    """Resolve {type: trajectory, to: close, side: left}."""
-    return command(MANIPULATION, "close_gripper", side=side)
 
 
 # --- head -------------------------------------------------------------------------------------------------------------
@@ -177,31 +143,14 @@ def _looking(desig: Designator, at: Any) -> Iterator[Command]:
         raise DesignatorError(desig, f"it looks at {at!r}: not {allowed}") from None
 
 
-@rule(BOTH, type="looking", target=anything())
-def looking_at_target(target: Any, desig: Designator) -> Iterator[Command]:
-    """Resolve {type: looking, target: ...}."""
-    return _looking(desig, target)
-
-
-@rule(BOTH, type="looking", direction=anything())
-def looking_in_direction(direction: Any, desig: Designator) -> Iterator[Command]:
-    """Resolve {type: looking, direction: left}."""
-    return _looking(desig, direction)
+rule_about("target", _looking, called="looking at target", type="looking")
+rule_about("direction", _looking, called="looking in direction", type="looking")
 
 
 @rule(BOTH, type="looking", frame=text())
 def looking_at_frame(frame: str) -> Command:
-    """Resolve {type: looking, frame: l_gripper}."""
     return command(MANIPULATION, "move_head", target=Point3(0.0, 0.0, 0.0, frame))
 
 
-@rule(action, type="trajectory", to=one_of("see", "look"), at=anything())
-def trajectory_to_see(at: Any, desig: Designator) -> Iterator[Command]:
-    """Resolve {type: trajectory, to: see, at: ...}."""
-    return _looking(desig, at)
-
-
-@rule(action, name=one_of("to look", "to move head", "move head", "to turn head", "turn head"), position=anything())
-def to_look(position: Any, desig: Designator) -> Iterator[Command]:
-    """Resolve {name: to look, position: [2, 3]}."""
-    return _looking(desig, position)
+rule_about("at", _looking, action, called="trajectory to see", type="trajectory", to=one_of("see", "look"))
+rule_about("position", _looking, action, called="to look", name=TO_LOOK)

@@ -15,19 +15,16 @@ SPEECH, LIGHTS, VISION = "speech", "lights", "vision"
 
 @rule(BOTH, type=one_of("saying", "speaking"), text=text(), wait=one_of(True, False).or_else(True))
 def saying(desig: Designator, wait: bool) -> Command:
-    """Resolve {type: saying, text: Hello}."""
     return command(SPEECH, "say" if wait else "text_to_speech", text=desig["text"])
 
 
 @rule(BOTH, type=one_of("lighting", "colouring"), color=text(), lights=anything().or_else(("FaceLeds",)))
 def lighting(color: str, lights: Any) -> Command:
-    """Resolve {type: lighting, color: green}."""
     return command(LIGHTS, "set_color", color=color, lights=(lights,) if isinstance(lights, str) else tuple(lights))
 
 
 @rule(BOTH, type="detecting", object=described("object"), timeout=number(0.0, 3600.0, "s").or_else(2.0))
 def detecting(object: Designator, timeout: float, desig: Designator) -> Command:  # noqa: A002  the key's name
-    """Resolve {type: detecting, object: {object: {type: ball}}}."""
     looked = {"camera": desig.get("camera", "")}
     if "name" in object:
         looked["name"] = object["name"]
@@ -39,11 +36,9 @@ def detecting(object: Designator, timeout: float, desig: Designator) -> Command:
 
 @rule(action, name=one_of("to say", "text to speech"), text=text())
 def to_say(desig: Designator) -> Command:
-    """Resolve {name: to say, text: Hello}."""
     return command(SPEECH, "say", text=desig["text"])
 
 
 @rule(action, name=one_of("to say", "text to speech"), sentence=text())
 def to_say_a_sentence(sentence: str) -> Command:
-    """Resolve {name: to say, sentence: Hello}."""
     return command(SPEECH, "say", text=sentence)

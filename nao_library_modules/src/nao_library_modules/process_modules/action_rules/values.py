@@ -1,15 +1,16 @@
-"""Patterns of values for a NAO: sides, points, places; and the numbers that words stand for."""
+"""What rules for a NAO share: patterns of sides, points and places, and rules about one key."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ...base.limits import limit
 from ...base.places import Place
 from ..designators.designator import Designator, action, motion
-from ..designators.patterns import Mismatch, Pattern, one_of
+from ..designators.patterns import Mismatch, Pattern, anything, one_of
+from ..designators.rules import rule
 from ..language.failures import DesignatorError
 from ..language.settings import numbers_of_nao
 from ..language.space import Point3, Position
@@ -17,6 +18,18 @@ from ..language.space import Point3, Position
 ODOM, TORSO = "odom", "torso"
 SIDE = one_of("left", "right")
 BOTH = (action, motion)
+
+
+def rule_about(
+    key: str,
+    solve: Callable[[Designator, Any], Any],
+    kind: str | tuple[str, ...] = BOTH,
+    *,
+    called: str,
+    **patterns: Any,
+) -> None:
+    """Register a rule by a function of the designator and of the value of one key, whatever that is; see `rule`."""
+    rule(kind, called=called, **patterns, **{key: anything()})(lambda desig: solve(desig, desig[key]))
 
 
 def a_point() -> Pattern:

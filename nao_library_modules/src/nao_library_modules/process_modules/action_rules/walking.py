@@ -6,18 +6,17 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..designators.designator import Designator, action
-from ..designators.patterns import Mismatch, anything, one_of
-from ..designators.rules import Command, command, rule
+from ..designators.patterns import Mismatch, one_of
+from ..designators.rules import Command, command
 from ..language.failures import DesignatorError
-from .values import BOTH, a_place
+from .values import a_place, rule_about
 
 NAVIGATION = "navigation"
 
 
 def _going(desig: Designator, target: Any) -> Iterator[Command]:
     if isinstance(target, Designator):
-        for solution in target.solutions():
-            place, frame = solution
+        for place, frame in target.solutions():
             yield command(NAVIGATION, "walk_to", target=place, frame=frame)
         return
     try:
@@ -28,19 +27,6 @@ def _going(desig: Designator, target: Any) -> Iterator[Command]:
     yield command(NAVIGATION, "walk_to", target=place, frame=frame)
 
 
-@rule(BOTH, type=one_of("going", "walking"), target=anything())
-def going(target: Any, desig: Designator) -> Iterator[Command]:
-    """Resolve {type: going, target: ...}."""
-    return _going(desig, target)
-
-
-@rule(action, type="navigation", goal=anything())
-def navigation(goal: Any, desig: Designator) -> Iterator[Command]:
-    """Resolve {type: navigation, goal: ...}."""
-    return _going(desig, goal)
-
-
-@rule(action, name=one_of("to walk", "to go", "walk to", "walkTo"), target=anything())
-def to_walk(target: Any, desig: Designator) -> Iterator[Command]:
-    """Resolve {name: to walk, target: [1, 0, 0]}."""
-    return _going(desig, target)
+rule_about("target", _going, called="going", type=one_of("going", "walking"))
+rule_about("goal", _going, action, called="navigation", type="navigation")
+rule_about("target", _going, action, called="to walk", name=one_of("to walk", "to go", "walk to", "walkTo"))
