@@ -31,22 +31,22 @@ def _there(reached: bool) -> bool | None:
     return True if reached else None
 
 
-def _opening(side: str) -> float:
-    return this_robot().angles().get(f"{str(side)[:1].upper()}Hand", math.inf)
+def _hand_is(word: str, side: str) -> bool | None:
+    robot = this_robot()
+    opening = robot.angles().get(f"{str(side)[:1].upper()}Hand", math.inf)
+    return _there(abs(opening - robot.settings.gripper[word]) < robot.settings.gripper_tolerance)
 
 
 @declare_goal
 def opened_gripper(side: str) -> bool | None:
     """A hand, left or right, is open."""
-    settings = this_robot().settings
-    return _there(abs(_opening(side) - settings.gripper["open"]) < settings.gripper_tolerance)
+    return _hand_is("open", side)
 
 
 @declare_goal
 def closed_gripper(side: str) -> bool | None:
     """A hand is closed, around something or not."""
-    settings = this_robot().settings
-    return _there(abs(_opening(side) - settings.gripper["closed"]) < settings.gripper_tolerance)
+    return _hand_is("closed", side)
 
 
 @declare_goal
@@ -82,8 +82,8 @@ def at_place(target: Any) -> bool | None:
     except Mismatch:
         return None  # a designator
     robot = this_robot()
-    here, (near, _) = robot.place(frame or ODOM), robot.settings.walk_tolerance
-    turned_well = math.isnan(place.yaw) or abs(wrapped(here.yaw - place.yaw)) < robot.settings.walk_tolerance[1]
+    here, (near, turn) = robot.place(frame or ODOM), robot.settings.walk_tolerance
+    turned_well = math.isnan(place.yaw) or abs(wrapped(here.yaw - place.yaw)) < turn
     return _there(here.distance_to(place) < near and turned_well)
 
 
