@@ -6,6 +6,7 @@ import argparse
 import sys
 import threading
 import time
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
@@ -68,27 +69,23 @@ class PlanRun:
 
     def _run_beside(self, body: Branch, name: str, topic: PlanTopic) -> Any:
         """Run the plan in a thread of its own: signals come to the main one, which then waits for the plan's end."""
-        outcome: list[Any] = []
-        errors: list[BaseException] = []
+        outcome: Future = Future()
 
         def work() -> None:
             try:
-                outcome.append(top_level(body, name=name, clock=self._robot.clock, observers=[self._see, topic]))
+                outcome.set_result(top_level(body, name=name, clock=self._robot.clock, observers=[self._see, topic]))
             except BaseException as error:
-                errors.append(error)
+                outcome.set_exception(error)
             finally:
                 self._over.set()
 
         thread = threading.Thread(target=work, name="plan", daemon=True)
         thread.start()
         thread.join()
-        if errors:
-            raise errors[0]
-        return outcome[0]
+        return outcome.result()
 
     def _see(self, task: Task) -> None:
-        if self._root is None:
-            self._root = task
+        self._root = task.tree.root
 
     def _end(self) -> None:
         if self._root is not None:
