@@ -36,8 +36,7 @@ def read_chain(words: Iterable[str]) -> list[TypedFunction]:
         if word in NEXT:
             pieces.append([])
             continue
-        # "setColor, off": the comma may stand at the end of a word, where it cannot be part of a value.
-        ends = word.endswith(",") and ASSIGN not in word
+        ends = ends_function(word)
         pieces[-1].append(word[:-1] if ends else word)
         if ends:
             pieces.append([])
@@ -58,6 +57,11 @@ def read_chain(words: Iterable[str]) -> list[TypedFunction]:
             fields[field] = value
         chain.append(TypedFunction(piece[0], fields))
     return chain
+
+
+def ends_function(word: str) -> bool:
+    """Whether a function ends with the comma at the end of a word: "setColor, off"; in a value it may be part of it."""
+    return word.endswith(NEXT[0]) and ASSIGN not in word
 
 
 def _after_comma(piece: Sequence[str], word: str) -> bool:

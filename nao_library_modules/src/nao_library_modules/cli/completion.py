@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from .settings import CliSettings, quietly
+from .chain_text import ASSIGN, NEXT, ends_function
+from .robot_link import DirectRobot
+from .settings import QUICK, CliSettings, quietly
 
 
 @quietly
-def servers(settings: CliSettings, start: str) -> list[str]:
+def servers(settings: CliSettings, *_: Any) -> list[str]:
     return settings.stack.servers()
 
 
 @quietly
-def all_functions(settings: CliSettings, start: str) -> list[str]:
+def all_functions(settings: CliSettings, *_: Any) -> list[str]:
     """Names of all functions of all servers, and of the servers."""
     names = dict.fromkeys(settings.stack.servers())
     for _, told in settings.stack.described(names=True):
@@ -23,11 +25,10 @@ def all_functions(settings: CliSettings, start: str) -> list[str]:
 
 
 @quietly
-def chain(settings: CliSettings, start: str, server: str, before: Sequence[str]) -> list[str]:
+def chain(settings: CliSettings, start: str, typed: Mapping[str, Any]) -> list[str]:
     """Next word of a chain: a function, a field, a value."""
-    from .chain_text import ASSIGN, NEXT
-
-    last = max((i for i, word in enumerate(before) if word in NEXT or _ends(word)), default=-1)
+    server, before = typed.get("server") or "", typed.get("chain") or ()
+    last = max((i for i, word in enumerate(before) if word in NEXT or ends_function(word)), default=-1)
     piece = [word for word in before[last + 1 :] if word]
     if not piece:
         return [function.name for function in settings.stack.describe(server, names=True).functions]
@@ -44,33 +45,34 @@ def chain(settings: CliSettings, start: str, server: str, before: Sequence[str])
     return []
 
 
-@quietly
-def choices(settings: CliSettings, start: str, server: str, function: str, field: str) -> list[str]:
-    """Words that a field of a function may hold."""
-    for described in settings.stack.describe(server, [function]).functions:
-        for argument in described.arguments:
-            if argument.name == field:
-                return list(argument.choices)
-    return []
+def choices(server: str, function: str, field: str) -> Callable[..., list[str]]:
+    """An offer of the words that a field of a function may hold."""
+
+    @quietly
+    def offer(settings: CliSettings, *_: Any) -> list[str]:
+        for described in settings.stack.describe(server, [function]).functions:
+            for argument in described.arguments:
+                if argument.name == field:
+                    return list(argument.choices)
+        return []
+
+    return offer
 
 
 @quietly
-def behaviors(settings: CliSettings, start: str) -> list[str]:
-    """Names of the stored behaviours."""
+def behaviors(settings: CliSettings, *_: Any) -> list[str]:
     return [behavior["name"] for behavior in settings.stack.behaviors()]
 
 
 @quietly
-def parameters(settings: CliSettings, start: str, behavior: str) -> list[str]:
-    return [f"{p['name']}=" for found in settings.stack.behaviors(behavior) for p in found["parameters"]]
+def parameters(settings: CliSettings, _start: str, typed: Mapping[str, Any]) -> list[str]:
+    found = settings.stack.behaviors(typed.get("name") or "")
+    return [f"{parameter['name']}=" for behavior in found for parameter in behavior["parameters"]]
 
 
 @quietly
-def keys(settings: CliSettings, start: str) -> list[str]:
+def keys(settings: CliSettings, start: str, _typed: Mapping[str, Any]) -> list[str]:
     """Keys and events of the robot's memory; up to the next slash, for there are more than a thousand."""
-    from .robot_link import DirectRobot
-    from .settings import QUICK
-
     with DirectRobot(settings.stack.robot_address(), QUICK) as robot:
         names = [name for name in robot.memory_names() if name.startswith(start)]
     return sorted({start + _to_slash(name[len(start) :]) for name in names})
@@ -88,9 +90,3 @@ def _values(argument: Any, typed: str) -> list[str]:
         begun = typed.rpartition(",")[0]
         return [f"{begun},{word}" if begun else word for word in argument.choices]
     return list(argument.choices)
-
-
-def _ends(word: str) -> bool:
-    from .chain_text import ASSIGN
-
-    return word.endswith(",") and ASSIGN not in word

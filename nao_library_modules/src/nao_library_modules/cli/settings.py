@@ -42,14 +42,17 @@ def settings_of(context: click.Context) -> CliSettings:
 
 
 def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
-    """An offer of words that fails in silence and is narrowed to what was begun."""
+    """An offer of words, as click asks for it, that fails in silence and is narrowed to what was begun.
+
+    `offer`: takes the settings, what was begun, and the arguments of the command that are there.
+    """
 
     @functools.wraps(offer)
-    def run(context: click.Context, start: str, *more: Any) -> list[str]:
+    def run(context: click.Context, _parameter: click.Parameter | None, start: str) -> list[str]:
         settings = settings_of(context)
         settings.completing = True
         try:
-            words = list(offer(settings, start, *more))
+            words = list(offer(settings, start, context.params))
         except Exception:  # an error text would end up in the line that is being typed
             return []
         return [word for word in words if word.startswith(start)]
@@ -58,7 +61,7 @@ def quietly(offer: Callable[..., Iterable[str]]) -> Callable[..., list[str]]:
 
 
 @quietly
-def robots(settings: CliSettings, start: str) -> list[str]:
+def robots(settings: CliSettings, *_: Any) -> list[str]:
     return [name.strip("/") or "/" for name in settings.stack.robots()]
 
 
@@ -66,10 +69,6 @@ def _keep(context: click.Context, parameter: click.Parameter, value: Any) -> Non
     # Standing behind the command as well as before it; what is not given here must not hide what was given there.
     if value is not None and value is not False:
         setattr(settings_of(context), parameter.human_readable_name, value)
-
-
-def _complete_robot(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    return robots(context, start)
 
 
 def common_options() -> list[click.Option]:
@@ -81,7 +80,7 @@ def common_options() -> list[click.Option]:
             help="Namespace of the robot, where there are several.",
             callback=_keep,
             expose_value=False,
-            shell_complete=_complete_robot,
+            shell_complete=robots,
         ),
         click.Option(["--json"], is_flag=True, help="Answer in JSON.", callback=_keep, expose_value=False),
         click.Option(

@@ -7,24 +7,13 @@ from typing import Any
 
 import click
 
+from .. import completion
 from ..errors import StackMissing
 from ..output import plain, say_json, table
 from ..settings import CliSettings, NaoCommand, settings_of
 from ..stack import same_server
 
 INDENT = "  "
-
-
-def _complete_server(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ..completion import servers
-
-    return servers(context, start)
-
-
-def _complete_function(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ..completion import all_functions
-
-    return all_functions(context, start)
 
 
 @click.command(cls=NaoCommand, name="status")
@@ -48,7 +37,7 @@ def status_command(context: click.Context) -> None:
 
 
 @click.command(cls=NaoCommand, name="list")
-@click.argument("server", default="", shell_complete=_complete_server)
+@click.argument("server", default="", shell_complete=completion.servers)
 @click.option("--all", "shared", is_flag=True, help="Also the functions that every server has.")
 @click.pass_context
 def list_command(context: click.Context, server: str, shared: bool) -> None:
@@ -70,7 +59,7 @@ def list_command(context: click.Context, server: str, shared: bool) -> None:
 
 
 @click.command(cls=NaoCommand, name="help")
-@click.argument("name", shell_complete=_complete_function)
+@click.argument("name", shell_complete=completion.all_functions)
 @click.argument("function", default="")
 @click.pass_context
 def help_command(context: click.Context, name: str, function: str) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from ...base.suggestion import did_you_mean
+from .. import completion
 from ..errors import CommandFailed, StackMissing
 from ..goals import carry_out, function_message
 from ..output import plain, say_json, table
@@ -16,18 +17,6 @@ from ..settings import CliSettings, NaoCommand, settings_of
 
 SERVER = "NaoBehavior"
 SUFFIX = ".yaml"
-
-
-def _complete_name(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ..completion import behaviors
-
-    return behaviors(context, start)
-
-
-def _complete_parameter(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ..completion import parameters
-
-    return parameters(context, start, context.params.get("name") or "")
 
 
 def _the_stored(settings: CliSettings, name: str) -> dict[str, Any]:
@@ -46,8 +35,8 @@ def _file_of(name: str) -> str:
 
 
 @click.command(cls=NaoCommand, name="run")
-@click.argument("name", metavar="NAME|FILE", shell_complete=_complete_name)
-@click.argument("parameters", nargs=-1, shell_complete=_complete_parameter, metavar="[PARAMETER=VALUE]...")
+@click.argument("name", metavar="NAME|FILE", shell_complete=completion.behaviors)
+@click.argument("parameters", nargs=-1, shell_complete=completion.parameters, metavar="[PARAMETER=VALUE]...")
 @click.pass_context
 def run_command(context: click.Context, name: str, parameters: tuple[str, ...]) -> None:
     """Run a behaviour, stored as NAME or in a FILE (.yaml). `nao behaviors NAME` tells its parameters.
@@ -73,7 +62,7 @@ def run_command(context: click.Context, name: str, parameters: tuple[str, ...]) 
 
 
 @click.command(cls=NaoCommand, name="behaviors")
-@click.argument("name", default="", shell_complete=_complete_name)
+@click.argument("name", default="", shell_complete=completion.behaviors)
 @click.pass_context
 def behaviors_command(context: click.Context, name: str) -> None:
     """The stored behaviours; of one, all there is to know: its parameters, what it does, what it needs."""
@@ -92,7 +81,7 @@ def behaviors_command(context: click.Context, name: str) -> None:
 
 
 @click.command(cls=NaoCommand, name="check")
-@click.argument("what", metavar="NAME|FILE", shell_complete=_complete_name)
+@click.argument("what", metavar="NAME|FILE", shell_complete=completion.behaviors)
 @click.argument("parameters", nargs=-1, metavar="[PARAMETER=VALUE]...")
 @click.pass_context
 def check_command(context: click.Context, what: str, parameters: tuple[str, ...]) -> None:

@@ -6,22 +6,11 @@ from collections.abc import Mapping, Sequence
 
 import click
 
+from .. import completion
 from ..chain_text import NEXT, TypedFunction, build_message, read_chain
 from ..dry_run import tell_dry_run
 from ..goals import carry_out, message_class
 from ..settings import CliSettings, SignedCommand, settings_of
-
-
-def _complete_server(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ..completion import servers
-
-    return servers(context, start)
-
-
-def _complete_chain(context: click.Context, parameter: click.Parameter, start: str) -> list[str]:
-    from ..completion import chain
-
-    return chain(context, start, context.params.get("server") or "", context.params.get(parameter.name) or ())
 
 
 class _CallCommand(SignedCommand):
@@ -33,8 +22,8 @@ class _CallCommand(SignedCommand):
 
 
 @click.command(cls=_CallCommand, name="call")
-@click.argument("server", shell_complete=_complete_server)
-@click.argument("chain", nargs=-1, required=True, shell_complete=_complete_chain, metavar="FUNCTION [field:=value]...")
+@click.argument("server", shell_complete=completion.servers)
+@click.argument("chain", nargs=-1, required=True, shell_complete=completion.chain, metavar="FUNCTION [field:=value]...")
 @click.option("--dry-run", is_flag=True, help="Only have the server check it: nothing is done, what runs goes on.")
 @click.pass_context
 def call_command(context: click.Context, server: str, chain: tuple[str, ...], dry_run: bool) -> None:

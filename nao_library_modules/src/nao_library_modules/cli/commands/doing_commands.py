@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from ..chain_text import Angle, Number
+from ..completion import choices
 from ..goals import carry_out, function_message
 from ..settings import NaoCommand, SignedCommand, settings_of
 
@@ -26,27 +27,15 @@ def _seconds(value: float | None) -> Any:
     return rospy.Duration.from_sec(value)
 
 
-def _choices(server: str, function: str, field: str) -> Any:
-    def complete(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-        from ..completion import choices
-
-        return choices(context, start, server, function, field)
-
-    return complete
-
-
-def _complete_look(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ..completion import choices
-
-    lights = choices(context, start, LIGHTS, "setColor", "lights")
-    colours = choices(context, start, LIGHTS, "setColor", "str_param")
+def _complete_look(context: click.Context, parameter: click.Parameter, start: str) -> list[str]:
+    lights, colours = (choices(LIGHTS, "setColor", each)(context, parameter, start) for each in ("lights", "str_param"))
     return [*lights, *colours, *(word for word in SWITCHES if word.startswith(start))]
 
 
 @click.command(cls=NaoCommand, name="say")
 @click.argument("text", nargs=-1, required=True)
-@click.option("--language", metavar="NAME", shell_complete=_choices(AUDIO_OUT, "say", "language"), help="Of this text.")
-@click.option("--voice", metavar="NAME", shell_complete=_choices(AUDIO_OUT, "say", "voice"), help="For this text.")
+@click.option("--language", metavar="NAME", shell_complete=choices(AUDIO_OUT, "say", "language"), help="Of this text.")
+@click.option("--voice", metavar="NAME", shell_complete=choices(AUDIO_OUT, "say", "voice"), help="For this text.")
 @click.option("--volume", type=float, metavar="0..1", help="Of this text.")
 @click.option("--speed", type=float, metavar="%", help="50 to 400, 100 is normal.")
 @click.option("--pitch", type=float, metavar="%", help="50 to 200, 100 is normal.")
@@ -100,16 +89,14 @@ def _number(text: str) -> float | None:
 
 
 @click.command(cls=NaoCommand, name="pose")
-@click.argument("posture", default="", shell_complete=_choices(MOTION, "goToPosture", "str_param"))
+@click.argument("posture", default="", shell_complete=choices(MOTION, "goToPosture", "str_param"))
 @click.option("--speed", type=float, metavar="0..1", help="Fraction of the top speed.")
 @click.pass_context
 def pose_command(context: click.Context, posture: str, speed: float | None) -> None:
     """Go to a POSTURE from wherever the robot is."""
     settings = settings_of(context)
     if not posture:
-        from ..completion import choices
-
-        known = choices(context, "", MOTION, "goToPosture", "str_param")
+        known = choices(MOTION, "goToPosture", "str_param")(context, None, "")
         raise click.UsageError(f"a posture is wanted: {', '.join(known) or 'nao pose StandInit'}")
     message = function_message(settings, MOTION, function="goToPosture", str_param=posture, speed=speed)
     carry_out(settings, MOTION, [message], quiet=True)

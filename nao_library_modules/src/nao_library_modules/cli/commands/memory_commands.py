@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from ...base.limits import limit
+from .. import completion
 from ..chain_text import Number
 from ..errors import StackMissing
 from ..output import plain, say_json, table, words
@@ -20,14 +21,8 @@ RATE = 10.0
 asked for."""
 
 
-def _complete_key(context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ..completion import keys
-
-    return keys(context, start)
-
-
 @click.command(cls=NaoCommand, name="get")
-@click.argument("keys", nargs=-1, required=True, shell_complete=_complete_key, metavar="KEY...")
+@click.argument("keys", nargs=-1, required=True, shell_complete=completion.keys, metavar="KEY...")
 @click.pass_context
 def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
     """Values of KEYs; wildcards mean all that fit: 'Device/SubDeviceList/*/Temperature/Sensor/Value'."""
@@ -50,7 +45,7 @@ def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
 
 
 @click.command(cls=SignedCommand, name="set")
-@click.argument("key", shell_complete=_complete_key)
+@click.argument("key", shell_complete=completion.keys)
 @click.argument("value")
 @click.option("--event", is_flag=True, help="Raise it as an event: whoever subscribed to it is told.")
 @click.pass_context
@@ -68,7 +63,7 @@ def set_command(context: click.Context, key: str, value: str, event: bool) -> No
 
 
 @click.command(cls=NaoCommand, name="watch")
-@click.argument("names", nargs=-1, required=True, shell_complete=_complete_key, metavar="NAME...")
+@click.argument("names", nargs=-1, required=True, shell_complete=completion.keys, metavar="NAME...")
 @click.option("--count", type=click.IntRange(*map(int, limit("news")[:2])), metavar="N", help="End after so many.")
 @click.option(
     "--rate",
