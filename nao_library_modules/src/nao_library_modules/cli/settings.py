@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from ..base.suggestion import did_you_mean, of_those
 from .chain_text import Number
 from .stack import Stack
 
@@ -98,8 +99,6 @@ class OneOf(click.Choice):
     """One of several words; another one is told with those that look like it."""
 
     def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> Any:
-        from ..base.suggestion import of_those
-
         if value not in self.choices:
             self.fail(f"there is no {value!r}{of_those(str(value), map(str, self.choices))}", parameter, context)
         return super().convert(value, parameter, context)
@@ -165,8 +164,6 @@ class NaoGroup(click.Group):
 
     def resolve_command(self, context: click.Context, arguments: list[str]) -> Any:
         """As click does; a word that is no command is told with those that look like it."""
-        from ..base.suggestion import did_you_mean
-
         word, known = arguments[0], self.list_commands(context)
         # Click takes "*" for an option, too, and shows the help as if it had been asked for.
         if word not in known and (word == "-" or not word.startswith("-")):

@@ -9,7 +9,9 @@ from typing import Any
 
 from ..nao.body_devices import CHARGE
 from .errors import CommandFailed, StackMissing
+from .goals import start_node
 from .output import table
+from .robot_link import DirectRobot
 from .stack import Stack
 
 DIAGNOSTICS = "/diagnostics"
@@ -51,8 +53,6 @@ def _server(stack: Stack, name: str) -> dict[str, Any]:
 
 
 def _robot(address: tuple[str, int]) -> dict[str, Any]:
-    from .robot_link import DirectRobot
-
     try:
         with DirectRobot(address, limit=3.0) as robot:
             stiffnesses = list(robot.call("ALMotion", "getStiffnesses", "Body"))
@@ -78,8 +78,6 @@ class _Diagnostics:
 
     def __init__(self) -> None:
         from diagnostic_msgs.msg import DiagnosticArray
-
-        from .goals import start_node
 
         start_node()
         import rospy

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from ...base.suggestion import did_you_mean
 from .. import completion
 from ..errors import StackMissing
 from ..output import plain, say_json, table
@@ -134,8 +135,6 @@ def _help_server(settings: CliSettings, name: str, function: str) -> None:
 
     Raises click.UsageError if there is neither a function nor a server of that name.
     """
-    from ...base.suggestion import did_you_mean
-
     servers = described_servers(settings, names=True)
     known = [name for name, _ in servers]
     functions = list(dict.fromkeys(f.name for _, told in servers for f in told.functions))

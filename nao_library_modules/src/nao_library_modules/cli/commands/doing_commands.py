@@ -10,6 +10,7 @@ import click
 from ..chain_text import Angle, Number
 from ..completion import choices
 from ..goals import carry_out, function_message
+from ..robot_link import DirectRobot
 from ..settings import NaoCommand, SignedCommand, settings_of
 
 AUDIO_OUT, LIGHTS, MOTION = "nao_audio_out", "NaoLights", "NaoMotion"
@@ -125,8 +126,6 @@ def walk_command(context: click.Context, x: float, y: float, theta: float) -> No
 
 def _stands(settings: Any) -> bool:
     """Whether the robot is awake and on its feet."""
-    from ..robot_link import DirectRobot
-
     with DirectRobot(settings.stack.robot_address()) as robot:
         awake = robot.call("ALMotion", "robotIsWakeUp")
         return bool(awake and robot.call("ALRobotPosture", "getPostureFamily") == "Standing")

@@ -14,6 +14,7 @@ from .. import completion
 from ..chain_text import Number
 from ..errors import StackMissing
 from ..output import plain, say_json, table, words
+from ..robot_link import DirectRobot
 from ..settings import NaoCommand, SignedCommand, settings_of
 
 RATE = 10.0
@@ -26,8 +27,6 @@ asked for."""
 @click.pass_context
 def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
     """Values of KEYs; wildcards mean all that fit: 'Device/SubDeviceList/*/Temperature/Sensor/Value'."""
-    from ..robot_link import DirectRobot
-
     settings = settings_of(context)
     with DirectRobot(settings.stack.robot_address()) as robot:
         names = robot.matching(keys)
@@ -52,7 +51,6 @@ def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
 def set_command(context: click.Context, key: str, value: str, event: bool) -> None:
     """Write VALUE, JSON or plain text, into KEY."""
     from ...functions.memory_functions import parse_assignment
-    from ..robot_link import DirectRobot
 
     settings = settings_of(context)
     _, content = parse_assignment(f"key={value}")
@@ -79,8 +77,6 @@ def watch_command(context: click.Context, names: tuple[str, ...], count: int | N
 
     Events are told each time, values when they change. Ends with Ctrl-C, after --count or --timeout.
     """
-    from ..robot_link import DirectRobot
-
     settings = settings_of(context)
     with DirectRobot(settings.stack.robot_address()) as robot:
         wanted = robot.matching(names)

@@ -6,9 +6,12 @@ from typing import Any
 
 import click
 
+from ...base.errors import BadGoal
+from ...nao.touch_names import GROUPS, SENSORS, devices_of, names_of
 from ..chain_text import Number
 from ..errors import CommandFailed
 from ..files import bring, names_file, overwrite_option, passing_name, wanted_file
+from ..goals import start_node
 from ..output import say_json
 from ..settings import CliSettings, NaoGroup, OneOf, SignedCommand, settings_of
 from ..stack import SIMULATOR
@@ -33,8 +36,6 @@ def _call(settings: CliSettings, name: str, kind: Any, **fields: Any) -> Any:
 
 
 def _complete_sensor(_context: click.Context, _parameter: click.Parameter, start: str) -> list[str]:
-    from ...nao.touch_names import GROUPS, SENSORS, names_of
-
     words = [name.replace(" ", "_") for name in (*GROUPS, *names_of(SENSORS))]
     devices = [device for sensor in SENSORS for device in sensor.devices]
     return [word for word in (*words, *devices) if word.startswith(start)]
@@ -52,9 +53,6 @@ def touch(context: click.Context, sensors: tuple[str, ...], seconds: float | Non
     """
     from nao_library_msgs.srv import PressSensors
 
-    from ...base.errors import BadGoal
-    from ...nao.touch_names import devices_of
-
     settings = settings_of(context)
     try:
         devices = devices_of(sensors)
@@ -62,21 +60,13 @@ def touch(context: click.Context, sensors: tuple[str, ...], seconds: float | Non
         raise click.UsageError(str(error)) from None
     _call(settings, "press", PressSensors, sensors=devices)
     if seconds is not None:
-        # A finger that comes and goes between two ticks was never there.
-        _pass_time(settings, max(seconds, 0.1))
+        import rospy
+
+        start_node()
+        rospy.sleep(max(seconds, 0.1))  # a finger that comes and goes between two ticks was never there
         _call(settings, "press", PressSensors, sensors=[])
     if settings.json:
         say_json({"pressed": devices if seconds is None else []})
-
-
-def _pass_time(settings: CliSettings, seconds: float) -> None:
-    """Wait until so much of the robot's time is over."""
-    import rospy
-
-    from ..goals import start_node
-
-    start_node()
-    rospy.sleep(seconds)
 
 
 @sim_command.command("push", cls=SignedCommand)

@@ -8,6 +8,7 @@ import click
 
 from ..goals import start_node
 from ..output import say_json
+from ..robot_link import DirectRobot
 from ..settings import NaoCommand, settings_of
 
 CANCEL = "/cancel"
@@ -56,8 +57,6 @@ def _cancel(topics: list[str]) -> None:
 
 def _stop_walk(settings: object) -> str:
     """Stop a walk that no goal holds any more; tells how that went."""
-    from ..robot_link import DirectRobot
-
     try:
         with DirectRobot(settings.stack.robot_address()) as robot:
             robot.call("ALMotion", "stopMove")
