@@ -1,30 +1,22 @@
-"""How commands fail, and the exit status that tells. A mistake in the command itself is click's UsageError: status 2.
-
-click.ClickException
-    CommandFailed        the robot or a goal failed: 1
-    StackMissing         there is no master, server or robot to ask: 3
-    Interrupted          Ctrl-C; what ran has been cancelled: 130
-"""
+"""How commands fail, and the exit status that tells. A mistake in the command itself is click's UsageError: 2."""
 
 from __future__ import annotations
 
 import click
 
-FAILED = 1
-MISSING = 3
 INTERRUPTED = 130
 
 
 class CommandFailed(click.ClickException):
     """The robot could not do it, or a goal failed."""
 
-    exit_code = FAILED
+    exit_code = 1
 
 
 class StackMissing(click.ClickException):
     """There is nobody to ask: no master, no server, no robot."""
 
-    exit_code = MISSING
+    exit_code = 3
 
 
 class CommandInterrupted(click.ClickException):

@@ -48,7 +48,7 @@ def run_functions(settings: CliSettings, server: str, functions: Sequence[Any]) 
 
     Raises:
         CommandFailed: It failed or took too long.
-        Interrupted: Somebody pressed Ctrl-C; the goal is over then.
+        CommandInterrupted: Somebody pressed Ctrl-C; the goal is over then.
         StackMissing: The server is not there or went away.
     """
     end = GoalRun(settings, server).run(functions)
