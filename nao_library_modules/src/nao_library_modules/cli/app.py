@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from .errors import INTERRUPTED
-from .output import said_anything, said_document, say_json
+from .output import BEGUN, SAID, say_json
 from .settings import NaoGroup, common_options, settings_of
 
 COMMANDS = {
@@ -59,11 +59,11 @@ class Commands(NaoGroup):
         except click.UsageError:
             raise
         except click.ClickException as error:
-            if settings.json and not said_document(context):
+            if settings.json and not context.meta.get(SAID):
                 say_json({"error": error.message, "status": error.exit_code}, compact=True)
             raise
         except (click.Abort, KeyboardInterrupt):
-            if settings.json and not said_anything(context):  # with Ctrl-C the lines of `nao watch` just end
+            if settings.json and not context.meta.get(BEGUN):  # with Ctrl-C the lines of `nao watch` just end
                 say_json({"error": "interrupted", "status": INTERRUPTED}, compact=True)
             raise
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import click
 
 SAID, BEGUN = f"{__name__}.said", f"{__name__}.begun"
-"""Places of notes in the context that all commands of a run share."""
+"""Places in `meta` of the context, which all commands of a run share: true when the JSON document is printed, and when
+any JSON is, be it a document or a line."""
 LEFT_OUT = frozenset({"memList", "results", "steps", "header", "onsets", "ends", "volume"})
 """Fields of results that answers or the progress tell better, or that say nothing to people."""
 
@@ -40,16 +41,6 @@ def say_json(value: Any, compact: bool = False) -> None:
         if not compact:
             context.meta[SAID] = True
     click.echo(json.dumps(_finite(plain(value)), ensure_ascii=False, indent=None if compact else 2))
-
-
-def said_document(context: click.Context) -> bool:
-    """Whether this run of the program has printed its JSON document."""
-    return bool(context.meta.get(SAID))
-
-
-def said_anything(context: click.Context) -> bool:
-    """Whether this run of the program has printed JSON, be it a document or lines."""
-    return bool(context.meta.get(BEGUN))
 
 
 def _finite(value: Any) -> Any:
@@ -104,10 +95,14 @@ def say_result(result: Mapping[str, Any], end: str = "", failed: bool = False) -
     if failed:
         done = any(not answer.get("error") for answer in told)
         own = {name: value for name, value in own.items() if isinstance(value, list) and done}
-    for line in _own_lines(own):
-        click.echo(line)
+    say_lines(_own_lines(own))
     if end and not failed:
         click.echo(end)
+
+
+def say_lines(lines: Iterable[str]) -> None:
+    for line in lines:
+        click.echo(line)
 
 
 def _own_lines(fields: Mapping[str, Any]) -> Sequence[str]:

@@ -10,7 +10,7 @@ import click
 from ...base.suggestion import did_you_mean
 from .. import completion
 from ..errors import StackMissing
-from ..output import plain, say_json, table
+from ..output import plain, say_json, say_lines, table
 from ..settings import CliSettings, NaoCommand, settings_of
 from ..stack import same_server
 
@@ -31,8 +31,7 @@ def status_command(context: click.Context) -> None:
     if settings.json:
         say_json(found)
     else:
-        for line in status_lines(found):
-            click.echo(line)
+        say_lines(status_lines(found))
     if not found["connected"]:
         raise StackMissing(f"the robot at {found['address']} cannot be reached")
 
@@ -49,14 +48,14 @@ def list_command(context: click.Context, server: str, shared: bool) -> None:
         if settings.json:
             say_json([{"name": name, "help": told.help, "action": told.action} for name, told in servers])
         else:
-            _print(table([(name, told.help) for name, told in servers]))
+            say_lines(table([(name, told.help) for name, told in servers]))
         return
     (_, told), *_ = described_servers(settings, server=server, names=not settings.json)
     functions = [function for function in told.functions if shared or not function.shared]
     if settings.json:
-        say_json([_json(function) for function in functions])
+        say_json(functions)
     else:
-        _print(table([(function.name, function.help) for function in functions]))
+        say_lines(table([(function.name, function.help) for function in functions]))
 
 
 @click.command(cls=NaoCommand, name="help")
@@ -77,12 +76,12 @@ def help_command(context: click.Context, name: str, function: str) -> None:
     if all(described.shared for _, _, described in found):
         found = found[:1]  # every server has it
     if settings.json:
-        say_json([{"server": server, **_json(described)} for server, _, described in found])
+        say_json([{"server": server, **plain(described)} for server, _, described in found])
         return
     for number, (server, told, described) in enumerate(found):
         if number:
             click.echo()
-        _print(function_lines(server, told, described))
+        say_lines(function_lines(server, told, described))
 
 
 def _find(settings: CliSettings, function: str, server: str) -> list[tuple[str, Any, Any]]:
@@ -146,11 +145,11 @@ def _help_server(settings: CliSettings, name: str, function: str) -> None:
     (found, told), *_ = server
     if settings.json:
         (_, told), *_ = described_servers(settings, found)
-        say_json({"server": found, "help": told.help, "functions": [_json(f) for f in told.functions]})
+        say_json({"server": found, "help": told.help, "functions": told.functions})
         return
     click.echo(f"{found}: {told.help}")
     rows = [(f.name, f.help) for f in told.functions if not f.shared]
-    _print(table(rows, INDENT))
+    say_lines(table(rows, INDENT))
     click.echo(f"{INDENT}and those of the robot's memory: {', '.join(f.name for f in told.functions if f.shared)}")
 
 
@@ -168,13 +167,3 @@ def function_lines(server: str, told: Any, function: Any) -> Iterable[str]:
         if argument.choices and not all(word in argument.allowed for word in argument.choices):
             yield f"{INDENT * 2}here: {', '.join(argument.choices)}"
     yield f"{INDENT}nao call {server} {function.name}{''.join(f' {a.name}:=...' for a in function.arguments)}"
-
-
-def _json(function: Any) -> Any:
-    """A description; limits that are not known are null."""
-    return plain(function)
-
-
-def _print(lines: Iterable[str]) -> None:
-    for line in lines:
-        click.echo(line)

@@ -12,7 +12,7 @@ from ...base.suggestion import did_you_mean
 from .. import completion
 from ..errors import CommandFailed, StackMissing
 from ..goals import carry_out, function_message
-from ..output import plain, say_json, table
+from ..output import plain, say_json, say_lines, table
 from ..settings import CliSettings, NaoCommand, settings_of
 
 SERVER = "NaoBehavior"
@@ -43,7 +43,7 @@ def run_command(context: click.Context, name: str, parameters: tuple[str, ...]) 
 
     All of it is checked before anything moves, as `nao check` does.
     """
-    _require_assignments(parameters)
+    _assigned(parameters)  # one that is none is a mistake in the command, whatever the server says
     settings = settings_of(context)
     of_file = name.endswith(SUFFIX)
     if not of_file and _file_of(name):
@@ -70,14 +70,10 @@ def behaviors_command(context: click.Context, name: str) -> None:
     found = [_the_stored(settings, name)] if name else settings.stack.behaviors()
     if settings.json:
         say_json(found)
-        return
-    if name:
-        for behavior in found:
-            _tell(behavior)
-        return
-    rows = [(behavior["name"], behavior["problem"] or behavior["help"].partition(". ")[0]) for behavior in found]
-    for line in table(rows):
-        click.echo(line)
+    elif name:
+        say_lines(_lines_of(found[0], {}))
+    else:
+        say_lines(table([(each["name"], each["problem"] or each["help"].partition(". ")[0]) for each in found]))
 
 
 @click.command(cls=NaoCommand, name="check")
@@ -92,7 +88,7 @@ def check_command(context: click.Context, what: str, parameters: tuple[str, ...]
     """
     from nao_library_msgs.srv import ListBehaviorsRequest
 
-    _require_assignments(parameters)
+    values = _assigned(parameters)
     settings = settings_of(context)
     of_file = what.endswith(SUFFIX)
     which = {"text": _text_of(what), "file": what} if of_file else {"name": what}
@@ -110,7 +106,7 @@ def check_command(context: click.Context, what: str, parameters: tuple[str, ...]
     if settings.json:
         say_json({**checked, "problems": problems})
     elif not problems:
-        _tell(checked, dict(_assigned(parameters)))
+        say_lines(_lines_of(checked, values))
     for problem in problems:
         click.echo(problem, err=True)
     if problems:
@@ -122,7 +118,7 @@ def check_command(context: click.Context, what: str, parameters: tuple[str, ...]
 def _line_of(problem: dict[str, Any]) -> str:
     from ...behaviors.language.errors import Problem
 
-    return str(Problem(problem["where"], problem["text"], problem["line"], problem["file"]))
+    return str(Problem(**problem))
 
 
 def _tell_unvalidated(servers: Sequence[str]) -> None:
@@ -147,47 +143,37 @@ def _text_of(file: str) -> str:
         raise click.UsageError(f"{file} cannot be read: {reason}") from None
 
 
-def _require_assignments(parameters: Sequence[str]) -> None:
+def _assigned(parameters: Sequence[str]) -> dict[str, str]:
+    """Name -> value. Raises click.UsageError if one is no assignment."""
+    values = {}
     for parameter in parameters:
-        if "=" not in parameter:
+        name, equals, value = parameter.partition("=")
+        if not equals:
             raise click.UsageError(f"{parameter!r} is no PARAMETER=VALUE")
+        values[name.strip()] = value
+    return values
 
 
-def _assigned(parameters: Sequence[str]) -> Iterator[tuple[str, str]]:
-    for parameter in parameters:
-        name, _, value = parameter.partition("=")
-        yield name.strip(), value
-
-
-def _tell(behavior: dict[str, Any], values: Mapping[str, str] | None = None) -> None:
-    click.echo(f"{behavior['name']}: {behavior['problem'] or behavior['help']}")
-    _tell_parameters(behavior, values or {})
-    told = {
-        "tags": ", ".join(behavior["tags"]),
-        "servers": ", ".join(behavior["servers"]),
-        "boxes": ", ".join(behavior["boxes"]),
-        "waits": f"{behavior['waits']:g} s, besides what its goals take" if behavior["waits"] else "",
-    }
-    for line in table([(name, text) for name, text in told.items() if text], indent="  "):
-        click.echo(line)
-    if behavior["steps"]:
-        click.echo("  steps")
-    for step in behavior["steps"]:
-        click.echo(f"    {step}")
-    if behavior["unchecked"]:
-        click.echo(
-            "  not known until they run, as it depends on the robot then; or wrong, and skipped as on_error says"
-        )
-    for function in behavior["unchecked"]:
-        click.echo(f"    {function}")
-
-
-def _tell_parameters(behavior: dict[str, Any], values: Mapping[str, str]) -> None:
+def _lines_of(behavior: dict[str, Any], values: Mapping[str, str]) -> Iterator[str]:
+    """All there is to know about a behaviour. `values`: of parameters, where not their defaults."""
+    yield f"{behavior['name']}: {behavior['problem'] or behavior['help']}"
     rows = []
     for parameter in behavior["parameters"]:
         unit = f" {parameter['unit']}" if parameter["unit"] else ""
         choices = f"; one of {', '.join(parameter['choices'])}" if parameter["choices"] else ""
         value = values.get(parameter["name"], parameter["default"])
         rows.append((f"{parameter['name']}={value}{unit}", parameter["help"] + choices))
-    for line in table(rows, indent="  "):
-        click.echo(line)
+    yield from table(rows, indent="  ")
+    told = {
+        "tags": ", ".join(behavior["tags"]),
+        "servers": ", ".join(behavior["servers"]),
+        "boxes": ", ".join(behavior["boxes"]),
+        "waits": f"{behavior['waits']:g} s, besides what its goals take" if behavior["waits"] else "",
+    }
+    yield from table([(name, text) for name, text in told.items() if text], indent="  ")
+    if behavior["steps"]:
+        yield "  steps"
+    yield from (f"    {step}" for step in behavior["steps"])
+    if behavior["unchecked"]:
+        yield "  not known until they run, as it depends on the robot then; or wrong, and skipped as on_error says"
+    yield from (f"    {function}" for function in behavior["unchecked"])

@@ -13,7 +13,7 @@ from ...base.limits import limit
 from .. import completion
 from ..chain_text import Number
 from ..errors import StackMissing
-from ..output import plain, say_json, table, words
+from ..output import plain, say_json, say_lines, table, words
 from ..robot_link import DirectRobot
 from ..settings import NaoCommand, SignedCommand, settings_of
 
@@ -39,8 +39,7 @@ def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
     elif len(names) == 1:
         click.echo(words(plain(values[0])))
     else:
-        for line in table([(name, words(plain(value))) for name, value in zip(names, values)]):
-            click.echo(line)
+        say_lines(table([(name, words(plain(value))) for name, value in zip(names, values)]))
 
 
 @click.command(cls=SignedCommand, name="set")
