@@ -17,7 +17,6 @@ from ..behaviors.language.checking import preview_facts
 from ..behaviors.language.servers import FunctionTables, NotDescribed
 from ..behaviors.run.running import info_message
 from ..behaviors.server import PARAMETERS, SHIPPED
-from .dry_run import ask
 from .stack import Stack
 
 
@@ -27,7 +26,7 @@ def check_offline(stack: Stack, request: Any) -> Any:
     name = PurePath(request.file).stem if request.text else request.name
     load = (lambda: read(request.text, name, request.file)) if request.text else (lambda: store.load(name))
     tables = FunctionTables(partial(_describe, stack), partial(_running, stack))
-    facts = preview_facts(name, load, store.load, tables, request.parameters, partial(ask, stack))
+    facts = preview_facts(name, load, store.load, tables, request.parameters, stack.check)
     return ListBehaviorsResponse([info_message(facts, shipped=False)])
 
 

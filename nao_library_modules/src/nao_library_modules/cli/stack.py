@@ -17,6 +17,8 @@ from .output import plain
 if TYPE_CHECKING:
     from nao_library_msgs.srv import DescribeFunctionsResponse, ListBehaviorsRequest, ListBehaviorsResponse
 
+    from ..functions.goal_checks import GoalCheck
+
 SIMULATOR = "nao_sim"
 BEHAVIORS = "NaoBehavior/list"
 
@@ -117,6 +119,20 @@ class Stack:
         """Whether a server reaches its robot at this moment."""
         self._described.clear()
         return bool(self.describe(server, brief=True).connected)
+
+    def check(self, server: str, goals: Sequence[Any]) -> GoalCheck:
+        """Have a server check goals.
+
+        `goals`: in the order in which they would be sent. Raises NotValidated if it is not there, or cannot tell.
+        """
+        from nao_library_msgs.srv import CheckGoals
+
+        from ..functions.check_service import CHECK, NotValidated, check_request, read_response
+
+        try:
+            return read_response(self.graph.call(self.server(server) + CHECK, CheckGoals, check_request(goals)))
+        except click.ClickException as error:
+            raise NotValidated(error.message) from None
 
     def robot_address(self) -> tuple[str, int]:
         """IP and port of the robot, as its servers know it."""

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import click
 
+from ...functions.check_service import NotValidated
 from .. import completion
 from ..chain_text import NEXT, TypedFunction, build_message, read_chain
-from ..dry_run import tell_dry_run
+from ..errors import CommandFailed
 from ..goals import carry_out, message_class
+from ..output import say_json
 from ..settings import CliSettings, SignedCommand, settings_of
 
 
@@ -44,9 +47,32 @@ def call_command(context: click.Context, server: str, chain: tuple[str, ...], dr
     functions = [build_message(function, kind, taken.get(function.name, ())) for function in typed]
     _tell_of_unread(typed, taken)
     if dry_run:
-        tell_dry_run(settings, server, functions)
+        _tell_dry_run(settings, server, functions)
     else:
         carry_out(settings, server, functions)
+
+
+def _tell_dry_run(settings: CliSettings, server: str, functions: Sequence[Any]) -> None:
+    """Print what a server says of a goal.
+
+    Raises CommandFailed if it could not be carried out, or the server does not say.
+    """
+    goal = message_class(f"{settings.stack.describe(server, brief=True).action}Goal")
+    try:
+        check = settings.stack.check(server, [goal(list(functions))])
+    except NotValidated as error:
+        raise CommandFailed(f"{server} did not check the goal: {error}") from None
+    if settings.json:
+        told = {"problems": check.problems, "unchecked": check.unchecked}
+        say_json({name: [vars(each) for each in problems] for name, problems in told.items()})
+    for problem in check.problems:
+        click.echo(str(problem), err=True)
+    if check.problems:
+        raise CommandFailed("it cannot be done")
+    if not settings.json:
+        for each in check.unchecked:
+            click.echo(f"not known: {each}")
+        click.echo("nothing wrong was found" if check.unchecked else "it can be done")
 
 
 def _tell_of_unread(typed: Sequence[TypedFunction], taken: Mapping[str, Sequence[str]]) -> None:
