@@ -12,8 +12,8 @@ from genpy import Duration
 from nao_library_actions.msg import NaoLedAction
 from nao_library_modules.base.errors import BadGoal, FunctionFailed
 from nao_library_modules.behaviors.language.servers import FunctionTables
-from nao_library_modules.cli import offline
-from nao_library_modules.cli.offline import described_by_code
+from nao_library_modules.cli import stack
+from nao_library_modules.cli.stack import described_by_code
 from nao_library_modules.functions import fields
 from nao_library_modules.functions.chain import BoundFunction, FunctionChain, checked_by, declared_fields
 from nao_library_modules.functions.describe import Description
@@ -131,7 +131,8 @@ def test_a_derived_field_differs_in_what_was_changed():
 def with_blink(monkeypatch):
     """NaoLights with one function more, declared in one place."""
     monkeypatch.setattr(NaoLights, "functions", {**NaoLights.functions, "blink": blink})
-    monkeypatch.setattr(offline, "_servers", offline._servers.__wrapped__)  # what is remembered does not have it
+    # What is remembered does not have it.
+    monkeypatch.setattr(stack, "_servers_of_code", stack._servers_of_code.__wrapped__)
 
 
 def test_a_function_that_is_declared_once_is_known_to_all_who_read_declarations(with_blink):

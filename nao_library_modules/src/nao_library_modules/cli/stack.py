@@ -1,9 +1,10 @@
-"""The servers of one robot: which robot is meant, which servers it has, what they say about themselves."""
+"""The servers of one robot: which robot is meant, which servers it has, what they say of themselves, or their code."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -183,6 +184,30 @@ class Stack:
         if len(robots) > 1 and "/" not in robots:
             raise click.UsageError(f"choose a robot with --robot; there are {', '.join(map(_plain, robots))}")
         return "/" if "/" in robots else robots[0]
+
+
+def described_by_code(
+    server: str = "", functions: Sequence[str] = (), brief: bool = False, names: bool = False
+) -> list[tuple[str, DescribeFunctionsResponse]]:
+    """Servers with what `Stack.describe` would tell if they ran, as far as the code knows.
+
+    `server`: only this one; all without. Raises click.UsageError if there is no such server.
+    """
+    from nao_library_msgs.srv import DescribeFunctionsRequest
+
+    servers = _servers_of_code()
+    chosen = [found for found in servers if not server or same_server(found.name, server)]
+    if not chosen:
+        raise click.UsageError(f"there is no server {server!r}{of_those(server, [found.name for found in servers])}")
+    request = DescribeFunctionsRequest(list(functions), names, brief)
+    return [(found.name, found.service.answer(request)) for found in chosen]
+
+
+@lru_cache(maxsize=None)
+def _servers_of_code() -> list[Any]:
+    from ..functions.describe_offline import offline_servers
+
+    return offline_servers()
 
 
 def _plain(namespace: str) -> str:

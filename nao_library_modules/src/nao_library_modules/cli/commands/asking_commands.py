@@ -12,7 +12,7 @@ from .. import completion
 from ..errors import StackMissing
 from ..output import plain, say_json, say_lines, table
 from ..settings import CliSettings, NaoCommand, settings_of
-from ..stack import same_server
+from ..stack import described_by_code, same_server
 
 INDENT = "  "
 
@@ -96,18 +96,11 @@ def _find(settings: CliSettings, function: str, server: str) -> list[tuple[str, 
 
 
 def described_servers(
-    settings: CliSettings, server: str = "", brief: bool = False, names: bool = False, functions: Sequence[str] = ()
+    settings: CliSettings, server: str = "", functions: Sequence[str] = (), brief: bool = False, names: bool = False
 ) -> list[tuple[str, Any]]:
-    """Servers with what they say about themselves: those that run, or what the code says where none does.
+    """Servers with what they say about themselves, see `Stack.describe`; where none runs, what the code says.
 
-    Raises click.UsageError if there is no such server.
-
-    Args:
-        settings: Of this run.
-        server: Only this one; all without.
-        brief: True: without functions.
-        names: True: only names and help of the functions.
-        functions: Only these; all without.
+    `server`: only this one; all without. Raises click.UsageError if there is no such server.
     """
     try:
         stack = settings.stack
@@ -121,12 +114,10 @@ def described_servers(
     except StackMissing as missing:
         if settings.namespace is not None:
             raise
-        from ..offline import described_by_code
-
         if not settings.described_offline:
             click.echo(f"{missing.message}\nthis is what the code says:", err=True)
             settings.described_offline = True
-        return described_by_code(server, brief, names, functions)
+        return described_by_code(server, functions, brief, names)
 
 
 def _help_server(settings: CliSettings, name: str, function: str) -> None:

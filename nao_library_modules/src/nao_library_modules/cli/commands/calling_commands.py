@@ -14,6 +14,7 @@ from ..errors import CommandFailed
 from ..goals import carry_out, message_class
 from ..output import say_json
 from ..settings import CliSettings, SignedCommand, settings_of
+from ..stack import described_by_code
 
 
 class _CallCommand(SignedCommand):
@@ -89,8 +90,6 @@ def _require_not_elsewhere(settings: CliSettings, server: str, unknown: Sequence
 
     Raises click.UsageError if it is; the text names the servers that have it.
     """
-    from ..offline import described_by_code
-
     for name in unknown:
         others = [other for other, told in described_by_code(functions=[name], names=True) if not told.unknown]
         if others:
