@@ -104,7 +104,7 @@ class Commands(NaoGroup):
 @click.command(
     cls=Commands,
     name="nao",
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"]},  # of all commands beneath as well
     params=common_options(),
     epilog="Exit status: 0 done, 1 failed, 2 mistake in the command, 3 nobody to ask, 130 interrupted.",
 )

@@ -115,7 +115,6 @@ class NaoCommand(click.Command):
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self.params.extend(common_options())
-        self.context_settings.setdefault("help_option_names", ["-h", "--help"])
 
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
         """As click does; an option that there is not is told with what it may be called here."""
@@ -135,12 +134,9 @@ class NaoCommand(click.Command):
 class SignedCommand(NaoCommand):
     """A command whose arguments may begin with a minus sign, as numbers do; with two it is an option all the same."""
 
+    ignore_unknown_options = True
     words: tuple[str, ...] = ()
     """Arguments that look like options."""
-
-    def __init__(self, *arguments: Any, **options: Any) -> None:
-        super().__init__(*arguments, **options)
-        self.context_settings["ignore_unknown_options"] = True
 
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
         """As click does, but for options that there are not."""

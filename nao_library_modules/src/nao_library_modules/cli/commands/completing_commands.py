@@ -21,7 +21,4 @@ def completion_command(context: click.Context, shell: str) -> None:
     ~/.config/fish/completions/nao.fish: nao completion fish | source
     """
     register()
-    complete = get_completion_class(shell)
-    if complete is None:
-        raise click.UsageError(f"there is no completion for {shell}")
-    click.echo(complete(context.find_root().command, {}, "nao", "_NAO_COMPLETE").source())
+    click.echo(get_completion_class(shell)(context.find_root().command, {}, "nao", "_NAO_COMPLETE").source())

@@ -20,14 +20,6 @@ SWITCHES = ("on", "off", "reset")
 """What lights can be besides a colour and an intensity: functions of their own."""
 
 
-def _seconds(value: float | None) -> Any:
-    if value is None:
-        return None
-    import rospy
-
-    return rospy.Duration.from_sec(value)
-
-
 def _complete_look(context: click.Context, parameter: click.Parameter, start: str) -> list[str]:
     lights, colours = (choices(LIGHTS, "setColor", each)(context, parameter, start) for each in ("lights", "str_param"))
     return [*lights, *colours, *(word for word in SWITCHES if word.startswith(start))]
@@ -67,7 +59,11 @@ def leds_command(
         raise click.UsageError("lights and their look are wanted: nao leds FaceLeds green")
     settings = settings_of(context)
     *names, look = lights
-    fields: dict[str, Any] = {"lights": names, "revert": revert, "time": _seconds(seconds)}
+    fields: dict[str, Any] = {"lights": names, "revert": revert}
+    if seconds is not None:
+        import rospy
+
+        fields["time"] = rospy.Duration.from_sec(seconds)
     intensity = _number(look)
     if any(_number(name) is not None for name in names):
         raise click.UsageError("one look is wanted: a colour by its name or as '#FF8000', an intensity 0..1: --help")
@@ -131,16 +127,15 @@ def _stands(settings: Any) -> bool:
         return bool(awake and robot.call("ALRobotPosture", "getPostureFamily") == "Standing")
 
 
-def _one_function(name: str, text: str) -> click.Command:
+def _one_function(name: str, function: str, text: str) -> click.Command:
     @click.command(cls=NaoCommand, name=name, help=text)
     @click.pass_context
     def run(context: click.Context) -> None:
         settings = settings_of(context)
-        carry_out(settings, MOTION, [function_message(settings, MOTION, function=_FUNCTIONS[name])], quiet=True)
+        carry_out(settings, MOTION, [function_message(settings, MOTION, function=function)], quiet=True)
 
     return run
 
 
-_FUNCTIONS = {"wake": "wakeUp", "rest": "rest"}
-wake_command = _one_function("wake", "Switch the motors on; a robot on its feet stands up.")
-rest_command = _one_function("rest", "Go to a safe posture and switch the motors off.")
+wake_command = _one_function("wake", "wakeUp", "Switch the motors on; a robot on its feet stands up.")
+rest_command = _one_function("rest", "rest", "Go to a safe posture and switch the motors off.")

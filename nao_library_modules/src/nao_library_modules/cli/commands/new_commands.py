@@ -23,7 +23,7 @@ To a simulated robot you answer from a second terminal, with a touch or, after t
   rosservice call /nao_sim/person_says "{text: 'yes', position: {x: 1.0, z: 0.5}}\""""
 
 
-@click.group(cls=NaoGroup, name="new", context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=NaoGroup, name="new")
 def new_command() -> None:
     """Write a skeleton for something of your own."""
 

@@ -28,11 +28,21 @@ COMPLETION_LIMIT = 60.0
 """s of this computer that a server may take to complete the file of a recording that was cut short."""
 STEPS = {"deleteThread": "the file is written"}
 """Function -> what the progress of a recording calls it."""
+seconds_option = click.option(
+    "--for",
+    "seconds",
+    type=Number("recording"),
+    metavar="S",
+    help="How long, in the robot's time; without: until Ctrl-C.",
+)
+camera_option = click.option(
+    "--camera", type=OneOf(("top", "bottom")), default="top", show_default=True, help="Which one."
+)
 
 
 @click.command(cls=NaoCommand, name="photo")
 @click.argument("file", default="", type=click.Path())
-@click.option("--camera", type=OneOf(("top", "bottom")), default="top", show_default=True, help="Which one.")
+@camera_option
 @click.option("--size", default="", metavar="WxH", help="In pixels; as the camera has them without.")
 @overwrite_option
 @click.pass_context
@@ -56,19 +66,15 @@ def photo_command(context: click.Context, file: str, camera: str, size: str, ove
     _hand_over(settings, Recorded(end), "pictures", lambda taken: _brought(taken, target, overwrite), alone=True)
 
 
-@click.group(cls=NaoGroup, name="record", context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=NaoGroup, name="record")
 def record_command() -> None:
     """Record a video, a sound, a motion or a behaviour, for a time or until Ctrl-C."""
 
 
-def _seconds_option(text: str) -> Any:
-    return click.option("--for", "seconds", type=Number("recording"), metavar="S", help=text)
-
-
 @record_command.command("video")
 @click.argument("file", default="", type=click.Path())
-@_seconds_option("How long, in the robot's time; without: until Ctrl-C.")
-@click.option("--camera", type=OneOf(("top", "bottom")), default="top", show_default=True, help="Which one.")
+@seconds_option
+@camera_option
 @click.option("--rate", type=Number("frame rate"), metavar="HZ", help="At most so many frames a second.")
 @overwrite_option
 @click.pass_context
@@ -104,7 +110,7 @@ def video(
 
 @record_command.command("sound")
 @click.argument("file", default="", type=click.Path())
-@_seconds_option("How long, in the robot's time; without: until Ctrl-C.")
+@seconds_option
 @click.option("--channels", default="", metavar="NAMES", help="Of left, right, front and rear, with commas between.")
 @overwrite_option
 @click.pass_context
@@ -146,7 +152,7 @@ def sound(context: click.Context, file: str, seconds: float | None, channels: st
 @record_command.command("motion")
 @click.argument("name")
 @click.argument("joints", nargs=-1)
-@_seconds_option("How long, in the robot's time; without: until Ctrl-C.")
+@seconds_option
 @click.option("--limp", is_flag=True, help="The joints can be moved by hand meanwhile.")
 @overwrite_option
 @click.pass_context
@@ -172,7 +178,7 @@ def motion(
 
 @record_command.command("behavior")
 @click.argument("name")
-@_seconds_option("How long, in the robot's time; without: until Ctrl-C.")
+@seconds_option
 @overwrite_option
 @click.pass_context
 def behavior(context: click.Context, name: str, seconds: float | None, overwrite: bool) -> None:

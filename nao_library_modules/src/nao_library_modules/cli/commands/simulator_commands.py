@@ -19,7 +19,7 @@ from ..stack import SIMULATOR
 VIEWS = ("front", "three_quarter", "side", "back", "far", "room", "face")
 
 
-@click.group(cls=NaoGroup, name="sim", context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=NaoGroup, name="sim")
 def sim_command() -> None:
     """Touch, push and picture a simulated robot, and rule its time."""
 
