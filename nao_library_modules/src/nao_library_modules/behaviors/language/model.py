@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import Any, Mapping, Tuple
+from typing import Any, ClassVar, Mapping, Tuple
 
 from ...base.failure_policy import FailurePolicy
 from .parameters import Parameter
@@ -25,9 +24,10 @@ def child(path: PathParts, number: int, separator: str = ".") -> PathParts:
 
 
 @dataclass(frozen=True)
-class Step(ABC):
+class Step:
     """What all steps have."""
 
+    what: ClassVar[str]  # what it is, in a word or two
     path: PathParts  # where it stands
     line: int = 0  # of the file; 0 if it is not known
     label: str = ""  # its name on a timeline; may be empty
@@ -35,11 +35,6 @@ class Step(ABC):
     limit: Any = None  # s after which it is ended and counts as done; None for no limit. May hold `${}`
     at: At | None = None  # when it begins, on a timeline
     whole: bool = True  # whether all of it could be read; what is inside of it does not count
-
-    @property
-    @abstractmethod
-    def what(self) -> str:
-        """What it is, in a word or two."""
 
     @property
     def parts(self) -> tuple[Step, ...]:
@@ -51,12 +46,8 @@ class Step(ABC):
 class Unreadable(Step):
     """Something in the place of a step that is none."""
 
+    what = "step"
     whole: bool = False
-
-    @property
-    def what(self) -> str:
-        """Nothing is known of it."""
-        return "step"
 
 
 @dataclass(frozen=True)
@@ -69,7 +60,6 @@ class Functions(Step):
 
     @property
     def what(self) -> str:
-        """The server and its function."""
         if self.chained:
             return f"chain {self.server}"
         return f"{self.server}.{self.functions[0].get('function', '')}"
@@ -79,11 +69,8 @@ class Functions(Step):
 class Wait(Step):
     """Let time pass."""
 
+    what = "wait"
     duration: Any = 0.0  # s of ROS time
-
-    @property
-    def what(self) -> str:
-        return "wait"
 
 
 @dataclass(frozen=True)
@@ -112,39 +99,30 @@ class Composite(Step):
 class Sequence(Composite):
     """One after the other."""
 
-    @property
-    def what(self) -> str:
-        return "sequence"
+    what = "sequence"
 
 
 @dataclass(frozen=True)
 class Parallel(Composite):
     """All at once."""
 
-    @property
-    def what(self) -> str:
-        return "parallel"
+    what = "parallel"
 
 
 @dataclass(frozen=True)
 class Timeline(Composite):
     """Each at its time."""
 
-    @property
-    def what(self) -> str:
-        return "timeline"
+    what = "timeline"
 
 
 @dataclass(frozen=True)
 class Repeat(Composite):
     """A sequence several times."""
 
+    what = "repeat"
     count: Any = 1
     variable: str = ""  # parameter that has the number of the round, counted from 1; may be empty
-
-    @property
-    def what(self) -> str:
-        return "repeat"
 
 
 @dataclass(frozen=True)
