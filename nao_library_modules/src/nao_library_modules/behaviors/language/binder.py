@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, Callable
 
 from naoqi.errors import NaoError
@@ -68,17 +68,15 @@ def bind_what_can_be(
     return program, binder.problems
 
 
+@dataclass(frozen=True)
 class _Scope:
-    """Where steps stand: the file, its parameters' values, the paths and boxes above."""
+    """Where steps stand."""
 
-    def __init__(
-        self, behavior: str, file: str, values: Mapping[str, Any], prefix: PathParts, boxes: tuple[str, ...]
-    ) -> None:
-        self.behavior = behavior
-        self.file = file
-        self.values = values
-        self.prefix = prefix
-        self.boxes = boxes
+    behavior: str
+    file: str
+    values: Mapping[str, Any]  # of the parameters
+    prefix: PathParts  # path of the box or round
+    boxes: tuple[str, ...]  # behaviours that they are in, the outermost first
 
     def path(self, path: PathParts) -> PathParts:
         """Path from the outermost behaviour on."""
@@ -111,11 +109,11 @@ class _Binder:
             "",
             f"behavior {behavior.name}",
             file=behavior.file,
-            nodes=self._all(body, scope),
+            nodes=self._all(body.parts, scope),
         )
 
-    def _all(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None = None) -> tuple[Node, ...]:
-        return tuple(node for node in (self._guarded(part, scope, home) for part in step.parts) if node is not None)
+    def _all(self, steps: Iterable[Step], scope: _Scope, home: tuple[PathParts, int] | None = None) -> tuple[Node, ...]:
+        return tuple(node for node in (self._guarded(step, scope, home) for step in steps) if node is not None)
 
     def _guarded(self, step: Step, scope: _Scope, home: tuple[PathParts, int] | None) -> Node | None:
         self._nodes += 1
@@ -171,8 +169,8 @@ class _Binder:
         if isinstance(step, Parallel):
             return self._parallel(step, scope, common)
         if isinstance(step, Timeline):
-            return OnTimeline(**common, nodes=self._all(step, scope))
-        return SequenceNode(**common, nodes=self._all(step, scope, home))
+            return OnTimeline(**common, nodes=self._all(step.parts, scope))
+        return SequenceNode(**common, nodes=self._all(step.parts, scope, home))
 
     def _goal(self, step: Functions, scope: _Scope, common: dict[str, Any]) -> Node | None:
         server = self._tables.server(step.server)
@@ -211,11 +209,9 @@ class _Binder:
         return SequenceNode(**common, nodes=inside.nodes, box=step.name)
 
     def _parallel(self, step: Parallel, scope: _Scope, common: dict[str, Any]) -> Node:
-        nodes = []
+        nodes: list[Node] = []
         for number, part in enumerate(step.steps, start=1):
-            node = self._guarded(part, scope, (common["path"], number))
-            if node is not None:
-                nodes.append(node)
+            nodes += self._all([part], scope, (common["path"], number))
         users: dict[str, Node] = {}
         for node in nodes:
             for server in servers_in(node):
@@ -238,13 +234,9 @@ class _Binder:
         def one(number: int, binder: _Binder) -> SequenceNode:
             values = {**scope.values, step.variable: number} if step.variable else scope.values
             # Steps of a round stand at 4#2.1: the path of the repetition makes way for the one with the round.
-            inside = _Scope(scope.behavior, scope.file, values, (*path, ("#", number)), scope.boxes)
-            nodes = []
-            for part in step.steps:
-                node = binder._guarded(_moved(part, len(step.path)), inside, None)
-                if node is not None:
-                    nodes.append(node)
-            return SequenceNode((*path, ("#", number)), scope.behavior, "", "round", nodes=tuple(nodes))
+            inside = replace(scope, values=values, prefix=(*path, ("#", number)))
+            nodes = binder._all((_moved(part, len(step.path)) for part in step.steps), inside)
+            return SequenceNode(inside.prefix, scope.behavior, "", "round", nodes=nodes)
 
         if not count:
             return RepeatNode(**common, count=0)
