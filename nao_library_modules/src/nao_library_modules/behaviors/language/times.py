@@ -26,25 +26,12 @@ def at_of(value: Any) -> At:
     """What a value of `at` means. Raises BadGoal if it means nothing."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return At(value)
-    if isinstance(value, str):
-        if value.strip().startswith("${"):
-            return At(value.strip())
-        match = _REFERENCE.fullmatch(value)
-        if match:
-            return At(_offset(match[3], value), match[1], match[2] is not None)
-        try:
-            return At(float(value))
-        except ValueError:
-            pass
-    raise BadGoal("at", value, ALLOWED)
-
-
-def _offset(text: str | None, whole: str) -> Any:
-    if text is None:
-        return 0.0
-    if text.startswith("${"):
-        return text
+    if not isinstance(value, str):
+        raise BadGoal("at", value, ALLOWED)
+    match = _REFERENCE.fullmatch(value)
+    offset = match[3] or "0" if match else value.strip()
     try:
-        return float(text)
+        seconds = offset if offset.startswith("${") else float(offset)
     except ValueError:
-        raise BadGoal("at", whole, ALLOWED) from None
+        raise BadGoal("at", value, ALLOWED) from None
+    return At(seconds, match[1], match[2] is not None) if match else At(seconds)
