@@ -93,7 +93,8 @@ def _value(kind: str, value: Any, where: str) -> Any:
 
 def _list(kind: str, length: str, value: Any, where: str) -> Any:
     if not isinstance(value, list):
-        raise BadGoal(where, value, f"a list: [{text_of(value) if _is_plain(value) else '...'}]")
+        example = text_of(value) if isinstance(value, (str, int, float)) else "..."
+        raise BadGoal(where, value, f"a list: [{example}]")
     if length and len(value) != int(length):
         raise BadGoal(where, value, f"{length} values", problem=f"it has {len(value)} values")
     items = [_value(kind, each, f"{where}[{i}]") for i, each in enumerate(value)]
@@ -146,7 +147,3 @@ def _same(a: Any, b: Any) -> bool:
     if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
         return len(a) == len(b) and all(map(_same, a, b))
     return bool(a == b)
-
-
-def _is_plain(value: Any) -> bool:
-    return isinstance(value, (str, int, float))

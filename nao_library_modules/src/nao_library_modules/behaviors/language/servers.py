@@ -76,7 +76,7 @@ class FunctionTables:
 
     def fields(self, server: ServerType, function: str) -> list[str]:
         """Fields that a function of a server takes, with those that all functions have; empty: there is none such."""
-        known = self._functions(server)
+        known = self._chain(server).table if server.ours else {}
         if function in known:
             taken = fields_taken(known[function], server.function.__slots__)
         else:
@@ -117,7 +117,7 @@ class FunctionTables:
             ]
             return GoalCheck((), unchecked)
         found = check_goals(self._module(server), goals, elsewhere=True)
-        unknown = {each.function for each in found.problems} - set(self._functions(server))
+        unknown = {each.function for each in found.problems} - set(self._chain(server).table)
         there = self._described(server, sorted(unknown)) if unknown else {}
         return GoalCheck(
             [each for each in found.problems if each.function not in there],
@@ -146,9 +146,6 @@ class FunctionTables:
             return {each.name: each for each in self._describe(server.name, functions).functions}
         except NotDescribed:
             return {}
-
-    def _functions(self, server: ServerType) -> Mapping[str, Callable[..., Any]]:
-        return self._chain(server).table if server.ours else {}
 
     def _chain(self, server: ServerType) -> FunctionChain:
         if server.name not in self._chains:

@@ -115,15 +115,10 @@ def load(text: str, name: str) -> Any:
     except TooMuch as error:
         raise BehaviorError(name, [Problem("", str(error))]) from error
     except yaml.YAMLError as error:
-        text, line = _in_a_line(error)
-        raise BehaviorError(name, [Problem("", f"no YAML: {text}", line)]) from error
-
-
-def _in_a_line(error: Exception) -> tuple[str, int]:
-    """What is wrong, and in which line; 0 if that is not known."""
-    mark = getattr(error, "problem_mark", None)
-    problem = getattr(error, "problem", None) or str(error)
-    return " ".join(str(problem).split()), 0 if mark is None else mark.line + 1
+        mark = getattr(error, "problem_mark", None)
+        problem = " ".join(str(getattr(error, "problem", None) or error).split())
+        line = 0 if mark is None else mark.line + 1
+        raise BehaviorError(name, [Problem("", f"no YAML: {problem}", line)]) from error
 
 
 class _Dumper(yaml.SafeDumper):
