@@ -34,6 +34,8 @@ COMMON = ("label", "on_error", "for")
 KINDS = ("SERVER.FUNCTION", "parallel", "timeline", "behavior", "chain", "wait", "repeat", "do", "barrier")
 FURTHER = {"behavior": ("parameters",), "repeat": ("do", "as")}
 """Keys that a kind has beside its own."""
+_GROUPS = {"parallel": Parallel, "timeline": Timeline, "do": Sequence}
+"""Kinds that hold nothing but a list of steps."""
 _LABEL = re.compile(LABEL)
 _VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _FUNCTION = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)\.([A-Za-z_][A-Za-z0-9_]*)")
@@ -48,12 +50,9 @@ class StepReader:
         self._here = ("", 0)
         self._kinds: dict[str, Callable[[Any, dict[Any, Any], dict[str, Any]], Step]] = {
             "wait": self._wait,
-            "parallel": self._parallel,
-            "timeline": self._timeline,
             "behavior": self._box,
             "chain": self._chain,
             "repeat": self._repeat,
-            "do": self._do,
             "barrier": self._barrier,
         }
 
@@ -97,12 +96,14 @@ class StepReader:
             common["at"] = at_of(content.get("at", 0.0))
             if not self._known_names("at", common["at"].offset):
                 common["at"] = replace(common["at"], offset=UNKNOWN)
+        if kind in _GROUPS:
+            return _GROUPS[kind](**common, steps=self._list(kind, content[kind], path, timed=kind == "timeline"))
         if kind in self._kinds:
             return self._kinds[kind](content[kind], content, common)
         return self._function(kind, content[kind], common)
 
     def _kind(self, content: dict[Any, Any]) -> str:
-        kinds = [key for key in content if key in self._kinds or (isinstance(key, str) and "." in key)]
+        kinds = [key for key in content if key in KINDS or (isinstance(key, str) and "." in key)]
         if "repeat" in kinds and "do" in kinds:
             kinds.remove("do")
         if len(kinds) == 1:
@@ -157,15 +158,6 @@ class StepReader:
             if key in content:
                 raise BadGoal(key, content[key], "nothing", f"a barrier has no {key!r}")
         return Barrier(**common, name=value)
-
-    def _parallel(self, value: Any, _content: dict[Any, Any], common: dict[str, Any]) -> Step:
-        return Parallel(**common, steps=self._list("parallel", value, common["path"]))
-
-    def _timeline(self, value: Any, _content: dict[Any, Any], common: dict[str, Any]) -> Step:
-        return Timeline(**common, steps=self._list("timeline", value, common["path"], timed=True))
-
-    def _do(self, value: Any, _content: dict[Any, Any], common: dict[str, Any]) -> Step:
-        return Sequence(**common, steps=self._list("do", value, common["path"]))
 
     def _repeat(self, value: Any, content: dict[Any, Any], common: dict[str, Any]) -> Step:
         count = self._number("repeat", value, "rounds")
