@@ -6,6 +6,8 @@ cancelled and seen to its end.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any, Callable
 
 from actionlib_msgs.msg import GoalStatus
@@ -31,7 +33,6 @@ from ..language.program import (
     servers_in,
     walk,
 )
-from .fifo_lock import FifoLock
 from .report import ENDED, FAILED, LATE, PREEMPTED, RETRIED, SKIPPED, TOLD, RunReport, StepEvent, StepRecord
 from .timeline import TimelineRun
 
@@ -56,7 +57,7 @@ class Execution:
         self._program = program
         self._clients = {server: clients(server) for server in servers_in(program)}
         self._clock = clock
-        self._turns = FifoLock(self._clients)
+        self._turns = _FifoLock(self._clients)
         self._meetings: dict[PathParts, tuple[Node, Fluent]] = {}
         self.report = RunReport(clock, tell)
 
@@ -239,3 +240,37 @@ def _news(feedback: Any) -> str:
         parts.append(f"function {feedback.index + 1} of {feedback.count}: {feedback.function}")
     parts += [str(getattr(feedback, name)) for name in ("status", "word") if getattr(feedback, name, "")]
     return ", ".join(parts)
+
+
+class _FifoLock:
+    """A turn with each of several servers, which run one goal at a time: a further one would end the first.
+
+    Who came first is first, at the same time by the order of the file.
+    """
+
+    def __init__(self, servers: Iterable[str]) -> None:
+        # (ticket of who has the turn or None, tickets of who waits)
+        self._queues = {server: Fluent(f"turn with {server}", (None, ())) for server in servers}
+
+    @contextmanager
+    def of(self, server: str, now: float, path: PathParts) -> Iterator[None]:
+        """Have the turn with a server in a block; waits for it, in a plan. `now`: time of asking, s."""
+        queue = self._queues[server]
+        ticket = (now, tuple(number for _, number in path), object())
+
+        def take(state: Any) -> Any:
+            holder, waiting = state
+            if holder is None and min(waiting, key=lambda each: each[:2]) is ticket:
+                return ticket, tuple(each for each in waiting if each is not ticket)
+            return state
+
+        def leave(state: Any) -> Any:
+            holder, waiting = state
+            return None if holder is ticket else holder, tuple(each for each in waiting if each is not ticket)
+
+        queue.update(lambda state: (state[0], (*state[1], ticket)))
+        try:
+            wait_until(lambda: queue.update(take)[0] is ticket, [queue])
+            yield
+        finally:
+            queue.update(leave)
