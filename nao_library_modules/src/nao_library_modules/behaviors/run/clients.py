@@ -47,13 +47,9 @@ def running() -> list[str]:
 class ServerClient(PlanActionClient):
     """Client of a server whose goals are chains of functions; see `PlanActionClient.call` and `wait_for_server`."""
 
-    def __init__(self, server: ServerType) -> None:
-        super().__init__(server.name, server.action)
-        self._name = server.name
-
     def check(self, goals: Sequence[Any]) -> GoalCheck:
         """Have the server check goals without carrying them out. Raises NotValidated if it does not, or not in time."""
-        return check_goals(self._name, *goals)
+        return check_goals(self.name, *goals)
 
 
 class Clients:
@@ -71,7 +67,8 @@ class Clients:
         """The client of a server. Raises BadGoal if there is no server of that name."""
         with self._lock:
             if name not in self._clients:
-                self._clients[name] = ServerClient(self._types(name))
+                server = self._types(name)
+                self._clients[name] = ServerClient(server.name, server.action)
             return self._clients[name]
 
 
