@@ -45,18 +45,10 @@ class RunningFunctions(Part):
     """Functions that run and show behaviours. Parameters are fields of BehaviorFunction.
 
     `steps`: what became of the steps of behaviours that this goal has run. `shown`: behaviours that this goal has asked
-    for.
+    for. `clients`: name of a server -> its client.
     """
 
     def __init__(self, module: NaoBasic, store: BehaviorStore, tables: FunctionTables, clients: Any) -> None:
-        """Keep what the functions need.
-
-        Args:
-            module: Publishes what happens to the steps.
-            store: Behaviours by name.
-            tables: Functions of the servers.
-            clients: Name of a server -> its client.
-        """
         self._module = module
         self._store = store
         self.tables = tables
