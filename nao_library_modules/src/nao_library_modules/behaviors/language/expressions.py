@@ -18,6 +18,8 @@ from ...base.suggestion import did_you_mean
 Number = Union[int, float]
 _PART = re.compile(r"\$\$\{|\$\{([^{}]*)\}|\$\{")
 _WORD = re.compile(r"[A-Za-z_]\w*")
+IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+"""What parameters, servers and functions may be called."""
 _PLAIN = "__plain"
 """Behind a word of Python's in what its parser reads: a parameter may be called `from`."""
 _OPERATIONS = {

@@ -11,7 +11,7 @@ from typing import Any
 from ...base.errors import BadGoal
 from ...base.suggestion import did_you_mean
 from .errors import BehaviorError, Problem
-from .expressions import UNKNOWN, text_of
+from .expressions import IDENTIFIER, UNKNOWN, text_of
 from .model import Behavior, Sequence
 from .parameters import LIST, NUMBER, Parameter, kind_of
 from .step_reader import StepReader
@@ -20,7 +20,6 @@ from .yaml_text import line_in, line_of, load
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,99}")
 NAME_ALLOWED = "letters, digits, '_' and '-', at most 100, no '-' in front"
-PARAMETER_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 KEYS = ("help", "tags", "parameters", "do")
 PARAMETER_KEYS = ("default", "help", "choices", "min", "max", "unit")
 
@@ -108,7 +107,7 @@ def _wrong_keys(facts: Any) -> Iterator[BadGoal]:
 
 
 def _parameter(name: Any, facts: Any) -> Parameter:
-    if not isinstance(name, str) or not PARAMETER_NAME.fullmatch(name):
+    if not isinstance(name, str) or not IDENTIFIER.fullmatch(name):
         raise BadGoal("parameters", name, "letters, digits and '_', no digit in front", "it is no name")
     if not isinstance(facts, dict):
         raise BadGoal(name, facts, "{default: ..., help: ...}")

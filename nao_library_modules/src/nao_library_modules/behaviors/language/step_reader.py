@@ -11,7 +11,7 @@ from ...base.errors import BadGoal
 from ...base.failure_policy import FailurePolicy
 from ...base.suggestion import did_you_mean
 from .errors import Problem
-from .expressions import UNKNOWN, names_in
+from .expressions import IDENTIFIER, UNKNOWN, names_in
 from .model import (
     Barrier,
     Box,
@@ -37,8 +37,7 @@ FURTHER = {"behavior": ("parameters",), "repeat": ("do", "as")}
 _GROUPS = {"parallel": Parallel, "timeline": Timeline, "do": Sequence}
 """Kinds that hold nothing but a list of steps."""
 _LABEL = re.compile(LABEL)
-_VARIABLE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_FUNCTION = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)\.([A-Za-z_][A-Za-z0-9_]*)")
+_FUNCTION = re.compile(rf"({IDENTIFIER.pattern})\.({IDENTIFIER.pattern})")
 
 
 class StepReader:
@@ -162,7 +161,7 @@ class StepReader:
     def _repeat(self, value: Any, content: dict[Any, Any], common: dict[str, Any]) -> Step:
         count = self._number("repeat", value, "rounds")
         variable = content.get("as", "")
-        if "as" in content and not (isinstance(variable, str) and _VARIABLE.fullmatch(variable)):
+        if "as" in content and not (isinstance(variable, str) and IDENTIFIER.fullmatch(variable)):
             raise BadGoal("as", variable, "a name: letters, digits and '_', the first no digit")
         if variable in self._names:
             raise BadGoal("as", variable, "a name that nothing else has", f"there is a {variable!r} already")

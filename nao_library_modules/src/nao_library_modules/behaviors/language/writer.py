@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ...base.errors import BadGoal
-from .expressions import escaped
+from .expressions import IDENTIFIER, escaped
 from .messages import fields_of
 from .servers import OWN
 from .yaml_text import dump
-
-_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def step_of(server: str, goal: Any) -> dict[str, Any]:
@@ -21,7 +18,7 @@ def step_of(server: str, goal: Any) -> dict[str, Any]:
         raise BadGoal("server", server, "another one", "a behavior that sends goals to NaoBehavior would end itself")
     messages = getattr(goal, goal.__slots__[0])
     functions = [escaped(fields_of(message)) for message in messages]
-    if len(functions) == 1 and _WORD.fullmatch(functions[0].get("function", "")):
+    if len(functions) == 1 and IDENTIFIER.fullmatch(functions[0].get("function", "")):
         fields = dict(functions[0])
         return {f"{server}.{fields.pop('function')}": fields}
     return {"chain": {server: functions}}
