@@ -37,8 +37,8 @@ class FakeGraph:
     def subscribed(self):
         return {f"{name}/goal": ["/node"] for name in self.servers}
 
-    def parameter(self, name, default=None):
-        return self.parameters.get(name, default)
+    def parameter(self, name):
+        return self.parameters.get(name)
 
     def alive(self, service):
         return True

@@ -30,7 +30,6 @@ class _Transport(xmlrpc.client.Transport):
         self._limit = limit
 
     def make_connection(self, host: Any) -> http.client.HTTPConnection:
-        """As the base class does, with a limit."""
         connection = super().make_connection(host)
         connection.timeout = self._limit
         return connection
@@ -39,7 +38,7 @@ class _Transport(xmlrpc.client.Transport):
 class Graph:
     """The master of this shell, asked when something is wanted of it. `limit`: s that an answer may take."""
 
-    def __init__(self, limit: float = LIMIT) -> None:
+    def __init__(self, limit: float) -> None:
         self.uri = os.environ.get("ROS_MASTER_URI") or DEFAULT_MASTER
         self._limit = limit
         self._master = xmlrpc.client.ServerProxy(self.uri, transport=_Transport(limit))
@@ -56,10 +55,10 @@ class Graph:
         """Topic -> nodes that read it."""
         return self._system()[1]
 
-    def parameter(self, name: str, default: Any = None) -> Any:
-        """Value of a parameter by its full name."""
+    def parameter(self, name: str) -> Any:
+        """Value of a parameter by its full name; None if there is none."""
         code, _, value = self._ask("getParam", name)
-        return value if code == 1 else default
+        return value if code == 1 else None
 
     def alive(self, service: str) -> bool:
         """Whether the node of a service still answers; the service is not called."""
