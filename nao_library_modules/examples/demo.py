@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Plays a demonstration on a simulated NAO and checks every step against what the robot reports.
+"""Plays a demonstration on simulated NAOs and checks every step against what they report.
 
 Starts simulator and action servers on a ROS master of its own, wakes the robot up, sends the lights through their paces
-as goals, has it find a ball, walk to a table meanwhile, greet and hear itself. Then a second robot, on a stack of its
-own, plays the ten behaviours that come with the library. Leaves pictures, sound, a film, a table and the logs of the
-stacks in the output folder, which has to be empty unless --overwrite says that all this may be replaced.
-The exit status tells whether all of it went as asked.
+as goals, has it find a ball, walk to a table meanwhile, greet and hear itself. Beside it a second robot, on a stack of
+its own, plays the ten behaviours that come with the library; both live faster than real time. Leaves pictures, sound,
+a film, a table and the logs of the stacks in the output folder, which has to be empty unless --overwrite says that all
+this may be replaced. The exit status tells whether all of it went as asked.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ import json
 import subprocess
 import sys
 import threading
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Mapping
+from typing import Callable, Iterator, List, Mapping, Tuple
 
 # In the devel space rosrun starts a relay from another folder.
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -33,7 +34,8 @@ from example_parts.demo_support import (
 from nao_library_modules.whole_file import write_whole
 
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
-START_LIMIT = 60.0
+# s of simulated time.
+START_LIMIT = 240.0
 STEP_LIMIT = 30.0
 # m. The near edge of the table is 0.6 m ahead of where the robot starts.
 TO_THE_TABLE = 0.45
@@ -54,6 +56,10 @@ NEAR, USUAL = 0.15, 0.4
 MIN_GREEN_PIXELS = 150
 
 
+Rows = List[Tuple[str, str, bool]]
+"""Of the table: what was asked, what the robot reports, whether that is good."""
+
+
 class Demonstration:
     """Client of a running stack: sends goals, reads the robot, takes pictures, keeps the table.
 
@@ -71,8 +77,8 @@ class Demonstration:
         from naoqi import ALProxy
 
         self._output = output
-        self.rows: list[tuple[str, str, bool]] = []
-        stack.wait_for_master(START_LIMIT)
+        self.rows: Rows = []
+        stack.wait_for_robot()  # whose time is that of ROS: the parameter is set by then
         rospy.init_node("nao_library_demo", disable_signals=True)
         self._lights = SimpleActionClient("NaoLights", NaoLedAction)
         if not self._lights.wait_for_server(rospy.Duration(START_LIMIT)):
@@ -240,7 +246,7 @@ def play_behaviors(output: Path) -> int:
     Returns:
         Exit status: 0 when every one went as asked.
     """
-    rows: list[tuple[str, str, bool]] = []
+    rows: Rows = []
 
     def report(asked: str, reported: str, good: bool) -> None:
         rows.append((asked, reported, good))
@@ -255,19 +261,28 @@ def play_behaviors(output: Path) -> int:
     return 0 if all(good for _, _, good in rows) else 1
 
 
-def behavior_rows(output: Path) -> list[tuple[str, str, bool]]:
-    """Rows of the table about the ten behaviours, played by a process of its own."""
+@contextmanager
+def behaviors_beside(output: Path) -> Iterator[Callable[[], Rows]]:
+    """Play the ten behaviours in a process of its own; what this gives waits for their rows of the table."""
     (output / BEHAVIOR_ROWS).unlink(missing_ok=True)
-    subprocess.run([sys.executable, __file__, "--output", str(output), "--overwrite", "--behaviors"], check=False)
+    process = subprocess.Popen([sys.executable, __file__, "--output", str(output), "--overwrite", "--behaviors"])
+
+    def rows() -> Rows:
+        process.wait()
+        try:
+            return [tuple(row) for row in json.loads((output / BEHAVIOR_ROWS).read_text(encoding="utf-8"))]
+        except (OSError, ValueError) as error:
+            return [("the ten behaviours", f"their process has ended: {error}", False)]
+
     try:
-        return [tuple(row) for row in json.loads((output / BEHAVIOR_ROWS).read_text(encoding="utf-8"))]
-    except (OSError, ValueError) as error:
-        return [("the ten behaviours", f"their process has ended: {error}", False)]
+        yield rows
     finally:
+        process.terminate()  # if it still plays; its stack ends with it
+        process.wait()
         (output / BEHAVIOR_ROWS).unlink(missing_ok=True)
 
 
-def play_all(stack: Stack, output: Path) -> list[tuple[str, str, bool]]:
+def play_all(stack: Stack, output: Path) -> Rows:
     """The whole demonstration; returns the table."""
     demonstration = Demonstration(stack, output)
     demonstration.wake_up()
@@ -302,17 +317,17 @@ def main() -> int:
         return 1
     if chosen.behaviors:
         return play_behaviors(output)
-    print(f"starting the simulated NAO and its action servers (log: {output / 'stack.log'})", flush=True)
-    stack = Stack(output)
-    try:
-        rows = play_all(stack, output)
-    except Exception as error:
-        print(f"  FAIL  {error}\n        see {stack.log}", flush=True)
-        return 1
-    finally:
-        stack.stop()
-    print("playing the ten behaviours (log: behaviors.log)", flush=True)
-    rows += behavior_rows(output)
+    print(f"starting two simulated NAOs with their action servers (stack.log, behaviors.log in {output})", flush=True)
+    with behaviors_beside(output) as wait_for_behaviors:
+        stack = Stack(output)
+        try:
+            rows = play_all(stack, output)
+        except Exception as error:
+            print(f"  FAIL  {error}\n        see {stack.log}", flush=True)
+            return 1
+        finally:
+            stack.stop()
+        rows += wait_for_behaviors()
     write_table(rows, output / "table.md")
     failures = sum(not good for _, _, good in rows)
     left = f"pictures, {SOUND}, {FILM}, {SHEET} and table.md"

@@ -13,12 +13,11 @@ from typing import Any
 from nao_library_modules.processes.own_stack import OwnStack
 
 from .contact_sheet import Part, contact_sheet, save_small
+from .demo_support import SPEED
 
 FILM, SHEET = "behaviors.mp4", "behaviors.png"
 SIZE, RATE, VIEW = 360, 15.0, "stage"
 """Of the film: pixels each way, pictures a second, from where."""
-SPEED = "2"
-"""Of time; as fast as possible would leave the nodes behind, and what is to be together would not be."""
 START_LIMIT = 120.0
 """s of wall time for the servers to come up."""
 LIMIT = 600.0

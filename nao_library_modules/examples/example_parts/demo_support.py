@@ -11,6 +11,8 @@ from nao_library_modules.base.whole_file import write_whole
 from nao_library_modules.processes.own_stack import OwnStack
 
 WORLD = "lab"
+SPEED = "3"
+"""Of time: nobody watches. As fast as possible would leave the nodes behind."""
 # Everything the loudspeakers play.
 SOUND = "sound.wav"
 # Root mean square of speech, of full scale.
@@ -27,7 +29,8 @@ class Stack(OwnStack):
     def __init__(self, output: Path) -> None:
         if (output / SOUND).exists():
             (output / SOUND).unlink()  # of the last demonstration; the simulator would not replace it
-        super().__init__(output / "stack.log", {"record_dir": str(output), "world": WORLD, "sound_file": SOUND})
+        arguments = {"record_dir": str(output), "world": WORLD, "sound_file": SOUND, "speed": SPEED}
+        super().__init__(output / "stack.log", arguments)
         os.environ["ROS_MASTER_URI"] = self.master_uri
 
 
