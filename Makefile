@@ -18,7 +18,9 @@ setup: ## Install the missing Debian packages and the virtual environment .venv
 build: setup ## Build the catkin workspace .ws
 	@scripts/build
 
-demo: build ## Play the demonstration in the simulator; pictures, sound and a table in demo_output, in place of the last ones
+demo: ## Play the demonstration in the simulator; pictures, sound and a table in demo_output, in place of the last ones
+	@scripts/setup --headless
+	@scripts/build
 	@scripts/ros-env python3 nao_library_modules/examples/demo.py --output demo_output --overwrite
 
 test: build ## Run the tests of the levels logic, robot and ros; closes with "N passed, N failed" (TESTS="lights walk")
