@@ -60,7 +60,7 @@ class Stack:
 
     @cached_property
     def goal_clients(self) -> tuple[GoalClient, GoalClient]:
-        """Clients of our server for the lights and of a bare server for the same action, as they come."""
+        """Clients of our server for the lights and of a bare one for the same action; neither waits for its client."""
         return self._goal_servers("busy")
 
     @cached_property
@@ -71,6 +71,11 @@ class Stack:
         makes hundreds in that time, a user a few; these servers forget them soon.
         """
         return self._goal_servers("rare", FORGET_AFTER)
+
+    @cached_property
+    def lights_client(self) -> GoalClient:
+        """A client of our server for the lights, as users have it: no goal is over before its client has noted it."""
+        return self._client_of(LIGHTS, "nao_lights")
 
     @cached_property
     def motion_client(self) -> GoalClient:
@@ -90,7 +95,7 @@ class Stack:
     def start_behaviors(self, folder: str) -> tuple[GoalClient, GoalClient]:
         """Start the server for behaviours on a folder; clients of it, and of a server for lights beside it."""
         behaviors = self._client_of("NaoBehavior", "nao_behavior_server", f"_behavior_dir:={folder}")
-        return behaviors, self._client_of(LIGHTS, "nao_lights")
+        return behaviors, self.lights_client
 
     def _goal_servers(self, name: str, forget_after: float | None = None) -> tuple[GoalClient, GoalClient]:
         self.start_ros()

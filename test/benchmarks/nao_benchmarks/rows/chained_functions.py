@@ -24,7 +24,7 @@ class ChainedFunctions(Row):
 
     def measure(self, stack: Stack) -> Figures:
         """Measure both ways with our server in turns; for the note also each goal by itself."""
-        client, _ = stack.goal_clients
+        client = stack.lights_client
         # Alternating, so that every call of the chain changes something.
         steps = [{"lights": [LIGHT], "i_values": [float(i % 2)]} for i in range(FUNCTIONS)]
         together, alone = client.goal("setIntensity", *steps), client.goal("setIntensity", steps[0])
