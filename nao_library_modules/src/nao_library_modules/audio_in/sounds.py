@@ -13,6 +13,7 @@ from std_msgs.msg import Header
 from nao_library_msgs.msg import HeardSound
 from naoqi.errors import NaoError
 
+from ..base.places import FOOTPRINT
 from ..functions.parts import Part
 from ..robot.robot_clock import same_clock
 from ..server.extractor_use import Event
@@ -24,8 +25,8 @@ from .hearing import Hearing
 log = logging.getLogger(__name__)
 
 DETECTED, LOCATED = "SoundDetected", "ALSoundLocalization/SoundLocated"
-HEAD, BASE = "Head", "base_footprint"
-"""Frames of the robot, as its description and nao_joint_states name them."""
+HEAD = "Head"
+"""Frame of the robot, as its description names it."""
 
 
 class SoundFunctions(Part):
@@ -89,7 +90,7 @@ class SoundFunctions(Part):
     def _note(self, when: float, confidence: float, sound: LocatedSound | None = None) -> None:
         self._module.happened = (when, 0.0)
         header = Header(stamp=Time.from_sec(when), frame_id=self._frame_prefix + HEAD)
-        message = HeardSound(header=header, confidence=confidence, base_frame=self._frame_prefix + BASE)
+        message = HeardSound(header=header, confidence=confidence, base_frame=self._frame_prefix + FOOTPRINT)
         if sound is not None:
             message.located = True
             message.azimuth, message.elevation = sound.in_head.azimuth, sound.in_head.elevation

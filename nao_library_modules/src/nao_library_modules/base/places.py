@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+BASE_LINK, FOOTPRINT, ODOM = "base_link", "base_footprint", "odom"
+"""Names of frames where nothing else is asked for, as in REP 105 and 120."""
+
 
 class Place(NamedTuple):
     """A point on the floor and a heading; also the way that leads there from the origin."""

@@ -28,7 +28,7 @@ from nao_library_actions.msg import (
 from nao_library_msgs.srv import CmdPoseService, CmdVelService
 from naoqi.errors import NaoError
 
-from ..base.places import Place
+from ..base.places import FOOTPRINT, Place
 from ..functions.joint_trajectory import KeyFrames
 from ..nao.pose_tables import built_in
 from ..owners.line import SERVICE
@@ -100,7 +100,7 @@ class NaoRobotDriver:
     def walk_to(self, place: Place) -> DriverCall | None:
         """Walk to a place seen from the robot, by who plans walks; False if somebody stopped it."""
         goal = MoveBaseGoal()
-        goal.target_pose.header.frame_id = tf_prefix() + "base_footprint"
+        goal.target_pose.header.frame_id = tf_prefix() + FOOTPRINT
         goal.target_pose.pose = pose_of((place.x, place.y, 0.0, 0.0, 0.0, place.yaw))
         return self._send("walk_target", goal, _walked) if self.there() else None
 

@@ -11,11 +11,9 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 
 from naoqi.errors import NaoError
 
-from ..base.places import Place, yaw_of_quaternion
+from ..base.places import FOOTPRINT, Place, yaw_of_quaternion
 from ..base.rotations import from_roll_pitch_yaw
 
-ROBOT = "base_footprint"
-"""The frame of the robot: on the floor between its feet, as nao_joint_states publishes it."""
 PATIENCE = 2.0
 """s that a frame may take to appear: a listener that has just begun knows nothing yet."""
 
@@ -32,7 +30,7 @@ class RobotFrames:
 
         `frame`: its name. Raises NaoError if it is not connected with the robot.
         """
-        robot = tf_prefix() + ROBOT
+        robot = tf_prefix() + FOOTPRINT
         patience = rospy.Duration.from_sec(PATIENCE)
         try:
             found = self._buffer.lookup_transform(robot, frame.lstrip("/"), rospy.Time(), patience).transform

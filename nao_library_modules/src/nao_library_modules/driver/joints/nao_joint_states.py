@@ -15,6 +15,7 @@ from tf2_msgs.msg import TFMessage
 from nao_library_msgs.srv import SetTransform
 
 from ...base.once_per_connection import OncePerConnection
+from ...base.places import BASE_LINK, FOOTPRINT, ODOM
 from ...nao.joint_names import JointNames
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
@@ -56,9 +57,9 @@ class NaoJointStates:
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         rate = number(node, "~sensor_rate", node.param("~torso_odom_rate", DEFAULT_RATE), "reading rate")
-        self._base = frame_parameter(node, "~base_frame_id", "base_link")
-        self._footprint = frame_parameter(node, "~footprint_frame_id", "base_footprint")
-        self._odom = frame_parameter(node, "~odom_frame_id", "odom")
+        self._base = frame_parameter(node, "~base_frame_id", BASE_LINK)
+        self._footprint = frame_parameter(node, "~footprint_frame_id", FOOTPRINT)
+        self._odom = frame_parameter(node, "~odom_frame_id", ODOM)
         use_sensors = bool(node.param("~use_joint_sensors", True))
         use_odometry = bool(node.param("~use_odometry", True))
         names = JointNames(robot)

@@ -22,7 +22,7 @@ from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import RobotLost
-from ...base.places import Place
+from ...base.places import FOOTPRINT, ODOM, Place
 from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome, Replaced
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
@@ -66,8 +66,8 @@ class NaoPathFollower:
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._node = node
         self._settings = FollowerSettings.read(node.param)
-        self._base = frame_parameter(node, "~base_frame_id", "base_footprint")
-        self._odom = frame_parameter(node, "~odom_frame_id", "odom")
+        self._base = frame_parameter(node, "~base_frame_id", FOOTPRINT)
+        self._odom = frame_parameter(node, "~odom_frame_id", ODOM)
         self._frames = PlanarFrames()
         self._legs = WalkTopics(robot, node, self._settings.use_vel_ctrl)
         self._clock = RosClock()

@@ -11,7 +11,7 @@ from std_msgs.msg import Empty
 
 from naoqi.errors import NaoError
 
-from ...base.places import Place
+from ...base.places import FOOTPRINT, ODOM, Place
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ..base.node import frame_parameter
@@ -32,8 +32,8 @@ class NaoqiMoveTo:
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
         self._node = node
-        self._base = frame_parameter(node, "~base_frame_id", "base_footprint")
-        self._odom = frame_parameter(node, "~odom_frame_id", "odom")
+        self._base = frame_parameter(node, "~base_frame_id", FOOTPRINT)
+        self._odom = frame_parameter(node, "~odom_frame_id", ODOM)
         self._frames = PlanarFrames()
         self._walk = MoveToWalk(robot)
         self._node.subscriber("move_base_simple/goal", PoseStamped, self._on_goal, queue_size=1)

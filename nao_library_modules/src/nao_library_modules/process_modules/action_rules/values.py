@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ...base.limits import limit
-from ...base.places import Place
+from ...base.places import ODOM, Place
 from ..designators.designator import Designator, action, motion
 from ..designators.patterns import Mismatch, Pattern, anything, one_of
 from ..designators.rules import rule
@@ -15,7 +15,7 @@ from ..language.failures import DesignatorError
 from ..language.settings import numbers_of_nao
 from ..language.space import Point3, Position
 
-ODOM, TORSO = "odom", "torso"
+TORSO = "torso"
 SIDE = one_of("left", "right")
 BOTH = (action, motion)
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Callable, Iterable
 
-from ...base.places import Place, wrapped
+from ...base.places import ODOM, Place, wrapped
 from ..language.failures import DesignatorError
 from ..language.settings import numbers_of_nao
 from ..language.short_text import short_repr
@@ -127,7 +127,7 @@ def pose_of_description(desig: Designator) -> Iterator[Candidate]:
         x, y, yaw = map(float, [*pose, 0.0][:3])
     except (TypeError, ValueError, OverflowError):
         raise DesignatorError(desig, f"its pose is {short_repr(pose)}, not [x, y, yaw] in m and rad") from None
-    yield Candidate(Place(x, y, yaw), str(desig.get("frame", "odom")))
+    yield Candidate(Place(x, y, yaw), str(desig.get("frame", ODOM)))
 
 
 def around_object(desig: Designator) -> Iterator[Candidate]:

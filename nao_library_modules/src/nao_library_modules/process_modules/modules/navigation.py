@@ -8,7 +8,7 @@ from typing import Any
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
-from ...base.places import Place, wrapped, yaw_of_quaternion
+from ...base.places import ODOM, Place, wrapped, yaw_of_quaternion
 from ..language.failures import NavigationGoalNotReached, NavigationPoseUnreachable
 from ..language.fluents import Fluent
 from ..robot.robot_link import RobotLink
@@ -17,7 +17,6 @@ from .robot_module import RobotModule
 ACTION = "walk_target"
 MARGIN = 20.0
 """s that a walk may take longer than the slowest one."""
-ODOM = "odom"
 
 
 class Navigation(RobotModule):

@@ -8,13 +8,13 @@ from typing import Any
 from nao_library_actions.msg import NaoVisionAction, NaoVisionGoal
 from nao_library_msgs.msg import VisionFunction
 
+from ...base.places import ODOM
 from ...base.suggestion import of_those
 from ..language.failures import PerceptionLowLevelFailure, PerceptionObjectNotFound
 from ..language.space import Point3
 from .robot_module import RobotModule
 
 ACTION = "NaoVision"
-ODOM = "odom"
 MARGIN = 10.0
 """s that the server may take beyond what it was given to look."""
 DETECTORS = {

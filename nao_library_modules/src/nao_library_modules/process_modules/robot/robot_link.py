@@ -11,7 +11,7 @@ import rospy
 import tf2_ros
 from sensor_msgs.msg import JointState
 
-from ...base.places import Place, yaw_of_quaternion
+from ...base.places import FOOTPRINT, Place, yaw_of_quaternion
 from ...base.rotations import rotate
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
@@ -30,7 +30,6 @@ OLDEST = 10.0
 LISTENER_PERIOD = 0.02
 OTHERS_LIMIT = 2.0
 """s to wait, when the first listener is there, for others that the master knows: one that was killed never comes."""
-ROBOT = "base_footprint"
 TORSO = "torso"
 
 
@@ -135,7 +134,7 @@ class RobotLink:
 
     def place(self, frame: str) -> Place:
         """Where the robot is now, seen from above, in a frame; LowLevelFailure if the frame is unknown."""
-        found = self._transform(frame, ROBOT)
+        found = self._transform(frame, FOOTPRINT)
         turn = found.rotation
         yaw = yaw_of_quaternion(turn.x, turn.y, turn.z, turn.w)
         return Place(found.translation.x, found.translation.y, 0.0 if yaw is None else yaw)

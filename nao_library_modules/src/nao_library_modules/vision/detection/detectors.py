@@ -16,6 +16,7 @@ from nao_library_msgs.msg import SeenObject
 from naoqi.errors import NaoError, UnknownMethod
 
 from ...base.once_per_connection import OncePerConnection
+from ...base.places import FOOTPRINT
 from ...functions.memory_functions import MEMORY
 from ...motion.facts import MOTION
 from ...nao.camera_facts import CAMERA_NAMES, RESOLUTIONS
@@ -50,8 +51,6 @@ log = logging.getLogger(__name__)
 MOVEMENT_KEY = "MovementDetection/MovementInfo"
 TORSO, ROBOT = 0, 2
 """NAOqi's FRAME_TORSO and FRAME_ROBOT."""
-BASE = "base_footprint"
-"""Frame on the floor between the robot's feet, as its description and nao_joint_states name it."""
 
 
 @dataclass(frozen=True)
@@ -289,7 +288,7 @@ def _seen_message(detection: LocalizedDetection, prefix: str) -> SeenObject:
         located=detection.distance is not None,
         distance=detection.distance or 0.0,
         camera_position=Point(*detection.in_optical),
-        base_frame=prefix + BASE,
+        base_frame=prefix + FOOTPRINT,
         position=Point(*detection.in_robot),
         camera_origin=Point(*detection.camera_in_robot),
     )
