@@ -54,7 +54,9 @@ class FunctionRunner:
 
         Raises NaoError if the call fails; Preempted if a new goal, a cancel or the end of the node came first.
         """
-        return self.call_all(proxy, method, [args])[0]
+        interrupt = getattr(self._asking, "interrupt", self.interrupt)
+        interrupt.check()
+        return wait_for_calls([proxy.call_async(method, *args)], interrupt)[0]
 
     def call_all(self, proxy: Any, method: str, arguments: Sequence[Sequence[Any]]) -> list[Any]:
         """Call a method several times at once and wait for all, as `call` does for one.
