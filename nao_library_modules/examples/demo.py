@@ -70,9 +70,9 @@ class Demonstration:
 
     def __init__(self, stack: Stack, output: Path) -> None:
         import rospy
-        from actionlib import SimpleActionClient
 
         from nao_library_actions.msg import NaoLedAction, NaoMotionAction
+        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.srv import TakePicture
         from naoqi import ALProxy
 

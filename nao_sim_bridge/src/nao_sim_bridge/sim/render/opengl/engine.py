@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import moderngl
@@ -13,6 +14,7 @@ from nao_sim_bridge.sim.render.opengl.canvas import Canvases
 from nao_sim_bridge.sim.render.opengl.context import describe, open_context
 from nao_sim_bridge.sim.render.opengl.geometry import POSITION_FORMAT, VERTEX_FORMAT, VERTEX_NAMES
 from nao_sim_bridge.sim.render.opengl.items import Items, spheres_in_sight
+from nao_sim_bridge.sim.render.opengl.looks import STEPS
 from nao_sim_bridge.sim.render.opengl.robot_rows import CORE_WHITE
 from nao_sim_bridge.sim.render.opengl.scene_block import BLOCK, camera_block, world_constants
 from nao_sim_bridge.sim.render.opengl.shaders import sources
@@ -29,8 +31,10 @@ MOVING_REACH = 3.5
 """What moves throws a shadow when it is as near to the robot, m."""
 STILL_REACH = 8.0
 """What stands still, when it is as near to the origin of the world, m."""
-COARSE_BELOW = 10.0
-"""Radius in pixels of what is drawn with fewer triangles."""
+UNSEEN = 0.4
+"""Pixels by which the outline of what is round may be off."""
+ENOUGH_UP_TO = [UNSEEN / (1.0 - math.cos(math.pi / steps)) for steps in reversed(STEPS[1:])]
+"""Radius in pixels up to which few steps around it are enough, the fewest first."""
 CLIP_DISTANCE_0 = 0x3000
 ROWS = ("row_x", "row_y", "row_z", "glow")
 HALO_SIZE, HALO_LIGHT = 2.6, 0.4
@@ -165,7 +169,7 @@ class OpenGLEngine:
         )
         self._context.front_face = "ccw"
         shadow.begin()
-        self._commands.write(items.commands(chosen, 1).tobytes())
+        self._commands.write(items.commands(chosen, -1).tobytes())
         self._distances.render_indirect(self._commands, moderngl.TRIANGLES, len(chosen))
         shadow.end()
 
@@ -181,7 +185,8 @@ class OpenGLEngine:
         order = order[np.lexsort((seen[order, 2], items.pictures[order]))]
         # The radius of what is seen of them, in pixels.
         size = items.radii[order] / np.maximum(seen[order, 2], NEAR) * (view.height / 2.0 / view.tangents[1])
-        self._commands.write(items.commands(order, (size < COARSE_BELOW).astype(int)).tobytes())
+        levels = len(STEPS) - 1 - np.searchsorted(ENOUGH_UP_TO, size)
+        self._commands.write(items.commands(order, levels).tobytes())
         context = self._context
         context.front_face = "cw"  # the picture is upside down for OpenGL
         context.enable_direct(CLIP_DISTANCE_0)

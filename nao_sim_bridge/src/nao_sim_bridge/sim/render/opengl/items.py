@@ -16,7 +16,7 @@ from nao_sim_bridge.sim.model import RobotModel
 from nao_sim_bridge.sim.readings import Pose
 from nao_sim_bridge.sim.render.figure import HEAD
 from nao_sim_bridge.sim.render.opengl.geometry import COMMAND, Geometry, Piece
-from nao_sim_bridge.sim.render.opengl.looks import Look, robot_looks, thing_looks
+from nao_sim_bridge.sim.render.opengl.looks import STEPS, Look, robot_looks, thing_looks
 from nao_sim_bridge.sim.render.opengl.robot_rows import RobotRows
 from nao_sim_bridge.sim.render.scene import RenderState
 from nao_sim_bridge.sim.shapes import Shape
@@ -68,7 +68,7 @@ class Items:
         self._model = model
         self._appearance = appearance
         self._geometry = Geometry()
-        self._pieces: list[tuple[Piece, Piece]] = []
+        self._pieces: list[list[Piece]] = []  # of each item, as `STEPS` says
         self._looks: list[Look] = []
         self._starts: list[np.ndarray] = []
         self._add_ground(world)
@@ -100,19 +100,19 @@ class Items:
             RobotRows(model, appearance, self._looks[mine], slice(start, start + per_robot))
             for start in range(first_robot, count, per_robot)
         ]
-        self._centers = np.array([fine.center for fine, _ in self._pieces])
-        self.radii = np.array([fine.radius for fine, _ in self._pieces])
+        self._centers = np.array([levels[0].center for levels in self._pieces])
+        self.radii = np.array([levels[0].radius for levels in self._pieces])
         self._commands = np.array(
-            [[(p.count, 1, p.first, p.base, row) for p in both] for row, both in enumerate(self._pieces)], COMMAND
+            [[(p.count, 1, p.first, p.base, row) for p in levels] for row, levels in enumerate(self._pieces)], COMMAND
         )
 
     def buffers(self, context: Any) -> tuple[Any, Any]:
         """Buffers of vertices and of vertex indices."""
         return self._geometry.buffers(context)
 
-    def commands(self, chosen: np.ndarray, coarse: np.ndarray | int) -> np.ndarray:
-        """What draws these items, by number, each (or all) fine (0) or coarse (1)."""
-        return self._commands[chosen, coarse]
+    def commands(self, chosen: np.ndarray, levels: np.ndarray | int) -> np.ndarray:
+        """What draws these items, by number, each (or all) in as many steps as that place of `STEPS` says."""
+        return self._commands[chosen, levels]
 
     def centers(self) -> np.ndarray:
         """(n, 3) middles of the items in world, m."""
@@ -150,10 +150,8 @@ class Items:
     def _add(self, looks: Sequence[Look], matrix: np.ndarray) -> slice:
         start = len(self._looks)
         for look in looks:
-            fine = self._geometry.add(look.mesh, look.colors, look.gloss)
-            rough = look.coarse
-            coarse = fine if rough is None else self._geometry.add(rough.mesh, rough.colors, rough.gloss)
-            self._pieces.append((fine, coarse))
+            levels = [self._geometry.add(each.mesh, each.colors, each.gloss) for each in (look, *look.coarser)]
+            self._pieces.append(levels if look.coarser else levels * len(STEPS))
             self._looks.append(look)
             self._starts.append(matrix)
         return slice(start, len(self._looks))

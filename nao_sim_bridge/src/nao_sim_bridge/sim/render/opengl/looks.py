@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Sequence
+from typing import Iterable, Sequence
 
 import numpy as np
 
@@ -18,8 +18,8 @@ from nao_sim_bridge.sim.world_pictures import WorldPicture
 GLOSS = {"white": 0.22, "shell": 0.22, "grey": 0.15, "dark": 0.12, "glass": 0.6, OFF: 0.25}
 """Of the robot's materials: how much of the lamp they reflect."""
 GLOSS_OF_THINGS = 0.05
-COARSE = 12
-"""Steps around round shapes where it is not seen that they are few: in shadows, and far away."""
+STEPS = (AROUND, 20, 16, 12)
+"""Steps around round shapes, the finest first: in shadows, and for what is small in the picture, few are enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Look:
         shining: It is lit by itself.
         frame: Of a robot: link name, or side and phalanx as `LFinger11`.
         lamp: Of a robot: number of the lamp in the LED layout; -1 if it is none.
-        coarse: The same of fewer triangles; None if it is not round.
+        coarser: The same of fewer and fewer triangles, as `STEPS` says; empty if it is not round.
     """
 
     mesh: Mesh
@@ -44,23 +44,25 @@ class Look:
     shining: bool = False
     frame: str = ""
     lamp: int = -1
-    coarse: Look | None = None
+    coarser: tuple[Look, ...] = ()
 
 
 @lru_cache(maxsize=2)
 def robot_looks(model: RobotModel, appearance: Appearance) -> tuple[Look, ...]:
     """One look a link and phalanx, and one a lamp."""
-    fine, coarse = (_robot_looks(model, appearance, around) for around in (AROUND, COARSE))
-    return tuple(replace(look, coarse=rough) for look, rough in zip(fine, coarse))
+    return _by_steps(_robot_looks(model, appearance, around) for around in STEPS)
 
 
 @lru_cache(maxsize=64)
 def thing_looks(parts: tuple[Part, ...]) -> tuple[Look, ...]:
     """One look for all parts that are plain, and one each for pictures and lights."""
-    fine = _thing_looks(parts, AROUND)
     if all(part.shape.kind == "box" for part in parts):
-        return tuple(fine)
-    return tuple(replace(look, coarse=rough) for look, rough in zip(fine, _thing_looks(parts, COARSE)))
+        return tuple(_thing_looks(parts, AROUND))
+    return _by_steps(_thing_looks(parts, around) for around in STEPS)
+
+
+def _by_steps(levels: Iterable[list[Look]]) -> tuple[Look, ...]:
+    return tuple(replace(finest, coarser=tuple(coarser)) for finest, *coarser in zip(*levels))
 
 
 def _robot_looks(model: RobotModel, appearance: Appearance, around: int) -> list[Look]:
