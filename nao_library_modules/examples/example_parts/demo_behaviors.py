@@ -16,7 +16,7 @@ from .contact_sheet import Part, contact_sheet, save_small
 from .demo_support import SPEED
 
 FILM, SHEET = "behaviors.mp4", "behaviors.png"
-SIZE, RATE, VIEW = 320, 10.0, "stage"
+SIZE, RATE, VIEW = 300, 10.0, "stage"
 """Of the film: pixels each way, pictures a second, from where."""
 START_LIMIT = 120.0
 """s of wall time for the servers to come up."""

@@ -31,7 +31,7 @@ MOVING_REACH = 3.5
 """What moves throws a shadow when it is as near to the robot, m."""
 STILL_REACH = 8.0
 """What stands still, when it is as near to the origin of the world, m."""
-UNSEEN = 0.4
+UNSEEN = 0.5
 """Pixels by which the outline of what is round may be off."""
 ENOUGH_UP_TO = [UNSEEN / (1.0 - math.cos(math.pi / steps)) for steps in reversed(STEPS[1:])]
 """Radius in pixels up to which few steps around it are enough, the fewest first."""
