@@ -215,7 +215,7 @@ REFUSED = [
     (f("moveToward", values=[0, -1.1, 0]), "y cannot be -1.1: -1 to 1"),
     (f("setFootSteps", names=["LLeg"] * 2, values=[0, 0.1, 0] * 2, times=[1.0, 2.0]), "cannot step twice"),
     (f("setMoveArmsEnabled", names=["LLeg"]), "LArm, RArm"),
-    (f("setOrthogonalSecurityDistance", values=[-0.1]), "0 to 2.5 m"),
+    (f("setOrthogonalSecurityDistance", values=[-0.1]), "-0.1 is not allowed: 0..2.5 m"),
 ]  # fmt: skip
 
 
