@@ -101,9 +101,9 @@ class Demonstration:
     def greet(self) -> None:
         """Say something, and hear it with its own microphones; what was said is in a file."""
         import rospy
-        from actionlib import SimpleActionClient
 
         import nao_library_actions.msg as actions
+        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.msg import AudioInFunction, AudioOutFunction
 
         speaker = SimpleActionClient("nao_audio_out", actions.NaoAudioOutAction)
@@ -129,9 +129,9 @@ class Demonstration:
     def find_ball(self) -> None:
         """Look for the ball that lies in the room, and take a picture with its own eyes when it sees it."""
         import rospy
-        from actionlib import SimpleActionClient
 
         import nao_library_actions.msg as actions
+        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.msg import VisionFunction
 
         client = SimpleActionClient("NaoVision", actions.NaoVisionAction)
