@@ -253,15 +253,10 @@ class Turning(Components):
 
     # These two have a name of their own in each class.
 
-    def _is_rotation(self, epsilon: float = 0.0001) -> bool:
-        """Tell whether the rotation is orthonormal and right-handed, within `epsilon`."""
+    def _is_rotation(self, epsilon: float) -> bool:
         return _matrix.is_rotation(self._rows(), epsilon)
 
     def _normalize(self) -> None:
-        """Make the rotation one again; its third column keeps its direction.
-
-        Raises AlmathError if the second and third column do not span a plane.
-        """
         rows = _matrix.orthonormalised(self._rows())
         if rows is None:
             raise AlmathError(f"no rotation near {self!r}: its second and third column do not span a plane")

@@ -31,7 +31,7 @@ def _turning(kind: type[Turnable], what: str, back: bool = False) -> Callable[[T
         out._assign([number for triple in triples for number in _matrix.applied(rows, triple)])
 
     turn.__name__ = turn.__qualname__ = name
-    turn.__doc__ = f"Turn {what}{' back' if back else ''} by the rotation of `transform`, and write it to `out`."
+    turn.__doc__ = f"Turn {what}{' back' if back else ''} by the rotation of `transform`; the result goes to `out`."
     return turn
 
 

@@ -47,8 +47,16 @@ class Rotation(Turning):
             return other._make(_matrix.applied(self._rows(), tuple(other._values())))
         return NotImplemented
 
-    isRotation = Turning._is_rotation
-    normalizeRotation = Turning._normalize
+    def isRotation(self, epsilon: float = 0.0001) -> bool:
+        """Tell whether the rotation is orthonormal and right-handed, within `epsilon`."""
+        return self._is_rotation(epsilon)
+
+    def normalizeRotation(self) -> None:
+        """Make the rotation one again; its third column keeps its direction.
+
+        Raises AlmathError if the second and third column do not span a plane.
+        """
+        self._normalize()
 
     def transpose(self) -> Rotation:
         """Swap rows and columns: the inverse of a rotation."""

@@ -72,8 +72,16 @@ class Transform(Turning, Placed):
             return Position3D(*self._placed((other.x, other.y, 0.0)))
         return NotImplemented
 
-    isTransform = Turning._is_rotation
-    normalizeTransform = Turning._normalize
+    def isTransform(self, epsilon: float = 0.0001) -> bool:
+        """Tell whether the rotation is orthonormal and right-handed, within `epsilon`."""
+        return self._is_rotation(epsilon)
+
+    def normalizeTransform(self) -> None:
+        """Make the rotation one again; its third column keeps its direction.
+
+        Raises AlmathError if the second and third column do not span a plane.
+        """
+        self._normalize()
 
     def norm(self) -> float:
         """Length of the translation, in m."""
