@@ -45,8 +45,6 @@ from .speech_voice import ANSWER_LIMIT, SPEECH
 
 START = "start_recognition"
 SHUTDOWN_LIMIT = 1.0
-PROBE_LIMIT = 1.0
-"""s that another node of this kind has to show that it is alive."""
 VOICE = frozenset({"the voice"})
 VOCABULARY = frozenset({"the vocabulary"})
 PARAMETERS = (
@@ -106,8 +104,7 @@ class NaoSpeech:
         }
         for (name, server), action in zip(self._goals.items(), (SpeechWithFeedbackAction, SetSpeechVocabularyAction)):
             self._node.action(name, action, server)
-        self._stop_watching = whenever(robot, "connected", self._speech.robot_is_back)
-        node.if_it_fails(self._stop_watching)
+        self._stop_watching = whenever(robot, node, "connected", self._speech.robot_is_back)
         self._node.subscriber("speech", String, self._on_text, queue_size=100)
         self._node.offer("stop_recognition", Empty, lambda _: self._recognition.stop())
         self._node.offer("reconfigure", Empty, lambda _: update(self._server, self._read_parameters()))

@@ -92,8 +92,8 @@ def _made(make: Callable[[Robot, NodeInterface], Any], robot: Robot) -> Any:
             time.sleep(RETRY)
 
 
-def interrupt_when_lost(robot: Robot, *servers: ConcurrentActionServer) -> Callable[[], None]:
-    """End the goals of servers whenever the robot is lost; call what it returns to end that."""
+def interrupt_when_lost(robot: Robot, node: NodeInterface, *servers: ConcurrentActionServer) -> Callable[[], None]:
+    """End the goals of servers whenever the robot is lost, and now if it is; call what it returns to end that."""
 
     def interrupt() -> None:
         connection = robot.connection
@@ -101,22 +101,27 @@ def interrupt_when_lost(robot: Robot, *servers: ConcurrentActionServer) -> Calla
         for server in servers:
             server.interrupt_all(lost)
 
-    return whenever(robot, "lost", interrupt)
+    return whenever(robot, node, "lost", interrupt)
 
 
-def whenever(robot: Robot, state: str, action: Callable[[], None]) -> Callable[[], None]:
-    """Call something each time the connection gets into a state, and now if it is in it; what it returns ends that.
+def whenever(robot: Robot, node: NodeInterface, state: str, action: Callable[[], None]) -> Callable[[], None]:
+    """Call `action` each time the connection gets into `state`, and at once if it is in it. Returns what ends that.
 
-    It is called from the thread that the connection has for its listeners: it may call the robot.
+    The first call is made in this thread, later ones in the thread that the connection has for its listeners; `action`
+    may call the robot. It ends, too, if the node cannot be made.
     """
 
     def changed(*_: Any) -> None:
         if robot.connection.state == state:
             action()
 
+    def stop() -> None:
+        robot.connection.remove_listener(changed)
+
     robot.connection.add_listener(changed)
+    node.if_it_fails(stop)
     changed()
-    return lambda: robot.connection.remove_listener(changed)
+    return stop
 
 
 def name_for_robot(name: str) -> str:

@@ -69,8 +69,8 @@ class NaoController:
         self._node.offer("life/enable", Empty, lambda _: self._set_life(True))
         self._node.offer("life/disable", Empty, lambda _: self._set_life(False))
         self._node.service("life/get_state", Trigger, self._on_life_state)
-        self._stop_watching = interrupt_when_lost(robot, *self._servers.values())
-        self._stop_stiffening = whenever(robot, "connected", init_stiffness.apply)
+        self._stop_watching = interrupt_when_lost(robot, node, *self._servers.values())
+        self._stop_stiffening = whenever(robot, node, "connected", init_stiffness.apply)
         self._node.subscriber("joint_angles", JointAnglesWithSpeed, self._on_angles, queue_size=10)
         self._node.subscriber("joint_stiffness", JointState, self._on_stiffness, queue_size=10)
 

@@ -73,7 +73,7 @@ class PoseManager:
         for (name, server), action in zip(self._servers.items(), (BodyPoseAction, BodyPoseWithSpeedAction)):
             self._node.action(name, action, server)
         # Goals of the other action are ended by nao_controller.
-        self._stop_watching = interrupt_when_lost(robot, self._servers["body_pose_naoqi"])
+        self._stop_watching = interrupt_when_lost(robot, node, self._servers["body_pose_naoqi"])
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {f"goals {name}": server.counter.report for name, server in self._servers.items()}

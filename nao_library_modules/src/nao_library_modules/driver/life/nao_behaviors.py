@@ -35,7 +35,7 @@ class NaoBehaviors:
         node.action("run_behavior", RunBehaviorAction, self._server)
         node.offer("get_installed_behaviors", GetInstalledBehaviors, self._installed)
         # After the service: a part that cannot offer it leaves no listener.
-        self._stop_watching = interrupt_when_lost(robot, self._server)
+        self._stop_watching = interrupt_when_lost(robot, node, self._server)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
         return {"goals run_behavior": self._server.counter.report}

@@ -44,7 +44,7 @@ class NaoLeds:
         self._interrupt = CancellationToken()
         self._server = ConcurrentActionServer(lambda _: frozenset({EYES}), self._blink, with_feedback=True, robot=robot)
         node.action("blink", BlinkAction, self._server)
-        self._stop_watching = interrupt_when_lost(robot, self._server)
+        self._stop_watching = interrupt_when_lost(robot, node, self._server)
         node.subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
 
     def reports(self) -> dict[str, Callable[[], Report]]:

@@ -79,7 +79,7 @@ class NaoPathFollower:
             self._node.action(name, action, self._server)
         self._target_goals = self._node.publisher("walk_target/goal", MoveBaseActionGoal, queue_size=1)
         self._path_goals = self._node.publisher("walk_path/goal", FollowPathActionGoal, queue_size=1)
-        self._stop_watching = interrupt_when_lost(robot, self._server)
+        self._stop_watching = interrupt_when_lost(robot, node, self._server)
         self._node.subscriber("walk_target_simple/goal", PoseStamped, self._on_target, queue_size=1)
         self._node.subscriber("walk_path_simple/goal", Path, self._on_path, queue_size=1)
         self._node.subscriber("foot_contact", Bool, self._on_foot_contact, queue_size=1)

@@ -51,8 +51,8 @@ class NaoFootsteps:
         self._node.offer("footstep_srv", StepTargetService, lambda request: self._walk.make(read_step(request.step)))
         self._node.offer("clip_footstep_srv", ClipFootstep, self._on_clip)
         # After the services: a part that cannot offer them sets nothing on the robot.
-        self._stop_watching = interrupt_when_lost(robot, self._server)
-        self._stop_stiffening = whenever(robot, "connected", init_stiffness.apply)
+        self._stop_watching = interrupt_when_lost(robot, node, self._server)
+        self._stop_stiffening = whenever(robot, node, "connected", init_stiffness.apply)
         self._node.subscriber("footstep", StepTarget, self._on_step, queue_size=50)
 
     def reports(self) -> dict[str, Callable[[], Report]]:

@@ -85,8 +85,7 @@ class NaoWalker:
         self._online = False
         self._offer_services()
         # After the services: a part that cannot offer them sets nothing on the robot.
-        self._stop_setting_up = whenever(robot, "connected", self._set_up)
-        node.if_it_fails(self._stop_setting_up)
+        self._stop_setting_up = whenever(robot, node, "connected", self._set_up)
         self._listen("cmd_vel", Twist, partial(self._velocity, "cmd_vel"), watched=True, queue_size=1, tcp_nodelay=True)
         self._listen("cmd_pose", Pose2D, read_target, queue_size=1, tcp_nodelay=True)
         self._listen("cmd_step", StepTarget, read_step, queue_size=STEPS_IN_LINE)
