@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Tuple
 
-from ...nao.camera_facts import TOP
+from ...nao.camera_facts import TOP, camera_number
 from ...vision.detection.events import (
     Detection,
     DetectionArray,
@@ -15,6 +16,8 @@ from ...vision.detection.events import (
     landmark_detections,
     movement_detections,
 )
+
+log = logging.getLogger(__name__)
 
 Pair = Tuple[float, float]
 
@@ -50,8 +53,8 @@ PARTS = (
 """Parts of a face and their points, in the order of the event; message fields are named after them."""
 LONGEST_STEP = 0.5
 """s between two events above which velocities are unknown."""
-NOT_TOLD = ((0.0,) * 6, (0.0,) * 6, TOP)
-"""What stands for the end of an event that lacks it: poses of the camera in torso and FRAME_ROBOT, and which it is."""
+NO_POSE = (0.0,) * 6
+"""Stands for a pose of the camera that an event does not tell."""
 
 
 @dataclass(frozen=True)
@@ -77,12 +80,18 @@ class Movement:
 
 
 def _seen(read: Callable[[Any], DetectionArray], value: Any) -> DetectionArray | None:
-    """What an event tells, which may lack its end; None if it tells of nothing, or is no such event."""
-    try:
-        seen = read([*value, *NOT_TOLD[len(value) - 2 :]]) if value else None
-    except (TypeError, ValueError):
+    """What an event tells, which may lack time, poses or camera; None if it tells of nothing, or is no such event."""
+    if not _is_list(value, 2):
         return None
-    return seen if seen is not None and seen.detections else None
+    stamp = value[0] if _is_list(value[0], 2) else (0, 0)
+    in_torso, in_robot = (value[i] if len(value) > i and _is_list(value[i], 6) else NO_POSE for i in (2, 3))
+    camera = value[4] if len(value) > 4 and camera_number(value[4]) is not None else TOP
+    try:
+        seen = read([stamp, value[1], in_torso, in_robot, camera])
+    except ValueError as error:
+        log.debug("%s", error)
+        return None
+    return seen if seen.detections else None
 
 
 def read_faces(value: Any) -> tuple[DetectionArray, list[Face]] | None:
@@ -109,7 +118,7 @@ class MovementReader:
     def read(self, value: Any) -> Movement | None:
         """Movement from the value in the robot's memory, as `movement_detections` describes it; None if there is none.
 
-        The value of NAOqi before 2.0: [[centre, velocity, [point, ...], [velocity, ...]]].
+        NAOqi before 2.0 has [[centre, velocity, [point, ...], [velocity, ...]]] instead; that is read, too.
         """
         if _is_list(value, 1) and _is_list(value[0], 4):
             return _former_movement(value[0])
