@@ -47,6 +47,8 @@ def read_direction(value: Any) -> Direction | None:
 class SoundDirections(Extractor):
     """Has the robot locate sounds while that is wanted, also after a lost connection."""
 
+    answer_limit = 2.0
+
     def __init__(self, robot: Any, subscriber: str, sensitivity: float, sink: Callable[[Direction], None]) -> None:
         """Start idle; the robot need not be connected yet.
 
@@ -75,6 +77,7 @@ class SoundDirections(Extractor):
                 return
             except UnknownModule as error:
                 missing.append(error)
+        self.kind = KINDS[0]
         raise missing[0]
 
     def _take(self, value: Any) -> None:

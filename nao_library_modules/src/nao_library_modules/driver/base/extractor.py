@@ -16,12 +16,11 @@ from .lazy_subscription import LazySubscription
 log = logging.getLogger(__name__)
 
 MEMORY = "ALMemory"
-ANSWER_LIMIT = 5.0
 
 
 @dataclass(frozen=True)
 class ExtractorKind:
-    """Such a module."""
+    """A module of the robot that detects something, and what it tells of it."""
 
     name: str  # for people
     module: str
@@ -35,6 +34,9 @@ class Extractor:
 
     Any thread may call. Methods raise NaoError if the robot cannot be asked.
     """
+
+    answer_limit = 5.0
+    """s that a call to the robot may take."""
 
     def __init__(
         self,
@@ -72,9 +74,10 @@ class Extractor:
         """Switch off, even after an error. No effect if it is off."""
         self._looking.stop_now()
 
-    def call(self, method: str, *arguments: Any, limit: float = ANSWER_LIMIT) -> Any:
-        """Call a method of the module; `limit` in s."""
-        return self._robot.proxy(self.kind.module).call_async(method, *arguments).result(timeout=limit)
+    def call(self, method: str, *arguments: Any, limit: float | None = None) -> Any:
+        """Call a method of the module. `limit`: s, if not `answer_limit`."""
+        call = self._robot.proxy(self.kind.module).call_async(method, *arguments)
+        return call.result(timeout=self.answer_limit if limit is None else limit)
 
     def report(self) -> Report:
         return self._looking.report(*self.kind.states, {"module": self.kind.module})
