@@ -17,7 +17,7 @@ from ..server.nao_basic import NaoBasic
 
 
 def tells_later(**facts: Any) -> Callable[..., None]:
-    """A check by which nothing can be wrong: it leaves word in the context for later functions of the chain."""
+    """A check that refuses nothing: it leaves word in the context for later functions of the chain."""
     return lambda _self, context: context.update(facts)
 
 

@@ -60,7 +60,7 @@ def read_chain(words: Iterable[str]) -> list[TypedFunction]:
 
 
 def ends_function(word: str) -> bool:
-    """Whether a function ends with the comma at the end of a word: "setColor, off"; in a value it may be part of it."""
+    """Whether a word's last comma ends a function, as in "setColor, off": in a value it may belong to the value."""
     return word.endswith(NEXT[0]) and ASSIGN not in word
 
 

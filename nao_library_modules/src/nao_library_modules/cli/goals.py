@@ -189,7 +189,7 @@ def interrupt_held() -> Iterator[None]:
         raise KeyboardInterrupt
 
 
-class _TooLong(Exception):  # noqa: N818  a signal within this file
+class _TooLong(Exception):  # a signal within this file
     """The time is up."""
 
 

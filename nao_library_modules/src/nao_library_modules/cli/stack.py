@@ -1,4 +1,4 @@
-"""The servers of one robot: which robot is meant, which servers it has, what they say of themselves, or their code."""
+"""The servers of one robot: which robot is meant, which servers it has, what they, or their code, say of themselves."""
 
 from __future__ import annotations
 

@@ -132,7 +132,7 @@ def _arguments(
             raise BadGoal(parameter.name, None, "a parameter before *args", problem=problem)
         if parameter.kind is parameter.VAR_POSITIONAL:
             spread = rest
-        elif parameter.kind not in (parameter.KEYWORD_ONLY, parameter.VAR_KEYWORD):  # which stay as they are
+        elif parameter.kind not in (parameter.KEYWORD_ONLY, parameter.VAR_KEYWORD):  # those keep their defaults
             values.append(_value(parameter, fields, rest, message_type.__name__))
 
     def arguments(message: Any, context: dict[str, Any]) -> tuple[Any, ...]:

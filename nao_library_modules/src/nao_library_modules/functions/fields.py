@@ -97,8 +97,9 @@ def number(bounds: Bounds, meaning: str, unit: str = "", zero: str | None = None
         zero: What 0 stands for where it is allowed beside them: ": the default"; empty: itself; None: nothing.
         allowed: In words, where not the bounds.
     """
-    lowest, highest, unit = limit_of_it = _limit(bounds, unit)
-    allowed = allowed or limit_of_it.text + ("" if zero is None else f", or 0{zero}")
+    own = _limit(bounds, unit)
+    lowest, highest, unit = own
+    allowed = allowed or own.text + ("" if zero is None else f", or 0{zero}")
 
     def check(name: str, value: float) -> None:
         if zero is None or value != 0.0:

@@ -16,9 +16,9 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ..base.places import wrapped
+from ..base.places import ODOM, wrapped
 from . import low_level
-from .action_rules.values import ODOM, a_place
+from .action_rules.values import a_place
 from .core.registry import perform
 from .designators.designator import action, an
 from .designators.patterns import Mismatch

@@ -24,7 +24,7 @@ LIMIT = 10.0
 """s of the computer that a server has for its answer."""
 
 
-class NotAnswered(NaoError):  # noqa: N818  it says what became of the question
+class NotAnswered(NaoError):
     """A service is not there, refuses, or does not answer in time."""
 
 

@@ -28,7 +28,7 @@ PATIENCE = 10.0
 """s from the start of a node for which goals wait for a robot that was never reached yet."""
 
 
-class Replaced(Preempted):  # noqa: N818  a signal, like Preempted
+class Replaced(Preempted):  # a signal, like Preempted
     """A newer goal takes over what this one has: an executor that walks need not stop for it."""
 
 

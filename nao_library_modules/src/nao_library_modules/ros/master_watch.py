@@ -30,7 +30,7 @@ GONE = (OSError, http.client.HTTPException, xmlrpc.client.Error)
 Registrations = Dict[str, Tuple[str, ...]]
 
 
-class Refused(Exception):  # noqa: N818  an answer of the master
+class Refused(Exception):  # an answer of the master
     """The master, or a node, answers that something is not so."""
 
 

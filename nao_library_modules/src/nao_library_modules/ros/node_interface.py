@@ -19,7 +19,7 @@ PROBE_LIMIT = 1.0
 """s that a node may take to take a connection, to count as alive."""
 
 
-class AlreadyOffered(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class AlreadyOffered(NaoError):
     """Another node that is alive offers a service."""
 
     def __init__(self, service: str, node: str) -> None:

@@ -1,4 +1,4 @@
-"""Functions that read what the robot feels now: touch, sonars, feet, battery, temperatures; what a goal has felt."""
+"""Functions that read touch, sonars, feet, battery and temperatures, and the account of what a goal has felt."""
 
 from __future__ import annotations
 

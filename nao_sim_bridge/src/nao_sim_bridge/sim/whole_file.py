@@ -22,7 +22,7 @@ DRAFT, PART = ".draft", ".part"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
-class FileTrouble(SimulationError):  # noqa: N818  it says what happened
+class FileTrouble(SimulationError):
     """A file cannot be written; the text names it, and the room that is left where there is too little.
 
     Attributes:

@@ -44,7 +44,7 @@ class Unknown:
 UNKNOWN = Unknown()
 
 
-class NotKnown(Exception):  # noqa: N818  a signal: a value depends on one that is wrong
+class NotKnown(Exception):  # a signal: a value depends on one that is wrong
     """Something cannot be worked out as a value in it is `UNKNOWN`."""
 
 

@@ -28,7 +28,7 @@ Describe = Callable[[str, Optional[Sequence[str]]], "DescribeFunctionsResponse"]
 NotDescribed if no server of that name runs."""
 
 
-class NotDescribed(NaoError):  # noqa: N818  it says what became of the question
+class NotDescribed(NaoError):
     """A server did not tell what its functions are."""
 
 
@@ -160,7 +160,7 @@ class FunctionTables:
         return self._modules[server.name]
 
 
-class _AtTheServer(Exception):  # noqa: N818  a signal: the rest of a check can only be done by the server
+class _AtTheServer(Exception):  # a signal: the rest of a check can only be done by the server
     """A check asks for something that is only known where the server runs."""
 
 

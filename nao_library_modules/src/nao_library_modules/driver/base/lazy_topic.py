@@ -13,7 +13,9 @@ class LazyTopic(rospy.SubscribeListener):
     """Calls a function, which must not wait, when some topics get their first listener, and when the last one leaves.
 
     Callbacks come from threads of rospy, sometimes out of order: so each counts the listeners, under a lock.
-    `listened`: whether somebody listens, as last reported.
+
+    Attributes:
+        listened: Whether somebody listens, as last reported.
     """
 
     def __init__(self, report: Callable[[bool], None], *publishers: rospy.Publisher, but: Collection[str] = ()) -> None:

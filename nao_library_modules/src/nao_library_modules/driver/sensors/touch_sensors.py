@@ -33,7 +33,7 @@ class TouchSensor:
     keys: tuple[str, ...]
 
 
-NUMBERS = {
+PLACES = {
     "FrontTactilTouched": (HEAD, 1),
     "MiddleTactilTouched": (HEAD, 2),
     "RearTactilTouched": (HEAD, 3),
@@ -48,7 +48,7 @@ NUMBERS = {
     "ChestButtonPressed": (CHEST, 0),
 }
 SENSORS = {
-    **{event: TouchSensor(event, *where, BY_EVENT[event].keys) for event, where in NUMBERS.items()},
+    **{event: TouchSensor(event, *place, BY_EVENT[event].keys) for event, place in PLACES.items()},
     "footContactChanged": TouchSensor("footContactChanged", FEET, 0, (FOOT_CONTACT,)),
 }
 """Event -> its sensor."""

@@ -62,8 +62,8 @@ def perceive(
         if wanted == "the" and len(seen) > 1:
             raise AmbiguousPerception(desig, f"{len(seen)} were seen that fit")
         if wanted in ("all", "currently-visible"):
-            return [_designator_of(each, desig) for each in seen]
-        return equate(desig, _designator_of(max(seen, key=lambda each: each.confidence), desig))
+            return [_remember(each, desig) for each in seen]
+        return equate(desig, _remember(max(seen, key=lambda each: each.confidence), desig))
 
     return subtask(Step(f"perceive {desig}", body))
 
@@ -129,10 +129,10 @@ def at_location(desig: Designator, body: Branch, position: AnyFluent, distance: 
     return subtask(Step(f"at {desig}", run))
 
 
-def _designator_of(seen: Any, desig: Designator) -> Designator:
-    """Stands for what was seen, which is known from now on.
+def _remember(seen: Any, desig: Designator) -> Designator:
+    """Note what was seen; a designator of it.
 
-    Describes what the requested one describes, and the name that was seen: not the name in the beliefs.
+    It describes what the requested one describes, and the name that was seen: not the name in the beliefs.
     """
     facts = {key: value for key, value in desig.description.items() if key not in ("type", "name", "position", "size")}
     thing = BELIEFS.saw(desig["type"], seen.name, seen.position, seen.time, **facts)

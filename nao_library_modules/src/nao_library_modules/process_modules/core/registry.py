@@ -229,5 +229,5 @@ def _command_of(desig: Designator) -> Command:
 
 
 def _wait_started(module: ProcessModule) -> None:
-    # A flow of its own: also outside of plans, and the end of a plan does not cut it short.
+    # A flow of its own works outside of plans, too, and the end of a plan does not cut it short.
     Flow(module.clock).wait(lambda: module.state is not ModuleState.OFFLINE, [module.status], None)

@@ -13,7 +13,7 @@ from .designator import Designator
 SETTING = limit("setting")
 
 
-class Mismatch(Exception):  # noqa: N818  caught by the matcher
+class Mismatch(Exception):  # caught by the matcher
     """A value does not match a pattern; the text names what would."""
 
 

@@ -37,11 +37,11 @@ from typing import Any, NoReturn
 from naoqi.errors import NaoError
 
 
-class PlanError(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class PlanError(NaoError):
     """A mistake of the programmer, which no failure handling catches."""
 
 
-class PlanFailure(NaoError):  # noqa: N818  CRAM's names, here and below
+class PlanFailure(NaoError):  # CRAM's names, here and below
     """A failure that a plan can expect and handle. Its details, for handlers, are attributes as well."""
 
     def __init__(self, text: str = "", /, **details: Any) -> None:

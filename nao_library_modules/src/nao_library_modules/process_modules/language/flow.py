@@ -18,7 +18,7 @@ from .fluents import AnyFluent
 _local = threading.local()
 
 
-class Evaporated(BaseException):  # noqa: N818  a signal that ends tasks, not an error
+class Evaporated(BaseException):  # a signal that ends tasks, not an error
     """Ends a task from inside; `task` is the outermost one of this thread that has to end.
 
     Plans do not catch it; their clean-up belongs into `finally`.
@@ -29,7 +29,7 @@ class Evaporated(BaseException):  # noqa: N818  a signal that ends tasks, not an
         self.task = task
 
 
-class Interrupted(BaseException):  # noqa: N818  a signal, as above
+class Interrupted(BaseException):  # a signal, as above
     """A suspension reached `retry_after_suspension`: its body ends, and begins again when the task is woken."""
 
 

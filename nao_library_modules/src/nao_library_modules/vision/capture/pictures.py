@@ -31,7 +31,7 @@ Picture = np.ndarray
 """(height, width, 3) uint8, blue, green, red; or (height, width) uint16 where a camera is grey and that fine."""
 
 
-class BadPicture(NaoError):  # noqa: N818  named like the errors of the proxy layer
+class BadPicture(NaoError):
     """A message holds no picture that can be read."""
 
     def __init__(self, encoding: str, problem: str) -> None:

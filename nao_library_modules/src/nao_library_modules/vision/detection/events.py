@@ -169,9 +169,9 @@ def _recognised(entry: Any) -> list[str]:
 
 
 def _movements(content: Any) -> list[Detection]:
-    """From the key MovementDetection/MovementInfo: for each [alpha, beta], [left, top, width, height], fractions, ...
+    """From MovementDetection/MovementInfo: [[[alpha, beta], [left, top, width, height], [share, share], ...], ...].
 
-    The fractions are those of the picture's pixels and of the region's.
+    The shares that moved are those of the picture's pixels and of the region's.
     """
     detections = []
     for place, (centre, region, moving, *_) in enumerate(content):
