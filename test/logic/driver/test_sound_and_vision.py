@@ -170,8 +170,9 @@ def test_landmarks_are_read_and_their_number_may_be_bare():
     assert (seen.time, seen.camera, seen.in_robot) == (12.5, 1, tuple(FEET))
     told = [(mark.name, shape(mark)) for mark in seen.detections]
     assert told == [("84", (0.1, 0.2, 0.05, 0.06)), ("119", (-0.1, 0.3, 0.07, 0.08))]
-    older = vision.read_landmarks([STAMP, marks])  # of a robot that does not tell where its camera is
-    assert (older.camera, older.in_torso, older.detections) == (0, (0.0,) * 6, seen.detections)
+    for told in ([STAMP, marks], [STAMP, marks, [], [], "Other"]):  # of robots that do not tell where their camera is
+        older = vision.read_landmarks(told)
+        assert (older.camera, older.in_torso, older.detections) == (0, (0.0,) * 6, seen.detections)
 
 
 def test_nothing_seen_is_none():
