@@ -19,7 +19,7 @@ build: setup ## Build the catkin workspace .ws
 	@scripts/build
 
 demo: ## Play the demonstration in the simulator; pictures, sound and a table in demo_output, in place of the last ones
-	@scripts/setup --headless
+	@scripts/setup --minimal
 	@scripts/build
 	@scripts/ros-env python3 nao_library_modules/examples/demo.py --output demo_output --overwrite
 
