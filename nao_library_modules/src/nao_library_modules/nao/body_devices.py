@@ -41,6 +41,8 @@ SONARS = {side: sensor_key(f"US/{side.capitalize()}") for side in SIDES}
 """Side -> key of its echo."""
 NEAREST, FARTHEST = 0.25, 2.55
 """m, between which sonars measure."""
+SONAR_CONE = 1.05
+"""rad, in which a sonar sees something: 60 degrees, as NAO's documentation has it."""
 
 
 def echo_of(value: Any) -> float:

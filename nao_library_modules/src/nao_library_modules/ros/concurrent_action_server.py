@@ -16,7 +16,7 @@ from ..base.errors import Preempted
 from ..base.limits import limit
 from .action_server import let_the_client_note_the_goal
 from .health import GoalCounter
-from .startup_grace import StartupGrace
+from .startup_grace import PATIENCE, StartupGrace
 
 log = logging.getLogger(__name__)
 
@@ -24,8 +24,6 @@ NEWER_GOAL = "a newer goal needs {}"
 CANCELED = "canceled"
 MOST = int(limit("goals").highest)
 FULL = f"{MOST} goals of this action are under way: no more are taken at once"
-PATIENCE = 10.0
-"""s from the start of a node for which goals wait for a robot that was never reached yet."""
 
 
 class Replaced(Preempted):  # a signal, like Preempted

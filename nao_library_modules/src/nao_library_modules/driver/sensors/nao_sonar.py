@@ -8,14 +8,14 @@ from typing import Any
 import rospy
 from sensor_msgs.msg import Range
 
-from ...nao.body_devices import FARTHEST, NEAREST, SONARS
+from ...nao.body_devices import FARTHEST, NEAREST, SONAR_CONE, SONARS
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..base.lazy_topic import LazyTopic
 from ..base.node import name_for_robot, number, publish
-from .sonars import CONE, Sonars
+from .sonars import Sonars
 
 QUEUE = 10
 DEFAULT_RATE = 10.0
@@ -53,7 +53,7 @@ class NaoSonar:
         for side, topic in self._topics:
             if not topic.get_num_connections():
                 continue
-            message = Range(radiation_type=Range.ULTRASOUND, field_of_view=CONE, range=ranges[side])
+            message = Range(radiation_type=Range.ULTRASOUND, field_of_view=SONAR_CONE, range=ranges[side])
             message.min_range, message.max_range = NEAREST, FARTHEST
             message.header.stamp, message.header.frame_id = stamp, f"{self._prefix}{side[0].upper()}Sonar_frame"
             publish(topic, message)

@@ -14,8 +14,6 @@ from ..base.lazy_subscription import LazySubscription
 from ..base.polling import Polling
 
 SONAR, MEMORY = "ALSonar", "ALMemory"
-CONE = 1.05
-"""rad, in which they see something."""
 ANSWER_LIMIT = 5.0
 READ_LIMIT = 1.0
 
