@@ -9,8 +9,8 @@ from typing import Any, Iterator
 import qi
 from PIL import Image, ImageDraw, ImageFont
 
-from nao_sim_bridge.server import ServerOptions, SimulatorServer
-from nao_sim_bridge.sim.simulation import Scene
+from nao_sim_bridge.core.simulation import Scene
+from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
 
 TOP, VGA, RGB, RATE = 0, 2, 11, 15
 NAME = "readme"

@@ -26,14 +26,14 @@ from nao_library_modules.functions.describe import NO_UNIT, Described, Descripti
 from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_modules.functions.message_fields import read_fields
 from nao_library_modules.vision.capture.pictures import size_rows as sizes_of_pictures
-from nao_sim_bridge.cli import parser as simulator_parser
-from nao_sim_bridge.server import ServerOptions, SimulatorServer
-from nao_sim_bridge.services.binding import offered
-from nao_sim_bridge.services.nao_simulation import NaoSimulation
-from nao_sim_bridge.sim.sizes import size_rows as sizes_of_simulator
+from nao_sim_bridge.base.sizes import size_rows as sizes_of_simulator
+from nao_sim_bridge.naoqi.binding.binding import offered
+from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
+from nao_sim_bridge.server.cli import parser as simulator_parser
+from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
 
 try:
-    from nao_sim_bridge.services.limits import table as limits_of_simulator
+    from nao_sim_bridge.naoqi.binding.limits import table as limits_of_simulator
 except ImportError:
     limits_of_simulator = list
 

@@ -7,18 +7,18 @@ from typing import Any, Mapping, Sequence
 
 import numpy as np
 
-from nao_sim_bridge.sim.cameras.optics import CameraOptics
-from nao_sim_bridge.sim.cameras.photograph import read_photograph
-from nao_sim_bridge.sim.cameras.shot import Shot
-from nao_sim_bridge.sim.kinematics import quaternion_matrix
-from nao_sim_bridge.sim.leds_layout import load_leds
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.render.client import Renderer
-from nao_sim_bridge.sim.render.scene import RenderState
-from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
-from nao_sim_bridge.sim.world import WorldObject
-from nao_sim_bridge.sim.world_objects import read_object
+from nao_sim_bridge.base.rotations import from_roll_pitch_yaw
+from nao_sim_bridge.cameras.optics import CameraOptics
+from nao_sim_bridge.cameras.photograph import read_photograph
+from nao_sim_bridge.cameras.shot import Shot
+from nao_sim_bridge.model.kinematics import quaternion_matrix
+from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.render.client import Renderer
+from nao_sim_bridge.world.objects import read_object
+from nao_sim_bridge.world.render_state import RenderState
+from nao_sim_bridge.world.world import WorldObject
 
 BGR = 13
 QVGA, VGA = (320, 240), (640, 480)

@@ -28,12 +28,12 @@ from camera_stage import AHEAD, EYES, QVGA, VGA, Stage, Viewpoint, thing
 from detection_tally import Tally
 from measurement import StageChecks, command_line, measure, parse
 
-from nao_sim_bridge.sim.landmarks import load_landmarks
-from nao_sim_bridge.sim.vision.ball import BallDetector
-from nao_sim_bridge.sim.vision.barcodes import BarcodeDetector
-from nao_sim_bridge.sim.vision.landmarks import LandmarkDetector
-from nao_sim_bridge.sim.world_cards import THICKNESS
-from nao_sim_bridge.sim.world_objects import BALL_RED
+from nao_sim_bridge.vision.ball import BallDetector
+from nao_sim_bridge.vision.barcodes import BarcodeDetector
+from nao_sim_bridge.vision.landmarks import LandmarkDetector
+from nao_sim_bridge.world.cards import THICKNESS
+from nao_sim_bridge.world.objects import BALL_RED
+from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
 
 FREE = (-1.3, 0.6)
 """There is floor ahead between these X, m: further out are a wall and a chair."""

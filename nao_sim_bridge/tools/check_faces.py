@@ -21,10 +21,10 @@ import numpy as np
 from camera_stage import AHEAD, EYES, VGA, Stage, Viewpoint, thing
 from measurement import StageChecks, command_line, measure, parse
 
-from nao_sim_bridge.sim.faces import load_faces
-from nao_sim_bridge.sim.vision.face_memory import FaceMemory
-from nao_sim_bridge.sim.vision.faces import FaceDetector, FaceSettings, SeenFace
-from nao_sim_bridge.sim.world import WorldObject
+from nao_sim_bridge.vision.face_memory import FaceMemory
+from nao_sim_bridge.vision.faces import FaceDetector, FaceSettings, SeenFace
+from nao_sim_bridge.world.painting.known_faces import load_faces
+from nao_sim_bridge.world.world import WorldObject
 
 DISTANCES = (0.5, 0.75, 1.0, 1.5, 2.0)
 TURNS = (0.0, 0.13, 0.26)

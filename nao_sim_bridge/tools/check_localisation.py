@@ -23,18 +23,18 @@ from typing import Callable, Iterator, Sequence
 
 import numpy as np
 
-from nao_sim_bridge.sim.hearing.array import microphone_array
-from nao_sim_bridge.sim.hearing.detection import SoundDetector
-from nao_sim_bridge.sim.hearing.localiser import Localiser
-from nao_sim_bridge.sim.scene import Scene
-from nao_sim_bridge.sim.simulation import Simulation
-from nao_sim_bridge.sim.sound.ears import BLOCK
-from nao_sim_bridge.sim.sound.samples import RATE, Sound, pcm16
-from nao_sim_bridge.sim.sound.sources import SoundSource
-from nao_sim_bridge.sim.speech.clips import Style
-from nao_sim_bridge.sim.speech.studio import Studio
-from nao_sim_bridge.sim.speech.voices import load_voices
-from nao_sim_bridge.sim.world_sounds_made import noise
+from nao_sim_bridge.base.samples import RATE, Sound, pcm16
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.hearing.array import microphone_array
+from nao_sim_bridge.hearing.detection import SoundDetector
+from nao_sim_bridge.hearing.localiser import Localiser
+from nao_sim_bridge.sound.ears import BLOCK
+from nao_sim_bridge.sound.sources import SoundSource
+from nao_sim_bridge.speech.clips import Style
+from nao_sim_bridge.speech.studio import Studio
+from nao_sim_bridge.speech.voices import load_voices
+from nao_sim_bridge.world.sounds_made import noise
 
 NEAREST, FARTHEST = 1.0, 3.0
 LENGTH = 0.6

@@ -15,12 +15,12 @@ import random
 import sys
 from dataclasses import dataclass
 
-from nao_sim_bridge.sim.motion.posture_change import PostureChange
-from nao_sim_bridge.sim.posture_graph import ON_FEET
-from nao_sim_bridge.sim.posture_moves import load_moves
-from nao_sim_bridge.sim.posture_recognition import LYING, UNKNOWN, lean_of, recognise
-from nao_sim_bridge.sim.postures import load_postures, posture
-from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.control.balance.posture_recognition import LYING, UNKNOWN, lean_of, recognise
+from nao_sim_bridge.core.posture_change import PostureChange
+from nao_sim_bridge.core.posture_graph import ON_FEET
+from nao_sim_bridge.core.posture_moves import load_moves
+from nao_sim_bridge.core.simulation import Scene, Simulation
+from nao_sim_bridge.model.postures import load_postures, posture
 
 # Time to come to rest before a change, and the longest a change may take, s.
 SETTLE_TIME, PATIENCE = 1.5, 90.0

@@ -16,7 +16,7 @@ import sys
 from dataclasses import dataclass
 from typing import Iterable, Sequence
 
-from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.core.simulation import Scene, Simulation
 
 POSTURES = ("Stand", "StandInit", "StandZero", "Crouch")
 # Name -> where the push goes, degrees from straight ahead, counter-clockwise.

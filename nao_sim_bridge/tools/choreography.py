@@ -11,12 +11,12 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Tuple
 
-from nao_sim_bridge.sim.body_mass import center_of_links
-from nao_sim_bridge.sim.kinematics import rpy_matrix
-from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.motion.curves import SmoothCurve
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.walk.legs import JOINTS, LEFT, RIGHT, Legs, Sole
+from nao_sim_bridge.control.joints.curves import SmoothCurve
+from nao_sim_bridge.model.body_mass import center_of_links
+from nao_sim_bridge.model.kinematics import rpy_matrix
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.walk.legs import JOINTS, LEFT, RIGHT, Legs, Sole
 
 BASE = "StandInit"
 BODY = ("height", "pitch", "roll", "com_x", "com_y", "left_x", "left_y", "left_z", "right_x", "right_y", "right_z")

@@ -9,21 +9,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix
-from nao_sim_bridge.sim.leds_layout import load_leds
-from nao_sim_bridge.sim.model import Joint, load_model
-from nao_sim_bridge.sim.motion.joints import JointCommands
-from nao_sim_bridge.sim.physics import Physics
-from nao_sim_bridge.sim.posture_moves import Move, play
-from nao_sim_bridge.sim.posture_recognition import recognise
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.robot import SimulatedRobot
-from nao_sim_bridge.sim.scene import Scene
-from nao_sim_bridge.sim.settings import Settings, load_settings
-from nao_sim_bridge.sim.snapshot import Snapshot
-from nao_sim_bridge.sim.start_lean import start_pitch
-from nao_sim_bridge.sim.tasks import TaskIds
-from nao_sim_bridge.sim.world import load_world
+from nao_sim_bridge.base.settings import Settings, load_settings
+from nao_sim_bridge.base.tasks import TaskIds
+from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.body.physics import Physics
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.control.balance.posture_recognition import recognise
+from nao_sim_bridge.core.posture_moves import Move, play
+from nao_sim_bridge.core.robot import SimulatedRobot
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix
+from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import Joint, load_model
+from nao_sim_bridge.model.start_lean import start_pitch
+from nao_sim_bridge.world.world import load_world
 
 # How long the robot comes to rest before and after a move, s.
 SETTLE_TIME = 1.0

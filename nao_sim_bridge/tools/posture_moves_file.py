@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.posture_moves import FILE, Move
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.core.posture_moves import FILE, Move
+from nao_sim_bridge.model.robot_model import RobotModel
 
 
 def put(model: RobotModel, move: Move, runs: int, reached: int, path: Path | None = None) -> None:

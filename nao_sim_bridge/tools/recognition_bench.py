@@ -10,13 +10,13 @@ from typing import Iterable, Sequence
 
 import numpy as np
 
-from nao_sim_bridge.sim.hearing.grammar import vocabulary
-from nao_sim_bridge.sim.hearing.listening import Hypothesis, Listening, Recognised
-from nao_sim_bridge.sim.hearing.voice_activity import RATE, SpeechChange
-from nao_sim_bridge.sim.hearing.worker import Ear
-from nao_sim_bridge.sim.sound.samples import Sound
-from nao_sim_bridge.sim.speech.engines import Engines
-from nao_sim_bridge.sim.speech.speech import Utterance
+from nao_sim_bridge.base.samples import Sound
+from nao_sim_bridge.hearing.grammars.grammar import vocabulary
+from nao_sim_bridge.hearing.listening import Hypothesis, Listening, Recognised
+from nao_sim_bridge.hearing.voice_activity import RATE, SpeechChange
+from nao_sim_bridge.hearing.worker import Ear
+from nao_sim_bridge.speech.engines import Engines
+from nao_sim_bridge.speech.speech import Utterance
 
 PHRASES = Path(__file__).with_name("recognition_phrases.json")
 VOICES = {

@@ -6,8 +6,8 @@ from typing import Sequence
 
 import numpy as np
 
-from nao_sim_bridge.sim.model import RobotModel
-from nao_sim_bridge.sim.posture_moves import PEAK, KeyFrame
+from nao_sim_bridge.core.posture_moves import PEAK, KeyFrame
+from nao_sim_bridge.model.robot_model import RobotModel
 
 # Joints of one side, and whether the angle of the other side is the opposite.
 PAIRS = {

@@ -13,7 +13,7 @@ from typing import Any, Mapping
 
 from walk_trial import REAL, Trial
 
-from nao_sim_bridge.sim.walk.footsteps import FootPose
+from nao_sim_bridge.walk.footsteps import FootPose
 
 # Until a walk has its speed, s.
 RAMP = 4.0

@@ -7,15 +7,15 @@ import math
 import random
 from typing import Any, Callable
 
-from nao_sim_bridge.sim.errors import MoveRefused
-from nao_sim_bridge.sim.motion.posture_change import PostureChange
-from nao_sim_bridge.sim.posture_moves import load_moves
-from nao_sim_bridge.sim.simulation import Scene, Simulation
-from nao_sim_bridge.sim.tasks import Task
-from nao_sim_bridge.sim.walk.body import WalkingBody
-from nao_sim_bridge.sim.walk.footsteps import FootPose
-from nao_sim_bridge.sim.walk.gait import feet_gait
-from nao_sim_bridge.sim.walk.whereabouts import robot_on_ground
+from nao_sim_bridge.base.errors import MoveRefused
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.posture_change import PostureChange
+from nao_sim_bridge.core.posture_moves import load_moves
+from nao_sim_bridge.core.simulation import Scene, Simulation
+from nao_sim_bridge.walk.body import WalkingBody
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.gait import feet_gait
+from nao_sim_bridge.walk.whereabouts import robot_on_ground
 
 # A robot that nobody has idealised: errors of its sensors and their delay, s.
 REAL = {"sensor_noise": 1.0, "sensor_delay": 0.016}

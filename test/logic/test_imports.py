@@ -32,7 +32,7 @@ class Layer:
         name: What others call it.
         folder: Where its files are, below one of the source folders.
         may_import: Names of layers, of "ros", "qi", "pybullet" or "definitions" (our messages and actions).
-        nested: Folders inside that are layers of their own.
+        nested: Files and folders inside that are of other layers.
     """
 
     name: str
@@ -41,8 +41,8 @@ class Layer:
     nested: tuple[str, ...] = ()
 
 
-ROOMS = tuple(
-    """
+ROOMS = {
+    "nao_library_modules": """
     base nao processes owners robot functions ros server
     lights audio audio_out audio_in motion vision.capture vision.detection vision tactile
     driver.base driver.joints driver.walk driver.path_follower driver.camera driver.audio driver.memory driver.sensors
@@ -50,12 +50,21 @@ ROOMS = tuple(
     process_modules.language process_modules.designators process_modules.core process_modules.robot
     process_modules.modules process_modules.action_rules process_modules
     behaviors.language behaviors.run behaviors cli cli.commands
-    """.split()
-)
-"""Folders of nao_library_modules from the ground up: each imports only what stands before it."""
+    """.split(),
+    "nao_sim_bridge": """
+    base model model.urdf world.painting world body.sensors body
+    control.joints control.whole_body control.balance control walk
+    cameras render.scene render.opengl render sound hearing.grammars hearing speech vision behaviors tracking core
+    naoqi.binding naoqi.memory naoqi.motion naoqi.body naoqi.speech naoqi.sound naoqi.vision naoqi.cameras
+    naoqi.behaviors naoqi.tracker naoqi.system naoqi.life naoqi
+    server ros testing
+    """.split(),
+}
+"""Folders of a package from the ground up: each imports only what stands before it."""
 MOST_FILES = 25
 """In one folder: a reader sees at a glance what is there."""
 LIBRARY = "nao_library_modules/src/nao_library_modules"
+SIMULATOR = "nao_sim_bridge/src/nao_sim_bridge"
 # Clients reach the robot through topics and actions only, and share helpers and errors with the servers.
 CLIENTS = ("process_modules", "behaviors")
 OF_CLIENTS = frozenset({"errors", "definitions", "ros", "library", *CLIENTS})
@@ -66,26 +75,20 @@ LAYERS = (
     Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "cli")),
     *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
     Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi"}),
-    Layer("sim", "nao_sim_bridge/src/nao_sim_bridge/sim", frozenset({"pybullet", "sim paths"})),
-    Layer("services", "nao_sim_bridge/src/nao_sim_bridge/services", frozenset({"sim", "qi", "sim paths"})),
-    Layer(
-        "server",
-        "nao_sim_bridge/src/nao_sim_bridge",
-        frozenset({"services", "sim", "sim paths", "qi", "ros", "definitions"}),
-        ("sim", "services"),
-    ),
-)
-# Files and folders of the server layer that ROS may be in; the others run without.
-ROS_SIDE = set(
-    "ros_node.py ros_side.py ros_sounds.py ros_things.py testing ros_robot.py ros_hand.py ros_film.py ros_health.py "
-    "ros_success.py ros_diagnostics.py".split()
+    Layer("sim", SIMULATOR, frozenset({"pybullet"}), ("naoqi", "server", "ros", "testing", "__main__.py")),
+    Layer("modules", f"{SIMULATOR}/naoqi", frozenset({"sim", "qi"})),
+    Layer("server", f"{SIMULATOR}/server", frozenset({"modules", "sim", "qi"})),
+    Layer("program", f"{SIMULATOR}/__main__.py", frozenset({"server", "sim"})),
+    Layer("ros side", f"{SIMULATOR}/ros", frozenset({"server", "modules", "sim", "ros", "definitions"})),
+    Layer("testing", f"{SIMULATOR}/testing", frozenset({"server", "sim", "qi", "ros", "definitions"})),
 )
 
 
 def files_of(layer: Layer) -> list[Path]:
     folder = ROOT / layer.folder
-    nested = [folder / name for name in layer.nested]
-    return [path for path in sorted(folder.rglob("*.py")) if not any(inner in path.parents for inner in nested)]
+    nested = {folder / name for name in layer.nested}
+    files = [folder] if folder.is_file() else sorted(folder.rglob("*.py"))
+    return [path for path in files if not nested & {path, *path.parents}]
 
 
 def imported(path: Path) -> Iterator[str]:
@@ -113,26 +116,26 @@ def layer_of(module: str) -> str | None:
     if root in ROS_LIBRARIES or root.endswith(("_msgs", "_srvs")):
         return "ros"
     if root == "nao_sim_bridge":
-        part = inner[0] if inner else ""
-        own = {"sim": "sim", "services": "services", "paths": "sim paths", "record_dir": "sim paths"}
-        return own.get(part, "server")
+        own = {"naoqi": "modules", "server": "server", "ros": "ros side", "testing": "testing", "__main__": "program"}
+        return own.get(inner[0] if inner else "", "sim")
     if root == "nao_library_modules":
         return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "cli") else "library"
     return root if root in ("naoqi", "qi", "pybullet") else None
 
 
 def room_of(module: str) -> str:
-    """The room of a module of nao_library_modules; empty for the package itself."""
-    inner = module.split(".")[1:]
-    return next((room for n in (2, 1) for room in [".".join(inner[:n])] if room in ROOMS), "")
+    """The room of a module; empty for the package itself and its programs."""
+    package, *inner = module.split(".")
+    rooms = ROOMS[package]
+    return next((room for n in (2, 1) for room in [".".join(inner[:n])] if room in rooms), "")
 
 
-def library_imports() -> dict[str, set[str]]:
-    """Module of nao_library_modules -> those of it that it imports, in functions and for types as well."""
-    source = SOURCES["nao_library_modules"]
+def imports_of(package: str) -> dict[str, set[str]]:
+    """Module of a package -> those of it that it imports, in functions and for types as well."""
+    source = SOURCES[package]
     paths = {
         ".".join(path.relative_to(source).with_suffix("").parts).removesuffix(".__init__"): path
-        for path in (source / "nao_library_modules").rglob("*.py")
+        for path in (source / package).rglob("*.py")
     }
     found: dict[str, set[str]] = {}
     for name, path in paths.items():
@@ -141,10 +144,11 @@ def library_imports() -> dict[str, set[str]]:
     return found
 
 
-def test_a_room_of_the_library_imports_only_what_stands_below_it():
-    rank = {room: number for number, room in enumerate(ROOMS)}
-    imports = library_imports()
-    assert {room_of(name) for name in imports} == {*ROOMS, ""}
+@pytest.mark.parametrize("package", SOURCES)
+def test_a_room_imports_only_what_stands_below_it(package):
+    rank = {room: number for number, room in enumerate(ROOMS[package])}
+    imports = imports_of(package)
+    assert {room_of(name) for name in imports} == {*ROOMS[package], ""}
     wrong = [
         f"{name} imports {other}"
         for name, others in imports.items()
@@ -154,12 +158,14 @@ def test_a_room_of_the_library_imports_only_what_stands_below_it():
     assert not wrong, "\n".join(wrong)
 
 
-def test_no_module_of_the_library_imports_itself_by_way_of_others():
-    assert tuple(TopologicalSorter(library_imports()).static_order())  # raises CycleError, with the circle
+@pytest.mark.parametrize("package", ["nao_library_modules"])
+def test_no_module_imports_itself_by_way_of_others(package):
+    assert tuple(TopologicalSorter(imports_of(package)).static_order())  # raises CycleError, with the circle
 
 
-def test_no_folder_of_the_library_is_crowded():
-    folders = Counter(path.parent for path in (ROOT / LIBRARY).rglob("*.py"))
+@pytest.mark.parametrize("package", SOURCES)
+def test_no_folder_is_crowded(package):
+    folders = Counter(path.parent for path in (SOURCES[package] / package).rglob("*.py"))
     assert max(folders.values()) <= MOST_FILES, folders.most_common(1)
 
 
@@ -177,19 +183,6 @@ def test_imports_point_one_way(layer):
     assert not wrong, "\n".join(wrong)
 
 
-def test_only_the_ros_side_of_the_simulator_knows_ros():
-    (server,) = [layer for layer in LAYERS if layer.name == "server"]
-    folder = ROOT / server.folder
-    users = {
-        path.relative_to(folder).parts[0]
-        for path in files_of(server)
-        for module in imported(path)
-        if layer_of(module) == "ros"
-    }
-    assert users, "nobody uses ROS: the rule checks nothing"
-    assert users <= ROS_SIDE
-
-
 def test_every_file_belongs_to_a_layer():
     files = [path for layer in LAYERS for path in files_of(layer)]
     everything = {path for source in SOURCES.values() for path in source.rglob("*.py")}
@@ -199,8 +192,9 @@ def test_every_file_belongs_to_a_layer():
 
 def test_modules_are_told_apart_and_relative_imports_followed(monkeypatch, tmp_path):
     known = {
-        "nao_sim_bridge.sim.runner": "sim",
-        "nao_sim_bridge.server.SimulatorServer": "server",
+        "nao_sim_bridge.core.runner": "sim",
+        "nao_sim_bridge.naoqi.body.leds": "modules",
+        "nao_sim_bridge.server.simulator_server.SimulatorServer": "server",
         "nao_library_modules.lights.NaoLights": "library",
         "geometry_msgs.msg.Pose": "ros",
         "nao_library_msgs.msg.LedFunction": "definitions",

@@ -47,8 +47,8 @@ from nao_library_modules.process_modules.language.control import do, seq, top_le
 from nao_library_modules.process_modules.language.trace import trace_of
 from nao_library_modules.processes.own_stack import can_connect, free_port
 from nao_library_modules.vision import NaoVision
-from nao_sim_bridge.sim.vision.face_memory import FaceMemory
 from nao_sim_bridge.testing import wait_until
+from nao_sim_bridge.vision.face_memory import FaceMemory
 
 DISK = Path(os.environ["SMALL_DISK"])
 FULL = r"cannot be written: No space left on device, 0\.0 MB free in /"

@@ -16,7 +16,7 @@ from naoqi_calls import read_calls
 from programs import Program, shell
 from simulator import connected
 
-from nao_sim_bridge.services.binding import DEFECT
+from nao_sim_bridge.naoqi.binding.binding import DEFECT
 
 MEMORY = 8 * 1024 * 1024
 """What the simulator may have of address space, KiB."""

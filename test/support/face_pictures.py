@@ -5,8 +5,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from nao_sim_bridge.sim.cameras.optics import Optics
-from nao_sim_bridge.sim.world_pictures import WorldPicture, paint
+from nao_sim_bridge.cameras.optics import Optics
+from nao_sim_bridge.world.pictures import WorldPicture, paint
 
 OPTICS = Optics(0.9826, 0.7627)
 FOCAL = 320.0 / np.tan(OPTICS.hfov / 2.0)

@@ -7,12 +7,12 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from nao_sim_bridge.sim.cameras.cameras import Cameras
-from nao_sim_bridge.sim.cameras.photograph import photograph
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.render.scene import RenderState
+from nao_sim_bridge.base.readings import Pose
+from nao_sim_bridge.cameras.cameras import Cameras
+from nao_sim_bridge.cameras.photograph import photograph
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.world.render_state import RenderState
 
 TICK = 1.0 / 120.0
 MANUAL = {11: 0, 12: 0}

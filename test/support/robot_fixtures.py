@@ -8,7 +8,7 @@ import pytest
 from module_goals import ModuleGoals
 from simulator import Simulator
 
-from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.core.simulation import Scene, Simulation
 
 
 @pytest.fixture(scope="session")

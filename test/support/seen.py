@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from nao_sim_bridge.sim.cameras.shot import Shot
-from nao_sim_bridge.sim.kinematics import matrix_quaternion, rpy_matrix
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.render import RenderState
-from nao_sim_bridge.sim.world import World
-from nao_sim_bridge.sim.world_reader import read_world
+from nao_sim_bridge.cameras.shot import Shot
+from nao_sim_bridge.model.kinematics import matrix_quaternion, rpy_matrix
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.render import RenderState
+from nao_sim_bridge.world.reader import read_world
+from nao_sim_bridge.world.world import World
 
 MODEL = load_model()
 UNTURNED = (0.0, 0.0, 0.0, 1.0)

@@ -7,9 +7,9 @@ import math
 import cv2
 import numpy as np
 
-from nao_sim_bridge.sim.cameras.optics import CameraOptics
-from nao_sim_bridge.sim.landmarks import load_landmarks
-from nao_sim_bridge.sim.world_pictures import WorldPicture, paint
+from nao_sim_bridge.cameras.optics import CameraOptics
+from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
+from nao_sim_bridge.world.pictures import WorldPicture, paint
 
 OPTICS = CameraOptics("V6", 0)
 GREY = (150, 160, 170)

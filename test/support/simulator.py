@@ -12,9 +12,9 @@ import qi
 
 import naoqi
 import naoqi.calls
-from nao_sim_bridge.server import ServerOptions, SimulatorServer
-from nao_sim_bridge.sim.errors import SimulationError
-from nao_sim_bridge.sim.simulation import Scene
+from nao_sim_bridge.base.errors import SimulationError
+from nao_sim_bridge.core.simulation import Scene
+from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
 from naoqi.errors import NaoError
 
 PATIENCE = 15.0

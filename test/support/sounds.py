@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import soundfile
 
-from nao_sim_bridge.sim.sound.samples import Sound
-from nao_sim_bridge.sim.sound.sources import SoundSource
+from nao_sim_bridge.base.samples import Sound
+from nao_sim_bridge.sound.sources import SoundSource
 
 RATE = 48000
 

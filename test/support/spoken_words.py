@@ -7,9 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from nao_sim_bridge.sim.sound.samples import Sound
-from nao_sim_bridge.sim.speech.engines import Engines
-from nao_sim_bridge.sim.speech.speech import Utterance
+from nao_sim_bridge.base.samples import Sound
+from nao_sim_bridge.speech.engines import Engines
+from nao_sim_bridge.speech.speech import Utterance
 
 RATE = 16000
 BLOCK = 2720

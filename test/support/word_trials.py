@@ -8,7 +8,7 @@ from sounds import RATE, put
 from spoken_words import RATE as SPEECH_RATE
 from spoken_words import audible, spoken
 
-from nao_sim_bridge.sim.sound.samples import Sound
+from nao_sim_bridge.base.samples import Sound
 
 PLACE = (1.0, 0.0, 0.5)
 WAY = 1.0 / 343.0

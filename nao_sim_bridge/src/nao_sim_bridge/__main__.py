@@ -8,10 +8,10 @@ import os
 import signal
 import sys
 
-from nao_sim_bridge.cli import parse, server_options
-from nao_sim_bridge.closing import REFUSED, close_all, exit_in_time, wait_for_end
-from nao_sim_bridge.robots_server import open_server
-from nao_sim_bridge.sim.errors import SimulationError
+from nao_sim_bridge.base.closing import REFUSED, close_all, exit_in_time, wait_for_end
+from nao_sim_bridge.base.errors import SimulationError
+from nao_sim_bridge.server.cli import parse, server_options
+from nao_sim_bridge.server.robots_server import open_server
 
 
 def main() -> int:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from typing import Callable
 
-from nao_sim_bridge.sim.simulation import Scene, Simulation
-from nao_sim_bridge.sim.walk.gait import FeetGait
+from nao_sim_bridge.core.simulation import Scene, Simulation
+from nao_sim_bridge.walk.gait import FeetGait
 
 from .errors import BenchmarkError
 from .stats import interleave

@@ -67,7 +67,7 @@ def _docstring(statements):
 
 
 def name_of(path):
-    """`nao_sim_bridge/sim/leds.py` for a file of the product, else None."""
+    """`nao_sim_bridge/body/leds.py` for a file of the product, else None."""
     for package in PACKAGES:
         if package in path:
             return path.rpartition(package)[2]

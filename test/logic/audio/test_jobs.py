@@ -6,8 +6,8 @@ import threading
 
 import pytest
 
-from nao_sim_bridge.services.audio.background import Background
-from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.naoqi.binding.background import Background
 
 PATIENCE = 15.0
 

@@ -10,7 +10,7 @@ import time
 import pytest
 
 from nao_library_modules.processes.closing import close_all
-from nao_sim_bridge.closing import close_all as close_simulator
+from nao_sim_bridge.base.closing import close_all as close_simulator
 
 LIMIT = 15.0
 

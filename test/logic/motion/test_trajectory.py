@@ -18,8 +18,8 @@ from nao_library_modules.functions.joint_trajectory import (
 )
 from nao_library_modules.motion.store import MotionStore
 from nao_library_modules.nao.xap import BadPoseFile, read_poses
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.curves import SmoothCurve
+from nao_sim_bridge.control.joints.curves import SmoothCurve
+from nao_sim_bridge.model.robot_model import load_model
 
 CHAINS = {"Body": ("HeadYaw", "HeadPitch", "LHand"), "Head": ("HeadYaw", "HeadPitch"), "LArm": ("LHand",)}
 

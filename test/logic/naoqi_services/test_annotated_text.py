@@ -7,13 +7,13 @@ import time
 
 import pytest
 
-from nao_sim_bridge.services.audio.animated_talk import AnimatedTalk
-from nao_sim_bridge.services.audio.annotated_text import Instruction, method_call, read
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.speech.animations import load_animations
-from nao_sim_bridge.sim.speech.clips import Style
-from nao_sim_bridge.sim.speech.sentences import Sentence
-from nao_sim_bridge.sim.speech.studio import Studio
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk
+from nao_sim_bridge.naoqi.speech.annotated_text import Instruction, method_call, read
+from nao_sim_bridge.speech.animations import load_animations
+from nao_sim_bridge.speech.clips import Style
+from nao_sim_bridge.speech.sentences import Sentence
+from nao_sim_bridge.speech.studio import Studio
 
 SHUTDOWN = "Good ^call(ALSystem.shutdown()) night ^pCall(ALSystem.reboot())."
 

@@ -4,9 +4,9 @@ import threading
 
 import pytest
 
-from nao_sim_bridge.services import client_watch
-from nao_sim_bridge.services.client_watch import ClientWatch
-from nao_sim_bridge.sim.tasks import TaskIds
+from nao_sim_bridge.base.tasks import TaskIds
+from nao_sim_bridge.naoqi.binding import client_watch
+from nao_sim_bridge.naoqi.binding.client_watch import ClientWatch
 
 PATIENCE = 10.0
 

@@ -7,16 +7,16 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_sim_bridge.services import live_keys
-from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.extractor import MOST, Extractor, Subscription
-from nao_sim_bridge.services.led_names import LedNames
-from nao_sim_bridge.services.memory_store import EVENT, MemoryStore
-from nao_sim_bridge.services.time_zone import TimeZone
-from nao_sim_bridge.services.walk_events import FAILED, MoveFailures
-from nao_sim_bridge.sim.errors import BadValue, UnknownName
-from nao_sim_bridge.sim.leds_layout import load_leds
-from nao_sim_bridge.sim.model import load_model
+from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.body.led_names import LedNames
+from nao_sim_bridge.naoqi.memory import live_keys
+from nao_sim_bridge.naoqi.memory.extractor import MOST, Extractor, Subscription
+from nao_sim_bridge.naoqi.memory.store import EVENT, MemoryStore
+from nao_sim_bridge.naoqi.motion.walk_events import FAILED, MoveFailures
+from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 
 LEDS = load_leds()
 

@@ -8,14 +8,14 @@ import re
 
 import pytest
 
-from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.services import limits
-from nao_sim_bridge.services.api import FILE, module_methods
-from nao_sim_bridge.services.nao_simulation import NaoSimulation
-from nao_sim_bridge.services.wire_types import fitted
-from nao_sim_bridge.sim.config import read_json
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.limits import check, declared, kinds
+from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.limits import check, declared, kinds
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.naoqi.binding import limits
+from nao_sim_bridge.naoqi.binding.api import FILE, module_methods
+from nao_sim_bridge.naoqi.binding.wire_types import fitted
+from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
 
 NUMERIC = ("int", "float", "ALValue")
 BAD = [math.nan, -math.inf, 1.7e308, -1.7e308]

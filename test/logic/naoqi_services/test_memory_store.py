@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_sim_bridge.services import memory_room
-from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.memory import ALMemory
-from nao_sim_bridge.services.memory_store import KEY_ADDED, KEY_REMOVED, MOST_WAITING, SIGNAL, MemoryStore
-from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.sizes import MemorySizes
+from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.sizes import MemorySizes
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.memory import room as memory_room
+from nao_sim_bridge.naoqi.memory.memory import ALMemory
+from nao_sim_bridge.naoqi.memory.store import KEY_ADDED, KEY_REMOVED, MOST_WAITING, SIGNAL, MemoryStore
 
 
 class Clock:

@@ -6,13 +6,13 @@ from unittest.mock import Mock
 
 import pytest
 
-from nao_sim_bridge.film_control import FilmControl
-from nao_sim_bridge.services.behaviors.frame_manager import ALFrameManager
-from nao_sim_bridge.sim.behaviors.installed import InstalledBehaviors
-from nao_sim_bridge.sim.behaviors.steps import Behavior, Wait
-from nao_sim_bridge.sim.errors import BadValue, NotAllowed
-from nao_sim_bridge.sim.sizes import load_sizes
-from nao_sim_bridge.sim.speech.animations import load_animations
+from nao_sim_bridge.base.errors import BadValue, NotAllowed
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.behaviors.installed import InstalledBehaviors
+from nao_sim_bridge.behaviors.steps import Behavior, Wait
+from nao_sim_bridge.naoqi.behaviors.frame_manager import ALFrameManager
+from nao_sim_bridge.server.film_control import FilmControl
+from nao_sim_bridge.speech.animations import load_animations
 
 SIZES = load_sizes()
 TIMELINE = '<Timeline enable="1"/>'

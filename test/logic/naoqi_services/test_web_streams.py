@@ -11,15 +11,15 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import pytest
 
-from nao_sim_bridge.record_dir import ClientFiles
-from nao_sim_bridge.services.audio.sound_files import SoundFiles
-from nao_sim_bridge.services.audio.web_fetch import Refused, anything, checked_addresses, fetch, is_public
-from nao_sim_bridge.services.audio.web_stream import MODULE, WebStreams
-from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.sim.child_process import ChildProcess
-from nao_sim_bridge.sim.errors import SimulationError
-from nao_sim_bridge.sim.sizes import load_sizes
-from nao_sim_bridge.sim.sound.reader import SoundReader
+from nao_sim_bridge.base.child_process import ChildProcess
+from nao_sim_bridge.base.errors import SimulationError
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
+from nao_sim_bridge.naoqi.sound.web_fetch import Refused, anything, checked_addresses, fetch, is_public
+from nao_sim_bridge.naoqi.sound.web_stream import MODULE, WebStreams
+from nao_sim_bridge.sound.reader import SoundReader
 
 SIZES = load_sizes().stream
 PATIENCE = 20.0

@@ -6,11 +6,11 @@ import math
 
 import pytest
 
-from nao_sim_bridge.services.api import FILE, Method, Overload, qi_type
-from nao_sim_bridge.services.arguments import number, numbers, per_item
-from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.wire_types import fitted, fitted_to
-from nao_sim_bridge.sim.errors import BadValue, ConfigError
+from nao_sim_bridge.base.errors import BadValue, ConfigError
+from nao_sim_bridge.naoqi.binding.api import FILE, Method, Overload, qi_type
+from nao_sim_bridge.naoqi.binding.arguments import number, numbers, per_item
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to
 
 CODES = {
     "void": "v", "bool": "b", "int": "i", "float": "f", "string": "s", "ALValue": "m", "object": "o",

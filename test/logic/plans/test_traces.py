@@ -22,7 +22,7 @@ from nao_library_modules.process_modules.language.trace_picture import COLORS, d
 from nao_library_modules.process_modules.robot.action_client import PlanActionClient
 from nao_library_modules.process_modules.robot.chains import Chain
 from nao_library_modules.ros.goal_tracker import GoalTracker
-from nao_sim_bridge.paths import urdf_file
+from nao_sim_bridge.base.paths import urdf_file
 from naoqi.errors import NaoError
 
 URDF = urdf_file("nao_h25.urdf").read_text(encoding="utf-8")

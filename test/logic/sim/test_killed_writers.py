@@ -22,20 +22,20 @@ print("written", flush=True)
 sys.stdin.read()
 """
 FILM = """
-from nao_sim_bridge.sim.render.film_file import FilmFile
+from nao_sim_bridge.render.film_file import FilmFile
 film = FilmFile(path, 96, 96, 48000)
 for number in range(150):
     film.picture(picture(), 0.1 * number)
     film.sound(sound(), 4800 * number)
 """
 RECORDING = """
-from nao_sim_bridge.services.vision.video_recorder_file import Film
+from nao_sim_bridge.naoqi.cameras.video_recorder_file import Film
 film = Film(path, sys.argv[2], 96, 96, 10.0)
 for number in range(150):
     film.write(picture())
 """
 SOUND = """
-from nao_sim_bridge.services.audio.recorder import KINDS
+from nao_sim_bridge.naoqi.sound.recorder import KINDS
 file = KINDS[path.suffix[1:]](path, 48000, 2)
 for number in range(150):
     file.write(sound())

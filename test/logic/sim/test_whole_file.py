@@ -8,7 +8,7 @@ import re
 import pytest
 from disks import files, room
 
-from nao_sim_bridge.sim.whole_file import FileTrouble, WholeFile, memory_file, tidy, write_whole
+from nao_sim_bridge.base.whole_file import FileTrouble, WholeFile, memory_file, tidy, write_whole
 
 FULL = r"{} cannot be written: File too large, \d+\.\d MB free in {}"
 

@@ -8,8 +8,10 @@ from unittest.mock import MagicMock
 
 import rospy
 
-from nao_sim_bridge import own_sockets, ros_node, ros_side
-from nao_sim_bridge.sim.guard import Guard
+from nao_sim_bridge.base.guard import Guard
+from nao_sim_bridge.ros import node as ros_node
+from nao_sim_bridge.ros import side as ros_side
+from nao_sim_bridge.server import own_sockets
 
 LIMIT = 15.0
 

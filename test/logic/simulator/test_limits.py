@@ -16,14 +16,14 @@ from nao_library_msgs.srv import (
     PressSensorsRequest,
     PushRobotRequest,
 )
-from nao_sim_bridge.ros_diagnostics import status_of
-from nao_sim_bridge.ros_limits import checked
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.guard import Failure
-from nao_sim_bridge.sim.scene import Scene
-from nao_sim_bridge.sim.world import WorldError
-from nao_sim_bridge.sim.world_objects import read_object
-from nao_sim_bridge.sim.world_reader import read_world
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.guard import Failure
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.ros.diagnostics import status_of
+from nao_sim_bridge.ros.limits import checked
+from nao_sim_bridge.world.objects import read_object
+from nao_sim_bridge.world.reader import read_world
+from nao_sim_bridge.world.world import WorldError
 
 HUGE = 1.7e308
 

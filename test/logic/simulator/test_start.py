@@ -15,8 +15,8 @@ import rospy
 from std_srvs.srv import SetBool, SetBoolRequest
 
 from nao_library_msgs.srv import TakePictureRequest
-from nao_sim_bridge.cli import parse, server_options
-from nao_sim_bridge.record_dir import (
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import (
     ClientFiles,
     NoSuchFile,
     OutsideRecordDir,
@@ -25,14 +25,14 @@ from nao_sim_bridge.record_dir import (
     unused,
     world_of_client,
 )
-from nao_sim_bridge.ros_robot import RosRobot
-from nao_sim_bridge.ros_success import success_service
-from nao_sim_bridge.server import ServerOptions
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.places import MOST_ROBOTS
-from nao_sim_bridge.sim.simulation import Scene
-from nao_sim_bridge.sim.tasks import Task
-from nao_sim_bridge.task_success import success_of
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.simulation import Scene
+from nao_sim_bridge.ros.robot import RosRobot
+from nao_sim_bridge.ros.success import success_service
+from nao_sim_bridge.server.cli import parse, server_options
+from nao_sim_bridge.server.simulator_server import ServerOptions
+from nao_sim_bridge.server.task_success import success_of
+from nao_sim_bridge.world.places import MOST_ROBOTS
 
 LAUNCH = Path(__file__).parents[3] / "launch" / "launch"
 

@@ -3,8 +3,8 @@
 import pytest
 
 from nao_library_msgs.srv import PlaceObjectRequest
-from nao_sim_bridge.ros_things import entry_of
-from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.ros.things import entry_of
 
 
 def test_fields_of_a_request_are_an_entry_of_a_world_file():

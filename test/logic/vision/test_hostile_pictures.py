@@ -17,8 +17,8 @@ from sensor_msgs.msg import Image
 
 from nao_library_modules.vision.capture import pictures as vision_pictures
 from nao_library_modules.vision.capture.pictures import BadPicture, picture_of, scaled
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.world_pictures import WorldPicture, aspect
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.world.pictures import WorldPicture, aspect
 
 # Blue grows to the right, red downwards.
 COLOURS = np.stack(np.broadcast_arrays(6 * np.arange(40), 100, 10 * np.arange(24)[:, None]), axis=2).astype(np.uint8)

@@ -14,7 +14,7 @@ from spoken_words import spoken
 from nao_library_actions.msg import NaoAudioInGoal
 from nao_library_modules.audio_in.server import NaoAudioInput
 from nao_library_modules.base.kept import Kept
-from nao_sim_bridge.sim.sound.samples import Sound
+from nao_sim_bridge.base.samples import Sound
 
 WORDS, STATUS = "WordRecognized", "ALSpeechRecognition/Status"
 YES_NO = ["yes", "no"]

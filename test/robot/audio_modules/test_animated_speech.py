@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from sounds import until
 
-from nao_sim_bridge.services.audio.annotated_text import ANIMATION, CALL, MODE, TAG, Instruction, method_call, read
+from nao_sim_bridge.naoqi.speech.annotated_text import ANIMATION, CALL, MODE, TAG, Instruction, method_call, read
 
 HEY = "animations/Stand/Gestures/Hey_1"
 TEXT = "Hello, my name is Nao. Yes, I explain everything."

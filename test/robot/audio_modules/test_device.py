@@ -11,8 +11,8 @@ import qi
 from simulator import PATIENCE, connected
 from sounds import RATE, frequency, loudness, played, tone, write
 
-from nao_sim_bridge.services.audio import microphone_clients
-from nao_sim_bridge.services.audio.microphone_clients import WAITING
+from nao_sim_bridge.naoqi.sound import microphone_clients
+from nao_sim_bridge.naoqi.sound.microphone_clients import WAITING
 from naoqi import ALBroker, ALModule
 
 BLOCK = 0.17

@@ -10,7 +10,7 @@ from sounds import RATE, frequency, noise, put, until
 from spoken_words import RATE as SPEECH_RATE
 from spoken_words import spoken
 
-from nao_sim_bridge.sim.sound.samples import Sound
+from nao_sim_bridge.base.samples import Sound
 
 LOCATED, ALL_LOCATED = "ALSoundLocalization/SoundLocated", "ALSoundLocalization/SoundsLocated"
 OLD_LOCATED, DETECTED = "ALAudioSourceLocalization/SoundLocated", "SoundDetected"

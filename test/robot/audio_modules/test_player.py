@@ -12,9 +12,9 @@ import pytest
 import soundfile
 from sounds import RATE, frequency, loudness, played, tone, until, write
 
-from nao_sim_bridge.services.audio.sound_files import SoundFiles
-from nao_sim_bridge.services.audio.web_stream import WebStreams
-from nao_sim_bridge.sim.sizes import LoadedSizes
+from nao_sim_bridge.base.sizes import LoadedSizes
+from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
+from nao_sim_bridge.naoqi.sound.web_stream import WebStreams
 
 FULL = 0.5 / np.sqrt(2.0)
 EDGE = 0.02

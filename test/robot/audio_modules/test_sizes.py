@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from nao_sim_bridge.services.argument_sizes import check_sizes
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.sizes import load_sizes
-from nao_sim_bridge.sim.speech import studio
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.naoqi.binding.argument_sizes import check_sizes
+from nao_sim_bridge.speech import studio
 
 
 def nested(levels):

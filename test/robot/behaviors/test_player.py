@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.behaviors.installed import InstalledBehaviors, shipped_behaviors
-from nao_sim_bridge.sim.behaviors.player import BehaviorPlayer
-from nao_sim_bridge.sim.behaviors.reader import behaviors_of
-from nao_sim_bridge.sim.behaviors.steps import joints_of
-from nao_sim_bridge.sim.motion.posture_change import PostureChange
-from nao_sim_bridge.sim.posture_moves import load_moves
-from nao_sim_bridge.sim.posture_recognition import STANDING, recognise
-from nao_sim_bridge.sim.speech.animations import load_animations
-from nao_sim_bridge.sim.speech.animator import Animator
-from nao_sim_bridge.sim.tasks import Task
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.behaviors.installed import InstalledBehaviors, shipped_behaviors
+from nao_sim_bridge.behaviors.player import BehaviorPlayer
+from nao_sim_bridge.behaviors.reader import behaviors_of
+from nao_sim_bridge.behaviors.steps import joints_of
+from nao_sim_bridge.control.balance.posture_recognition import STANDING, recognise
+from nao_sim_bridge.core.posture_change import PostureChange
+from nao_sim_bridge.core.posture_moves import load_moves
+from nao_sim_bridge.speech.animations import load_animations
+from nao_sim_bridge.speech.animator import Animator
 
 LONGEST = 40.0
 SPEAKS = 0.5

@@ -4,17 +4,17 @@ import math
 
 import pytest
 
-from nao_sim_bridge.sim.balance import Balance, load_balance
-from nao_sim_bridge.sim.capture_point import BodyMotion
-from nao_sim_bridge.sim.fall_manager import FallState
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion import sequences
-from nao_sim_bridge.sim.motion.sequences import posture_task
-from nao_sim_bridge.sim.posture_recognition import recognise
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.push_detection import PushDetector
-from nao_sim_bridge.sim.stance import StanceReader
-from nao_sim_bridge.sim.touch_parts import LimbTouch
+from nao_sim_bridge.body.touch_parts import LimbTouch
+from nao_sim_bridge.control.balance.balance import Balance, load_balance
+from nao_sim_bridge.control.balance.capture_point import BodyMotion
+from nao_sim_bridge.control.balance.fall_manager import FallState
+from nao_sim_bridge.control.balance.posture_recognition import recognise
+from nao_sim_bridge.control.balance.push_detection import PushDetector
+from nao_sim_bridge.control.balance.stance import StanceReader
+from nao_sim_bridge.core import sequences
+from nao_sim_bridge.core.sequences import posture_task
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 READER, STAND = StanceReader(MODEL), posture(MODEL, "Stand")

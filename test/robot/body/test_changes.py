@@ -2,15 +2,15 @@
 
 import pytest
 
-from nao_sim_bridge.sim.diagnosis import SAFE_TIME, DiagnosisEffect
-from nao_sim_bridge.sim.fall_manager import FallState
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion import sequences
-from nao_sim_bridge.sim.motion.posture_change import PostureChange
-from nao_sim_bridge.sim.motion.sequences import posture_task, stiffness_task
-from nao_sim_bridge.sim.posture_moves import KeyFrame, Move, load_moves, play
-from nao_sim_bridge.sim.posture_recognition import Recognition, recognise
-from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.control.balance.fall_manager import FallState
+from nao_sim_bridge.control.balance.posture_recognition import Recognition, recognise
+from nao_sim_bridge.core import sequences
+from nao_sim_bridge.core.diagnosis import SAFE_TIME, DiagnosisEffect
+from nao_sim_bridge.core.posture_change import PostureChange
+from nao_sim_bridge.core.posture_moves import KeyFrame, Move, load_moves, play
+from nao_sim_bridge.core.sequences import posture_task, stiffness_task
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 LONGEST = 60.0

@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.frames import FEET, frame_of
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.footholds import FootState
-from nao_sim_bridge.sim.motion.whole_body_aims import TargetAim
-from nao_sim_bridge.sim.motion.whole_body_tasks import go_to_balance
-from nao_sim_bridge.sim.rotations import roll_pitch_yaw
-from nao_sim_bridge.sim.tracking.follower import Follower
-from nao_sim_bridge.sim.tracking.follower import Mode as Tracking
+from nao_sim_bridge.base.rotations import roll_pitch_yaw
+from nao_sim_bridge.control.whole_body.aims import TargetAim
+from nao_sim_bridge.control.whole_body.footholds import FootState
+from nao_sim_bridge.control.whole_body.tasks import go_to_balance
+from nao_sim_bridge.model.frames import FEET, frame_of
+from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.tracking.follower import Follower
+from nao_sim_bridge.tracking.follower import Mode as Tracking
 
 INDEX = load_model().joint_index
 OTHER = dict(zip(FEET, reversed(FEET)))

@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import NotAllowed
-from nao_sim_bridge.sim.hand_path import AWAY
-from nao_sim_bridge.sim.hands import COME_TIME, LEAVE_TIME
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.rotations import roll_pitch_yaw
-from nao_sim_bridge.sim.sensors.sonar import NO_ECHO
-from nao_sim_bridge.sim.touch_names import CHEST_BUTTON, HEAD, SENSORS
-from nao_sim_bridge.sim.world_objects import read_object
+from nao_sim_bridge.base.errors import NotAllowed
+from nao_sim_bridge.base.rotations import roll_pitch_yaw
+from nao_sim_bridge.body.hand_path import AWAY
+from nao_sim_bridge.body.sensors.sonar import NO_ECHO
+from nao_sim_bridge.core.hands import COME_TIME, LEAVE_TIME
+from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.touch_names import CHEST_BUTTON, HEAD, SENSORS
+from nao_sim_bridge.world.objects import read_object
 
 MODEL = load_model()
 YAW = MODEL.joint_index["HeadYaw"]

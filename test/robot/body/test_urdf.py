@@ -9,14 +9,14 @@ import numpy as np
 import pybullet
 import pytest
 
-from nao_sim_bridge.paths import data_root, urdf_file
-from nao_sim_bridge.sim.appearance import load_appearance
-from nao_sim_bridge.sim.collision import LOAD_FLAGS
-from nao_sim_bridge.sim.kinematics import center_of_mass, link_transforms, quaternion_matrix
-from nao_sim_bridge.sim.leds_layout import load_leds
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.urdf import full_urdf, mesh_files, physics_urdf
+from nao_sim_bridge.base.paths import data_root, urdf_file
+from nao_sim_bridge.model.appearance import load_appearance
+from nao_sim_bridge.model.collision import LOAD_FLAGS
+from nao_sim_bridge.model.kinematics import center_of_mass, link_transforms, quaternion_matrix
+from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.urdf.document import full_urdf, mesh_files, physics_urdf
 
 MODEL = load_model()
 TRAVEL = MODEL.simulated_hand.travel

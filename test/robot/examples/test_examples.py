@@ -10,7 +10,7 @@ from PIL import Image
 from simulator import Simulator
 
 from nao_library_actions.msg import NaoLedGoal
-from nao_sim_bridge.sim.simulation import Scene
+from nao_sim_bridge.core.simulation import Scene
 
 BRAIN0, BRAIN1 = "Head/Led/Front/Right/1", "Head/Led/Front/Right/0"
 

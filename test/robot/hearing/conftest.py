@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from spoken_words import blocks
 
-from nao_sim_bridge.sim.hearing.grammar import vocabulary
-from nao_sim_bridge.sim.hearing.listening import Listening
-from nao_sim_bridge.sim.hearing.worker import Ear
+from nao_sim_bridge.hearing.grammars.grammar import vocabulary
+from nao_sim_bridge.hearing.listening import Listening
+from nao_sim_bridge.hearing.worker import Ear
 
 PHRASES = ("yes", "no", "Stand up!", "room 21", "good morning", "red", "what is your name")
 

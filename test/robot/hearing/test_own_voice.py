@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.hearing.own_voice import OwnVoice
-from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
+from nao_sim_bridge.base.samples import RATE, Sound, sine
+from nao_sim_bridge.hearing.own_voice import OwnVoice
 
 
 def test_the_own_voice_is_foretold_as_the_microphones_hear_it(bench):

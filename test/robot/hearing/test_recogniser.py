@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from spoken_words import LEVEL, RATE, ROOM, audible, blocks, in_a_room, spoken
 
-from nao_sim_bridge.sim.hearing.bnf import parse_bnf
-from nao_sim_bridge.sim.hearing.contexts import Contexts
-from nao_sim_bridge.sim.hearing.grammar import vocabulary
-from nao_sim_bridge.sim.hearing.listening import Listening, Recognised
-from nao_sim_bridge.sim.hearing.recogniser import Recogniser, RecogniserRefused
-from nao_sim_bridge.sim.hearing.voice_activity import SpeechChange
+from nao_sim_bridge.hearing.grammars.bnf import parse_bnf
+from nao_sim_bridge.hearing.grammars.contexts import Contexts
+from nao_sim_bridge.hearing.grammars.grammar import vocabulary
+from nao_sim_bridge.hearing.listening import Listening, Recognised
+from nao_sim_bridge.hearing.recogniser import Recogniser, RecogniserRefused
+from nao_sim_bridge.hearing.voice_activity import SpeechChange
 
 LISTENING = Listening((vocabulary("v", ["yes", "good morning"]),))
 

@@ -5,7 +5,7 @@ import sys
 import pytest
 from simulator import PATIENCE
 
-from nao_sim_bridge.services.memory_store import HISTORY_LENGTH
+from nao_sim_bridge.naoqi.memory.store import HISTORY_LENGTH
 
 SENSOR = "Device/SubDeviceList/HeadYaw/Position/Sensor/Value"
 VALUES = [3, -2.5, "text", "", True, [1, [2.5, "three"], []], ["a", "b"], [[1, 2], [3, 4]], {"a": 1}]

@@ -7,8 +7,8 @@ import zlib
 import pytest
 from naoqi_calls import read_calls
 
-from nao_sim_bridge.services.api import COMMON, module_methods
-from nao_sim_bridge.services.binding import DEFECT, NATIVE, offered
+from nao_sim_bridge.naoqi.binding.api import COMMON, module_methods
+from nao_sim_bridge.naoqi.binding.binding import DEFECT, NATIVE, offered
 
 LONGEST = 8.0
 """No call takes longer than this, in s of simulated time."""

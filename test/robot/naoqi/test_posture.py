@@ -4,7 +4,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from nao_sim_bridge.services.robot_model import ALRobotModel
+from nao_sim_bridge.naoqi.body.robot_model import ALRobotModel
 
 POSTURE = "ALRobotPosture"
 NAMES = ["Crouch", "LyingBack", "LyingBelly", "Sit", "SitRelax", "Stand", "StandInit", "StandZero"]

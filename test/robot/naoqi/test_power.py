@@ -2,8 +2,8 @@
 
 import pytest
 
-from nao_sim_bridge.services.battery import BatteryEvents
-from nao_sim_bridge.services.memory_store import MemoryStore
+from nao_sim_bridge.naoqi.body.battery import BatteryEvents
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 DISCHARGING, FULL, CHARGING, SUPPLY, END, NEAR_END = 1 << 5, 1 << 6, 1 << 7, 1 << 15, 1, 2
 CHARGE, CURRENT = "Battery/Charge/Sensor/Value", "Battery/Current/Sensor/Value"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nao_sim_bridge.services.sonar import DETECTED, NOTHING
+from nao_sim_bridge.naoqi.body.sonar import DETECTED, NOTHING
 
 KEY = "Device/SubDeviceList/US/{}/Sensor/Value"
 POST = "{name: post, cylinder: [0.06, 1.0], position: [0.35, 0.3, 0.5]}"

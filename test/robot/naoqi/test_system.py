@@ -5,8 +5,8 @@ import io
 import pytest
 from PIL import Image
 
-from nao_sim_bridge.services.memory_store import MemoryStore
-from nao_sim_bridge.services.system import ALSystem
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.system.system import ALSystem
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import queue
 import pytest
 from simulator import PATIENCE
 
-from nao_sim_bridge.sim.touch_names import CHEST_BUTTON, EVENTS, HEAD, SENSORS
+from nao_sim_bridge.model.touch_names import CHEST_BUTTON, EVENTS, HEAD, SENSORS
 
 TICK = 1.0 / 120.0
 

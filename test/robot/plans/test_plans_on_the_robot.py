@@ -34,7 +34,7 @@ from nao_library_modules.process_modules.language.failures import (
 from nao_library_modules.process_modules.language.settings import load_settings
 from nao_library_modules.process_modules.robot.action_client import ActionEnd
 from nao_library_modules.process_modules.robot.chains import Chain
-from nao_sim_bridge.paths import urdf_file
+from nao_sim_bridge.base.paths import urdf_file
 
 FRAME_TORSO, STANDING = 0, 0.28
 URDF = urdf_file("nao_h25.urdf").read_text(encoding="utf-8")

@@ -8,15 +8,15 @@ import pytest
 from PIL import Image
 from seen import AWAY, BLUE, GREEN, MODEL, RED, STATE, UNTURNED, clear, middle, placed, shot, world
 
-from nao_sim_bridge.sim.cameras.places import CameraPlaces
-from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.render import RobotLook
-from nao_sim_bridge.sim.render.engines import open_engine
-from nao_sim_bridge.sim.render.view import View
-from nao_sim_bridge.sim.shapes import Shape
-from nao_sim_bridge.sim.world import Part, WorldObject
-from nao_sim_bridge.sim.world_pictures import WorldPicture
+from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.readings import Pose
+from nao_sim_bridge.cameras.places import CameraPlaces
+from nao_sim_bridge.model.shapes import Shape
+from nao_sim_bridge.render import RobotLook
+from nao_sim_bridge.render.engines import open_engine
+from nao_sim_bridge.render.scene.view import View
+from nao_sim_bridge.world.pictures import WorldPicture
+from nao_sim_bridge.world.world import Part, WorldObject
 
 VIEW, HERE = View.of_shot(shot()), (0.0, 0.0, 0.0)
 

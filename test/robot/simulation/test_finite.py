@@ -5,9 +5,9 @@ import math
 import pybullet
 import pytest
 
-from nao_sim_bridge.sim.finite import NotFinite, check_finite
-from nao_sim_bridge.sim.motion.curves import SmoothCurve
-from nao_sim_bridge.sim.readings import Pose
+from nao_sim_bridge.base.finite import NotFinite, check_finite
+from nao_sim_bridge.base.readings import Pose
+from nao_sim_bridge.control.joints.curves import SmoothCurve
 
 BALL = "{name: ball, sphere: 0.04, position: [0.3, 0.02, 0.04], mass: 0.2}"
 NAN = math.nan

@@ -7,13 +7,13 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_sim_bridge.closing import FAILED, wait_for_end
-from nao_sim_bridge.sim import led_animations
-from nao_sim_bridge.sim.errors import BadValue, SimulationStopped, TaskKilled
-from nao_sim_bridge.sim.motion import sequences
-from nao_sim_bridge.sim.motion.curves import Ramp
-from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
-from nao_sim_bridge.sim.simulation import Scene, Simulation
+from nao_sim_bridge.base.closing import FAILED, wait_for_end
+from nao_sim_bridge.base.errors import BadValue, SimulationStopped, TaskKilled
+from nao_sim_bridge.body import led_animations
+from nao_sim_bridge.control.joints.curves import Ramp
+from nao_sim_bridge.core import sequences
+from nao_sim_bridge.core.runner import FASTEST, SimulationRunner
+from nao_sim_bridge.core.simulation import Scene, Simulation
 
 PATIENCE = 30.0
 BALL = "{name: ball, sphere: 0.04, position: [0.3, 0.02, 0.3], mass: 0.2}"

@@ -6,10 +6,10 @@ import threading
 import pytest
 from simulator import PATIENCE, connected
 
-from nao_sim_bridge.broker import Broker
-from nao_sim_bridge.services.binding import DEFECT, Service, offered
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.tasks import Task, TaskIds
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.tasks import Task, TaskIds
+from nao_sim_bridge.naoqi.binding.binding import DEFECT, Service, offered
+from nao_sim_bridge.server.broker import Broker
 
 BOOK = "Head " * 20000
 

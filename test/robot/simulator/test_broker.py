@@ -19,10 +19,10 @@ from sounds import sound_of
 from waits import hold
 
 from nao_library_modules.processes.process_tree import descendants, identify, kill_survivors
-from nao_sim_bridge import broker as module
-from nao_sim_bridge import own_sockets
-from nao_sim_bridge.broker import Broker
-from nao_sim_bridge.services import client_calls
+from nao_sim_bridge.naoqi.binding import client_calls
+from nao_sim_bridge.server import broker as module
+from nao_sim_bridge.server import own_sockets
+from nao_sim_bridge.server.broker import Broker
 from nao_sim_bridge.testing import wait_until
 
 END_LIMIT = 5.0

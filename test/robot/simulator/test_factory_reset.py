@@ -13,9 +13,9 @@ import pytest
 from simulator import PATIENCE, Simulator
 
 import naoqi
-from nao_sim_bridge.services.api import module_methods
-from nao_sim_bridge.sim.sound.files import write_sound
-from nao_sim_bridge.sim.sound.samples import RATE, Sound
+from nao_sim_bridge.base.samples import RATE, Sound
+from nao_sim_bridge.naoqi.binding.api import module_methods
+from nao_sim_bridge.sound.files import write_sound
 from nao_sim_bridge.testing import wait_until
 
 READS = re.compile(

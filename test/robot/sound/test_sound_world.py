@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.runner import FASTEST, SimulationRunner
-from nao_sim_bridge.sim.sound.samples import sine
-from nao_sim_bridge.sim.sound.sources import SoundSource
+from nao_sim_bridge.base.samples import sine
+from nao_sim_bridge.core.runner import FASTEST, SimulationRunner
+from nao_sim_bridge.sound.sources import SoundSource
 
 PATIENCE = 15.0
 

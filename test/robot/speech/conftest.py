@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.speech.clips import ClipMaker, Style
-from nao_sim_bridge.sim.speech.engines import Engines
-from nao_sim_bridge.sim.speech.sentences import sentences
-from nao_sim_bridge.sim.speech.tags import TagReader
-from nao_sim_bridge.sim.speech.voices import load_voices
+from nao_sim_bridge.speech.clips import ClipMaker, Style
+from nao_sim_bridge.speech.engines import Engines
+from nao_sim_bridge.speech.sentences import sentences
+from nao_sim_bridge.speech.tags import TagReader
+from nao_sim_bridge.speech.voices import load_voices
 
 
 @pytest.fixture(scope="session")

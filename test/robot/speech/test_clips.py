@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.sound.samples import RATE
-from nao_sim_bridge.sim.speech.clips import ClipMaker, SpokenWord
-from nao_sim_bridge.sim.speech.parameters import DoubleVoice, Prosody
-from nao_sim_bridge.sim.speech.tags import Bookmark
+from nao_sim_bridge.base.samples import RATE
+from nao_sim_bridge.speech.clips import ClipMaker, SpokenWord
+from nao_sim_bridge.speech.parameters import DoubleVoice, Prosody
+from nao_sim_bridge.speech.tags import Bookmark
 
 TEXT = "We are all away now."
 

@@ -8,13 +8,13 @@ import threading
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.speech.clips import Style
-from nao_sim_bridge.sim.speech.sentences import sentences
-from nao_sim_bridge.sim.speech.speaker import Speaker
-from nao_sim_bridge.sim.speech.speech import SpeechError
-from nao_sim_bridge.sim.speech.studio import Studio
-from nao_sim_bridge.sim.speech.tags import Cue, Gate
-from nao_sim_bridge.sim.speech.voices import Voice, load_voices
+from nao_sim_bridge.speech.clips import Style
+from nao_sim_bridge.speech.sentences import sentences
+from nao_sim_bridge.speech.speaker import Speaker
+from nao_sim_bridge.speech.speech import SpeechError
+from nao_sim_bridge.speech.studio import Studio
+from nao_sim_bridge.speech.tags import Cue, Gate
+from nao_sim_bridge.speech.voices import Voice, load_voices
 
 NAO = Style(load_voices().voices["naoenu"])
 MISSING = Style(Voice("x", "English", "festival", "x"))

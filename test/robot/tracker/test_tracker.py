@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.services.tracker.looking import robot_position
-from nao_sim_bridge.services.tracker.targets import TARGETS, Parameters
-from nao_sim_bridge.sim.frames import frame_of
-from nao_sim_bridge.sim.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.model.frames import frame_of
+from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.naoqi.tracker.looking import robot_position
+from nao_sim_bridge.naoqi.tracker.targets import TARGETS, Parameters
 
 WORLD, ROBOT = 1, 2
 EVENT = "Test/Place"

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.cameras.optics import CameraOptics
-from nao_sim_bridge.sim.kinematics import rpy_matrix
+from nao_sim_bridge.cameras.optics import CameraOptics
+from nao_sim_bridge.model.kinematics import rpy_matrix
 
 BALL, MARK, CODE = "redBallDetected", "LandmarkDetected", "BarcodeReader/BarcodeDetected"
 TOP, BOTTOM = 0, 1

@@ -2,9 +2,9 @@
 
 import pytest
 
-from nao_sim_bridge.sim.errors import MoveRefused
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.sim.walk.walk_guard import CONTACT_SWITCH, STIFFNESS_SWITCH
+from nao_sim_bridge.base.errors import MoveRefused
+from nao_sim_bridge.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.walk.walk_guard import CONTACT_SWITCH, STIFFNESS_SWITCH
 
 LEG_JOINTS = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
 LEGS = [f"{side}{name}" for side in "LR" for name in LEG_JOINTS]

@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.curves import Ramp
-from nao_sim_bridge.sim.walk.footsteps import FootPose
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.sim.walk.steps_course import Placement
+from nao_sim_bridge.control.joints.curves import Ramp
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.walk.steps_course import Placement
 
 MODEL = load_model()
 KNEE = MODEL.joint_index["LKneePitch"]

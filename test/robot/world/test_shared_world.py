@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import NotAllowed
-from nao_sim_bridge.sim.places import on_circle, parse_places
-from nao_sim_bridge.sim.rotations import roll_pitch_yaw
-from nao_sim_bridge.sim.scene import Scene
-from nao_sim_bridge.sim.shared_world import SharedWorld
-from nao_sim_bridge.sim.simulation import Simulation
-from nao_sim_bridge.sim.sound.samples import RATE, Sound
-from nao_sim_bridge.sim.world_objects import read_object
+from nao_sim_bridge.base.errors import NotAllowed
+from nao_sim_bridge.base.rotations import roll_pitch_yaw
+from nao_sim_bridge.base.samples import RATE, Sound
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.shared_world import SharedWorld
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.world.objects import read_object
+from nao_sim_bridge.world.places import on_circle, parse_places
 
 SPEED_OF_SOUND = 343.0
 PUSHED_AWAY = (0.0, 90.0, 0.0), 0.3

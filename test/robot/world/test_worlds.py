@@ -8,14 +8,14 @@ import pytest
 import yaml
 from sounds import sound_of
 
-from nao_sim_bridge.sim.errors import BadValue, NotAllowed
-from nao_sim_bridge.sim.rotations import roll_pitch_yaw, rotate
-from nao_sim_bridge.sim.sound.samples import sine
-from nao_sim_bridge.sim.world import load_world, world_names
-from nao_sim_bridge.sim.world_builder import build_world
-from nao_sim_bridge.sim.world_objects import read_object
-from nao_sim_bridge.sim.world_reader import read_world
-from nao_sim_bridge.sim.world_sounds_playing import WorldSounds
+from nao_sim_bridge.base.errors import BadValue, NotAllowed
+from nao_sim_bridge.base.rotations import roll_pitch_yaw, rotate
+from nao_sim_bridge.base.samples import sine
+from nao_sim_bridge.core.world_sounds_playing import WorldSounds
+from nao_sim_bridge.world.builder import build_world
+from nao_sim_bridge.world.objects import read_object
+from nao_sim_bridge.world.reader import read_world
+from nao_sim_bridge.world.world import load_world, world_names
 
 CUBE = {"name": "ball", "sphere": 0.04, "position": [0.5, 0.0, 0.2], "mass": 0.1, "color": [1, 0, 0]}
 TABLE = {"name": "table", "box": [0.4, 0.6, 0.3], "position": [1.0, 0.0, 0.15], "friction": 0.9}

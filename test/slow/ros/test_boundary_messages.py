@@ -32,7 +32,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from nao_library_actions import msg as actions
 from nao_library_msgs.msg import FadeRGB, JointAnglesWithSpeed, StepTarget
 from nao_library_msgs.srv import PlaceObject, PlaceSound, RemoveObject, RemoveSound, StopFilm
-from nao_sim_bridge.services.binding import DEFECT
+from nao_sim_bridge.naoqi.binding.binding import DEFECT
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 PATIENCE = 20.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.walk.gait import feet_gait
+from nao_sim_bridge.walk.gait import feet_gait
 
 REAL = {"sensor_noise": 1.0, "sensor_delay": 0.016}
 

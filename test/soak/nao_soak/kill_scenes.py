@@ -56,7 +56,7 @@ MICROPHONE = "nao_robot/microphone/naoqi_microphone"
 PICTURES = ("cameras", "diagnostics")
 """Parts of the driver that nao_driver.launch has in a process of their own."""
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"
-SPEECH_WORKER, PICTURE_WORKER = "nao_sim_bridge.sim.speech.worker", "nao_sim_bridge.sim.render.worker"
+SPEECH_WORKER, PICTURE_WORKER = "nao_sim_bridge.speech.worker", "nao_sim_bridge.render.worker"
 """Processes of the simulator, by what they run."""
 
 

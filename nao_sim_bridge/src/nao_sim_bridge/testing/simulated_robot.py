@@ -15,7 +15,7 @@ from geometry_msgs.msg import Pose, Vector3
 from std_srvs.srv import Empty
 
 from nao_library_msgs.srv import AdvanceTime, GetTruepose, PressSensors, PushRobot, ResetWorld, TakePicture
-from nao_sim_bridge.broker import QUIET_LIBQI
+from nao_sim_bridge.server.broker import QUIET_LIBQI
 from nao_sim_bridge.testing.goal_run import send
 from nao_sim_bridge.testing.waits import wait_for_service, wait_until
 

@@ -15,12 +15,12 @@ from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.stats import interleave
 
-from nao_sim_bridge.sim.cameras.optics import CameraOptics
-from nao_sim_bridge.sim.cameras.places import CameraPlaces
-from nao_sim_bridge.sim.kinematics import quaternion_matrix
-from nao_sim_bridge.sim.render.stage import Stage
-from nao_sim_bridge.sim.simulation import Scene, Simulation
-from nao_sim_bridge.sim.world import load_world
+from nao_sim_bridge.cameras.optics import CameraOptics
+from nao_sim_bridge.cameras.places import CameraPlaces
+from nao_sim_bridge.core.simulation import Scene, Simulation
+from nao_sim_bridge.model.kinematics import quaternion_matrix
+from nao_sim_bridge.render.scene.stage import Stage
+from nao_sim_bridge.world.world import load_world
 
 WORLD = "lab"
 RESOLUTIONS = {"320x240": 1, "640x480": 2}

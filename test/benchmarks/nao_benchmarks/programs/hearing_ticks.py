@@ -15,9 +15,9 @@ from nao_benchmarks.printing import print_times
 from nao_benchmarks.robots import awake
 from nao_benchmarks.stats import interleave
 
-from nao_sim_bridge.sim.simulation import Simulation
-from nao_sim_bridge.sim.sound.ears import BLOCK
-from nao_sim_bridge.sim.sound.samples import RATE, Sound
+from nao_sim_bridge.base.samples import RATE, Sound
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.sound.ears import BLOCK
 
 TICKS = 102
 """Five blocks of the microphones."""

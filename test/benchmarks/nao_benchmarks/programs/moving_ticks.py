@@ -13,8 +13,8 @@ from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.robots import alternate, awake, check
 
-from nao_sim_bridge.sim.motion.curves import SmoothCurve
-from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.control.joints.curves import SmoothCurve
+from nao_sim_bridge.core.simulation import Simulation
 
 # rad; small enough to stand by, and long enough to last.
 SWING = 0.02

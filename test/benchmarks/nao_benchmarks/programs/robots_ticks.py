@@ -12,10 +12,10 @@ import time
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.robots import SETTLE_S, alternate, check, stiffen, walk
 
-from nao_sim_bridge.sim.places import RobotPlace
-from nao_sim_bridge.sim.scene import Scene
-from nao_sim_bridge.sim.shared_world import SharedWorld
-from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.shared_world import SharedWorld
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.world.places import RobotPlace
 
 ROBOTS = 3
 APART = 2.0

@@ -15,12 +15,12 @@ from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.stats import interleave
 
-from nao_sim_bridge.server import ServerOptions, SimulatorServer
-from nao_sim_bridge.sim.motion.joints import JointCommands
-from nao_sim_bridge.sim.physics import Physics
-from nao_sim_bridge.sim.simulation import Scene, Simulation
-from nao_sim_bridge.sim.snapshot import Snapshot
-from nao_sim_bridge.sim.world import load_world
+from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.body.physics import Physics
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.core.simulation import Scene, Simulation
+from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
+from nao_sim_bridge.world.world import load_world
 
 SETTLE_S = 2.0
 LIMIT = 60.0

@@ -16,7 +16,7 @@ from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.robots import alternate, awake, check, walk
 
-from nao_sim_bridge.sim.simulation import Simulation
+from nao_sim_bridge.core.simulation import Simulation
 
 
 class Stopwatch:

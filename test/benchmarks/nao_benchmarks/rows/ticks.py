@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nao_sim_bridge.sim.settings import load_settings
+from nao_sim_bridge.base.settings import load_settings
 
 from ..row import Figures, Row, at_most
 from ..stack import Stack

@@ -7,9 +7,10 @@ import zipfile
 
 import pytest
 
-from nao_sim_bridge.sim.behaviors.packages import read_package, renamed
-from nao_sim_bridge.sim.behaviors.reader import behaviors_of
-from nao_sim_bridge.sim.behaviors.steps import (
+from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.behaviors.packages import read_package, renamed
+from nao_sim_bridge.behaviors.reader import behaviors_of
+from nao_sim_bridge.behaviors.steps import (
     GoToPosture,
     InTurn,
     Joints,
@@ -21,8 +22,7 @@ from nao_sim_bridge.sim.behaviors.steps import (
     joints_of,
     length_of,
 )
-from nao_sim_bridge.sim.behaviors.xar import xar_step
-from nao_sim_bridge.sim.errors import ConfigError
+from nao_sim_bridge.behaviors.xar import xar_step
 
 RED = {"lights": "FaceLeds", "color": "red"}
 

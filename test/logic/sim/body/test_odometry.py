@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.kinematics import matrix_rpy, quaternion_matrix
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.odometry import Odometry
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.readings import Contact
+from nao_sim_bridge.base.readings import Contact
+from nao_sim_bridge.control.balance.odometry import Odometry
+from nao_sim_bridge.model.kinematics import matrix_rpy, quaternion_matrix
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 INIT = posture(MODEL, "StandInit")

@@ -9,15 +9,7 @@ from math import radians
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.frames import frame_of
-from nao_sim_bridge.sim.kinematics import link_transforms
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.posture_graph import path_to
-from nao_sim_bridge.sim.posture_moves import Ground, KeyFrame, Move, direct, load_moves, moves_of
-from nao_sim_bridge.sim.posture_recognition import FAMILIES, UNKNOWN, Recognition, recognise_readings
-from nao_sim_bridge.sim.postures import load_postures, posture
-from nao_sim_bridge.sim.start_lean import start_pitch
-from nao_sim_bridge.sim.touch_gestures import (
+from nao_sim_bridge.body.touch_gestures import (
     FREE,
     GESTURES,
     HOLD_TIME,
@@ -28,9 +20,17 @@ from nao_sim_bridge.sim.touch_gestures import (
     Seen,
     Times,
 )
-from nao_sim_bridge.sim.tracking.approach import Relative, goal_beside
-from nao_sim_bridge.sim.tracking.geometry import HEAD, arm_angles, distance_of, head_angles, seen_place, turn_to
-from nao_sim_bridge.sim.walk.footsteps import FootPose
+from nao_sim_bridge.control.balance.posture_recognition import FAMILIES, UNKNOWN, Recognition, recognise_readings
+from nao_sim_bridge.core.posture_graph import path_to
+from nao_sim_bridge.core.posture_moves import Ground, KeyFrame, Move, direct, load_moves, moves_of
+from nao_sim_bridge.model.frames import frame_of
+from nao_sim_bridge.model.kinematics import link_transforms
+from nao_sim_bridge.model.postures import load_postures, posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.start_lean import start_pitch
+from nao_sim_bridge.tracking.approach import Relative, goal_beside
+from nao_sim_bridge.tracking.geometry import HEAD, arm_angles, distance_of, head_angles, seen_place, turn_to
+from nao_sim_bridge.walk.footsteps import FootPose
 
 MODEL = load_model()
 FAMILY = {name: entry.family for name, entry in load_postures().by_name.items()}

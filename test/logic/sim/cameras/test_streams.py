@@ -7,10 +7,10 @@ from fractions import Fraction
 
 import pytest
 
-from nao_sim_bridge.sim.cameras import stream as streams
-from nao_sim_bridge.sim.cameras.rate import Shutter
-from nao_sim_bridge.sim.cameras.stream import CameraClosed
-from nao_sim_bridge.sim.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.cameras import stream as streams
+from nao_sim_bridge.cameras.rate import Shutter
+from nao_sim_bridge.cameras.stream import CameraClosed
 
 TOP = 0
 TICKS = Fraction(120)

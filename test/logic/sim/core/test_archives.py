@@ -9,13 +9,13 @@ import zipfile
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.archives import Archive, BadArchive
-from nao_sim_bridge.sim.behaviors.packages import read_package
-from nao_sim_bridge.sim.bounded_files import TooLarge, read_bounded
-from nao_sim_bridge.sim.config import read_json
-from nao_sim_bridge.sim.errors import ConfigError
-from nao_sim_bridge.sim.sizes import ArchiveSizes, load_sizes, size_rows
-from nao_sim_bridge.sim.vision.face_memory import FaceFileError, FaceMemory
+from nao_sim_bridge.base.archives import Archive, BadArchive
+from nao_sim_bridge.base.bounded_files import TooLarge, read_bounded
+from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.base.sizes import ArchiveSizes, load_sizes, size_rows
+from nao_sim_bridge.behaviors.packages import read_package
+from nao_sim_bridge.vision.face_memory import FaceFileError, FaceMemory
 
 SMALL = ArchiveSizes(file_bytes=10_000, member_bytes=1000, total_bytes=1500, members=3)
 

@@ -7,13 +7,13 @@ from functools import partial
 
 import pytest
 
-from nao_sim_bridge.sim.guard import Guard
-from nao_sim_bridge.sim.leds import LedBank, LedKeyframe
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.curves import Ramp
-from nao_sim_bridge.sim.motion.engine import MotionEngine
-from nao_sim_bridge.sim.motion.joints import JointCommands
-from nao_sim_bridge.sim.tasks import Task, TaskIds
+from nao_sim_bridge.base.guard import Guard
+from nao_sim_bridge.base.tasks import Task, TaskIds
+from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.body.leds import LedBank, LedKeyframe
+from nao_sim_bridge.control.joints.curves import Ramp
+from nao_sim_bridge.control.joints.engine import MotionEngine
+from nao_sim_bridge.model.robot_model import load_model
 
 TICK = 1.0 / 120.0
 

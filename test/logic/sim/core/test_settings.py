@@ -6,13 +6,14 @@ import math
 
 import pytest
 
-from nao_sim_bridge.sim import balance, errors, fall_manager, settings, sizes
-from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
-from nao_sim_bridge.sim.hearing import settings as hearing
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.places import NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
-from nao_sim_bridge.sim.scene import Scene
-from nao_sim_bridge.sim.sensors import noise_settings
+from nao_sim_bridge.base import errors, settings, sizes
+from nao_sim_bridge.base.errors import BadValue, ConfigError, UnknownName
+from nao_sim_bridge.body.sensors import noise_settings
+from nao_sim_bridge.control.balance import balance, fall_manager
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.hearing import settings as hearing
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.world.places import NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
 
 MODEL = load_model()
 BALANCE, FALLS, NOISE, PHYSICS = balance.FILE, fall_manager.FILE, noise_settings.FILE, settings.FILE

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.tasks import Task, TaskIds, killed_error
-from nao_sim_bridge.sim.timed_commands import AT_ONCE, merged, polyline
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.tasks import Task, TaskIds, killed_error
+from nao_sim_bridge.base.timed_commands import AT_ONCE, merged, polyline
 
 OLD, NEW = ((0.1, 100), (0.2, 200), (0.3, 300)), ((0.5, 250), (0.6, 200))
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from ear_sounds import BLOCK, PLACES, RATE, background, harmonics, heard, noise, rms, rounded
 
-from nao_sim_bridge.sim.hearing.array import direction, microphone_array
-from nao_sim_bridge.sim.hearing.detection import END, START, SoundDetector
-from nao_sim_bridge.sim.hearing.localiser import Localiser
+from nao_sim_bridge.hearing.array import direction, microphone_array
+from nao_sim_bridge.hearing.detection import END, START, SoundDetector
+from nao_sim_bridge.hearing.localiser import Localiser
 
 ARRAY = microphone_array(PLACES)
 BLOCK_S = BLOCK / RATE

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue, UnknownName
-from nao_sim_bridge.sim.hearing import grammar as g
-from nao_sim_bridge.sim.hearing.bnf import GrammarError, parse_bnf
-from nao_sim_bridge.sim.hearing.contexts import ContextError, Contexts
-from nao_sim_bridge.sim.hearing.network import MOST_ARCS, build, spoken_word
-from nao_sim_bridge.sim.hearing.phrases import spoken_words
-from nao_sim_bridge.sim.hearing.pronunciation import Pronouncer, phones_of_ipa
+from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.hearing.grammars import grammar as g
+from nao_sim_bridge.hearing.grammars.bnf import GrammarError, parse_bnf
+from nao_sim_bridge.hearing.grammars.contexts import ContextError, Contexts
+from nao_sim_bridge.hearing.grammars.phrases import spoken_words
+from nao_sim_bridge.hearing.network import MOST_ARCS, build, spoken_word
+from nao_sim_bridge.hearing.pronunciation import Pronouncer, phones_of_ipa
 
 HOUSE = """#BNF+EM V2.1;
 !grammar House; // of a flat

@@ -6,12 +6,12 @@ import random
 
 import pytest
 
-from nao_sim_bridge.sim import led_animations
-from nao_sim_bridge.sim.errors import UnknownName
-from nao_sim_bridge.sim.leds import LedBank, LedKeyframe
-from nao_sim_bridge.sim.leds_layout import load_leds
-from nao_sim_bridge.sim.model import VERSIONS
-from nao_sim_bridge.sim.tasks import TaskIds
+from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.tasks import TaskIds
+from nao_sim_bridge.body import led_animations
+from nao_sim_bridge.body.leds import LedBank, LedKeyframe
+from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.robot_model import VERSIONS
 
 LEDS = load_leds()
 

@@ -9,11 +9,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.config import read_json
-from nao_sim_bridge.sim.frames import frame_of
-from nao_sim_bridge.sim.glide import Glide, slerp
-from nao_sim_bridge.sim.kinematics import (
+from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.readings import Pose
+from nao_sim_bridge.base.rotations import cross, from_roll_pitch_yaw, multiply, roll_pitch_yaw, rotate, rotate_back
+from nao_sim_bridge.body.glide import Glide, slerp
+from nao_sim_bridge.control.balance.stance import StanceReader
+from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
+from nao_sim_bridge.control.whole_body.grounded_pose import Footing, GroundedPose
+from nao_sim_bridge.model.frames import frame_of
+from nao_sim_bridge.model.kinematics import (
     LinkPoses,
     axis_matrix,
     center_of_mass,
@@ -24,13 +29,8 @@ from nao_sim_bridge.sim.kinematics import (
     quaternion_matrix,
     rpy_matrix,
 )
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
-from nao_sim_bridge.sim.motion.grounded_pose import Footing, GroundedPose
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.rotations import cross, from_roll_pitch_yaw, multiply, roll_pitch_yaw, rotate, rotate_back
-from nao_sim_bridge.sim.stance import StanceReader
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
 
 CHECKS = read_json(config_file("nao_h25.json"))["fk_check_zero_posture_torso_frame"]["positions_m"]
 MODEL = load_model()

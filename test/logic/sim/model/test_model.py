@@ -8,18 +8,18 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.paths import config_file
-from nao_sim_bridge.sim.appearance import load_appearance
-from nao_sim_bridge.sim.body_mass import convex_hull
-from nao_sim_bridge.sim.config import read_json
-from nao_sim_bridge.sim.errors import ConfigError, UnknownName
-from nao_sim_bridge.sim.kinematics import rpy_matrix
-from nao_sim_bridge.sim.meshes import tessellate
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.model_reader import ModelReader
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.shapes import SEEN_KINDS, Shape, read_shape
-from nao_sim_bridge.sim.support_polygon import outside
+from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.errors import ConfigError, UnknownName
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.model.appearance import load_appearance
+from nao_sim_bridge.model.body_mass import convex_hull
+from nao_sim_bridge.model.kinematics import rpy_matrix
+from nao_sim_bridge.model.meshes import tessellate
+from nao_sim_bridge.model.model_reader import ModelReader
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.shapes import SEEN_KINDS, Shape, read_shape
+from nao_sim_bridge.model.support_polygon import outside
 
 TABLES = read_json(config_file("nao_h25.json"))
 MODEL = load_model()

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.motion.bezier import BezierCurve, Handle, Interpolation, KeyPoint
-from nao_sim_bridge.sim.motion.curves import Ramp, SmoothCurve
+from nao_sim_bridge.control.joints.bezier import BezierCurve, Handle, Interpolation, KeyPoint
+from nao_sim_bridge.control.joints.curves import Ramp, SmoothCurve
 
 CONSTANT, LINEAR, SMOOTH, BEZIER = Interpolation
 

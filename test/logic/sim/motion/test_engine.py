@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.curves import SmoothCurve
-from nao_sim_bridge.sim.motion.engine import MotionEngine
-from nao_sim_bridge.sim.motion.joints import JointCommands
-from nao_sim_bridge.sim.tasks import TaskIds
+from nao_sim_bridge.base.tasks import TaskIds
+from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.control.joints.curves import SmoothCurve
+from nao_sim_bridge.control.joints.engine import MotionEngine
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 DT = 0.01

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.joints import STICTION, JointCommands
+from nao_sim_bridge.body.joint_commands import STICTION, JointCommands
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 DT = 0.01

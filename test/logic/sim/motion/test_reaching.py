@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.frames import FEET, frame_of
-from nao_sim_bridge.sim.kinematics import axis_matrix, transform
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
-from nao_sim_bridge.sim.motion.cartesian_path import SolvedPath
-from nao_sim_bridge.sim.motion.inverse_kinematics import Goal, solve
-from nao_sim_bridge.sim.motion.task_solver import Wish, ranked_step
-from nao_sim_bridge.sim.motion.whole_body_aims import PathAim, TargetAim
-from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.control.whole_body.aims import PathAim, TargetAim
+from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
+from nao_sim_bridge.control.whole_body.cartesian_path import SolvedPath
+from nao_sim_bridge.control.whole_body.inverse_kinematics import Goal, solve
+from nao_sim_bridge.control.whole_body.task_solver import Wish, ranked_step
+from nao_sim_bridge.model.frames import FEET, frame_of
+from nao_sim_bridge.model.kinematics import axis_matrix, transform
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 BODY = body_kinematics(MODEL)

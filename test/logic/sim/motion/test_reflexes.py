@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.external_collision import SLOWEST, ExternalCollision
-from nao_sim_bridge.sim.kinematics import link_transforms
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.capsules import segment_distances
-from nao_sim_bridge.sim.motion.idle import BREATH, EASE_TIME, FIVE_DEGREES, Idle, Mode
-from nao_sim_bridge.sim.motion.joints import JointCommands
-from nao_sim_bridge.sim.motion.self_collision import CONTACT, SelfCollision
-from nao_sim_bridge.sim.motion.smart_stiffness import ALL, FACTOR, MOVED, SETTLING, SPARE, SmartStiffness
-from nao_sim_bridge.sim.postures import load_postures, posture
+from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.control.balance.external_collision import SLOWEST, ExternalCollision
+from nao_sim_bridge.control.joints.capsules import segment_distances
+from nao_sim_bridge.control.joints.idle import BREATH, EASE_TIME, FIVE_DEGREES, Idle, Mode
+from nao_sim_bridge.control.joints.self_collision import CONTACT, SelfCollision
+from nao_sim_bridge.control.joints.smart_stiffness import ALL, FACTOR, MOVED, SETTLING, SPARE, SmartStiffness
+from nao_sim_bridge.model.kinematics import link_transforms
+from nao_sim_bridge.model.postures import load_postures, posture
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 INDEX = MODEL.joint_index

@@ -6,7 +6,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.motion.cartesian_path import SAMPLE_TIME, SampleTimes, SolvedPath
+from nao_sim_bridge.control.whole_body.cartesian_path import SAMPLE_TIME, SampleTimes, SolvedPath
 
 DAY = 86400.0
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.frames import FEET, frame_of
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.balance_region import CORE, FRONT, MARGIN, balance_region, sole_corners
-from nao_sim_bridge.sim.motion.body_kinematics import body_kinematics
-from nao_sim_bridge.sim.motion.footholds import Footholds, FootState
-from nao_sim_bridge.sim.motion.grounded_pose import GroundedPose
-from nao_sim_bridge.sim.postures import posture
+from nao_sim_bridge.control.whole_body.balance_region import CORE, FRONT, MARGIN, balance_region, sole_corners
+from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
+from nao_sim_bridge.control.whole_body.footholds import Footholds, FootState
+from nao_sim_bridge.control.whole_body.grounded_pose import GroundedPose
+from nao_sim_bridge.model.frames import FEET, frame_of
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 BODY = body_kinematics(MODEL)

@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.readings import BodyReadings, Contact, Pose
-from nao_sim_bridge.sim.rotations import from_roll_pitch_yaw
-from nao_sim_bridge.sim.sensors.contacts import Press, in_link_frames
-from nao_sim_bridge.sim.sensors.feet import FootSensors
-from nao_sim_bridge.sim.sensors.inertial import InertialUnit
-from nao_sim_bridge.sim.sensors.touch import TouchSensors
-from nao_sim_bridge.sim.touch_clicks import LONGEST_CLICK, LONGEST_PAUSE, ClickCounter
+from nao_sim_bridge.base.readings import BodyReadings, Contact, Pose
+from nao_sim_bridge.base.rotations import from_roll_pitch_yaw
+from nao_sim_bridge.body.sensors.contacts import Press, in_link_frames
+from nao_sim_bridge.body.sensors.feet import FootSensors
+from nao_sim_bridge.body.sensors.inertial import InertialUnit
+from nao_sim_bridge.body.sensors.touch import TouchSensors
+from nao_sim_bridge.body.touch_clicks import LONGEST_CLICK, LONGEST_PAUSE, ClickCounter
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 LINKS = {link.name: number for number, link in enumerate(MODEL.links)}

@@ -7,10 +7,10 @@ from statistics import fmean, pstdev
 
 import pytest
 
-from nao_sim_bridge.sim.readings import Contact, JointReadings, Pose
-from nao_sim_bridge.sim.sensors.imperfection import Delay, Felt, Imperfection, Noise
-from nao_sim_bridge.sim.sensors.noise_settings import load_noise
-from nao_sim_bridge.sim.snapshot import Imu
+from nao_sim_bridge.base.readings import Contact, JointReadings, Pose
+from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise
+from nao_sim_bridge.body.sensors.noise_settings import load_noise
+from nao_sim_bridge.body.sensors.snapshot import Imu
 
 LEFT, RIGHT, HAND = 3, 7, 12
 SETTINGS = load_noise()

@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.sensors import sonar
-from nao_sim_bridge.sim.sensors.sonar import FARTHEST, NEAREST, NO_ECHO, Sonars, Surface
+from nao_sim_bridge.base.readings import Pose
+from nao_sim_bridge.body.sensors import sonar
+from nao_sim_bridge.body.sensors.sonar import FARTHEST, NEAREST, NO_ECHO, Sonars, Surface
+from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 HEIGHT = 0.33

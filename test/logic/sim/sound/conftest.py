@@ -7,14 +7,14 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.readings import Pose
-from nao_sim_bridge.sim.sound.air import Air
-from nao_sim_bridge.sim.sound.reader import SoundReader
-from nao_sim_bridge.sim.sound.samples import RATE
-from nao_sim_bridge.sim.sound.settings import load_sound_settings
-from nao_sim_bridge.sim.sound.sound_world import SoundWorld
-from nao_sim_bridge.sim.tasks import TaskIds
+from nao_sim_bridge.base.readings import Pose
+from nao_sim_bridge.base.samples import RATE
+from nao_sim_bridge.base.tasks import TaskIds
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.sound.air import Air
+from nao_sim_bridge.sound.reader import SoundReader
+from nao_sim_bridge.sound.settings import load_sound_settings
+from nao_sim_bridge.sound.sound_world import SoundWorld
 
 TICK = 1.0 / 120.0
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)

@@ -7,10 +7,10 @@ import threading
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.sound.ears import BLOCK
-from nao_sim_bridge.sim.sound.follower import LONGEST, Follower
-from nao_sim_bridge.sim.sound.samples import pcm16, sine
-from nao_sim_bridge.sim.sound.sources import SoundSource
+from nao_sim_bridge.base.samples import pcm16, sine
+from nao_sim_bridge.sound.ears import BLOCK
+from nao_sim_bridge.sound.follower import LONGEST, Follower
+from nao_sim_bridge.sound.sources import SoundSource
 
 
 @pytest.fixture

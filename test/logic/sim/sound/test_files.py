@@ -7,10 +7,10 @@ import pytest
 import soundfile
 from disks import room
 
-from nao_sim_bridge.sim.sound.files import write_sound
-from nao_sim_bridge.sim.sound.samples import sine
-from nao_sim_bridge.sim.sound.wav_file import OggFile, WavFile
-from nao_sim_bridge.sim.whole_file import FileTrouble
+from nao_sim_bridge.base.samples import sine
+from nao_sim_bridge.base.whole_file import FileTrouble
+from nao_sim_bridge.sound.files import write_sound
+from nao_sim_bridge.sound.wav_file import OggFile, WavFile
 
 
 @pytest.mark.parametrize("name, error", [("a.wav", 2e-5), ("a.flac", 2e-5), ("a.ogg", 0.02), ("a.mp3", 0.02)])

@@ -13,10 +13,10 @@ import pytest
 import soundfile
 from waits import hold
 
-from nao_sim_bridge.sim.sizes import load_sizes
-from nao_sim_bridge.sim.sound.files import SoundFileError, write_sound
-from nao_sim_bridge.sim.sound.reader import SoundReader
-from nao_sim_bridge.sim.sound.samples import sine
+from nao_sim_bridge.base.samples import sine
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.sound.files import SoundFileError, write_sound
+from nao_sim_bridge.sound.reader import SoundReader
 
 
 def chunk(name, content):

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
-from nao_sim_bridge.sim.sound.settings import load_sound_settings
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.samples import RATE, Sound, sine
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.sound.settings import load_sound_settings
 
 
 def rms(samples):

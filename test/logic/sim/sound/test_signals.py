@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.sound.decimation import REACH, third
-from nao_sim_bridge.sim.sound.envelope import Envelope
-from nao_sim_bridge.sim.sound.pitch import shifted
-from nao_sim_bridge.sim.sound.propagation import FixedWays, arrivals
-from nao_sim_bridge.sim.sound.samples import RATE, Sound, pcm16, sine
+from nao_sim_bridge.base.samples import RATE, Sound, pcm16, sine
+from nao_sim_bridge.sound.decimation import REACH, third
+from nao_sim_bridge.sound.envelope import Envelope
+from nao_sim_bridge.sound.pitch import shifted
+from nao_sim_bridge.sound.propagation import FixedWays, arrivals
 
 MIDDLE = slice(RATE // 4, 3 * RATE // 4)
 """Half a second away from the edges."""

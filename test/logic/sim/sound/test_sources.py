@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.sizes import LoadedSizes, load_sizes
-from nao_sim_bridge.sim.sound import sources
-from nao_sim_bridge.sim.sound.samples import RATE, Sound, sine
-from nao_sim_bridge.sim.sound.sources import SoundSource
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.samples import RATE, Sound, sine
+from nao_sim_bridge.base.sizes import LoadedSizes, load_sizes
+from nao_sim_bridge.sound import sources
+from nao_sim_bridge.sound.sources import SoundSource
 
 TONE = sine(1000.0, 10.0, 0.3)
 NOISE = Sound(np.random.default_rng(1).normal(0.0, 0.1, 10 * RATE).astype(np.float32))

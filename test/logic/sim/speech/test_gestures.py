@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.self_collision import SelfCollision
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.speech.animations import load_animations
-from nao_sim_bridge.sim.speech.body_language import CONTEXTUAL, QUICKEST, RANDOM, SLOWEST, plan
+from nao_sim_bridge.control.joints.self_collision import SelfCollision
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.speech.animations import load_animations
+from nao_sim_bridge.speech.body_language import CONTEXTUAL, QUICKEST, RANDOM, SLOWEST, plan
 
 GESTURES = "animations/Stand/Gestures/"
 ALL = sorted(load_animations().animations)

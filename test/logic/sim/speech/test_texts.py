@@ -6,10 +6,10 @@ import time
 
 import pytest
 
-from nao_sim_bridge.sim.speech.dictionary import Pronunciations
-from nao_sim_bridge.sim.speech.parameters import Prosody
-from nao_sim_bridge.sim.speech.sentences import sentences
-from nao_sim_bridge.sim.speech.tags import Bookmark, Pause, Spoken, TagReader
+from nao_sim_bridge.speech.dictionary import Pronunciations
+from nao_sim_bridge.speech.parameters import Prosody
+from nao_sim_bridge.speech.sentences import sentences
+from nao_sim_bridge.speech.tags import Bookmark, Pause, Spoken, TagReader
 
 
 @pytest.fixture

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from seen_cards import GREY, OPTICS, card, mark, sphere
 
-from nao_sim_bridge.sim.landmarks import load_landmarks
-from nao_sim_bridge.sim.vision.ball import BallDetector
-from nao_sim_bridge.sim.vision.barcodes import BarcodeDetector
-from nao_sim_bridge.sim.vision.landmarks import LandmarkDetector
-from nao_sim_bridge.sim.vision.movement import MovementDetector, MovementSettings
-from nao_sim_bridge.sim.world_pictures import WorldPicture
+from nao_sim_bridge.vision.ball import BallDetector
+from nao_sim_bridge.vision.barcodes import BarcodeDetector
+from nao_sim_bridge.vision.landmarks import LandmarkDetector
+from nao_sim_bridge.vision.movement import MovementDetector, MovementSettings
+from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
+from nao_sim_bridge.world.pictures import WorldPicture
 
 NUMBERS, SIZE = sorted(load_landmarks().marks), load_landmarks().diameter
 NOISE = np.random.default_rng(3).integers(0, 256, (240, 320, 3)).astype(np.uint8)

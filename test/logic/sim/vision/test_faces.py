@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from face_pictures import CARD, FOCAL, OPTICS, face_picture, wall
 
-from nao_sim_bridge.services.vision.face_detection_value import NamedFace, NamesOnce
-from nao_sim_bridge.sim.faces import load_faces
-from nao_sim_bridge.sim.vision.face_memory import MOST_PICTURES, FaceFileError, FaceMemory
-from nao_sim_bridge.sim.vision.faces import FaceDetector, FaceSettings
+from nao_sim_bridge.naoqi.vision.face_detection_value import NamedFace, NamesOnce
+from nao_sim_bridge.vision.face_memory import MOST_PICTURES, FaceFileError, FaceMemory
+from nao_sim_bridge.vision.faces import FaceDetector, FaceSettings
+from nao_sim_bridge.world.painting.known_faces import load_faces
 
 PEOPLE = sorted(load_faces())
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from plain_cameras import Head
 
-from nao_sim_bridge.services.errors import NaoqiError
-from nao_sim_bridge.services.extractor import Subscription
-from nao_sim_bridge.services.vision.vision_extractor import VisionExtractor
-from nao_sim_bridge.services.vision.watching import Watching
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.vision.cone import fit_cone
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.memory.extractor import Subscription
+from nao_sim_bridge.naoqi.vision.vision_extractor import VisionExtractor
+from nao_sim_bridge.naoqi.vision.watching import Watching
+from nao_sim_bridge.vision.cone import fit_cone
 
 
 class Eyes(Head):

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import pytest
 
-from nao_sim_bridge.sim.walk.courses import Step
-from nao_sim_bridge.sim.walk.footsteps import FootPose, middle
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.walk.courses import Step
+from nao_sim_bridge.walk.footsteps import FootPose, middle
+from nao_sim_bridge.walk.legs import LEFT, RIGHT
 
 
 class Made(NamedTuple):

@@ -9,12 +9,12 @@ import math
 
 import pytest
 
-from nao_sim_bridge.sim.errors import BadValue, ConfigError, UnknownName
-from nao_sim_bridge.sim.walk import gait as gait_module
-from nao_sim_bridge.sim.walk.clipping import step_limits
-from nao_sim_bridge.sim.walk.gait import FIELDS, Gait, feet_gait, parameters, walk_file
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.sim.walk.settings import load_walk_settings
+from nao_sim_bridge.base.errors import BadValue, ConfigError, UnknownName
+from nao_sim_bridge.walk import gait as gait_module
+from nao_sim_bridge.walk.clipping import step_limits
+from nao_sim_bridge.walk.gait import FIELDS, Gait, feet_gait, parameters, walk_file
+from nao_sim_bridge.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.walk.settings import load_walk_settings
 
 LOADERS = (walk_file, parameters, load_walk_settings, step_limits)
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.kinematics import link_transforms
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.walk.body import WalkingBody
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT, SIDES
+from nao_sim_bridge.model.kinematics import link_transforms
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.walk.body import WalkingBody
+from nao_sim_bridge.walk.legs import LEFT, RIGHT, SIDES
 
 MODEL = load_model()
 BODY = WalkingBody(MODEL)

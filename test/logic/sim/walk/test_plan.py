@@ -6,12 +6,12 @@ import math
 
 import pytest
 
-from nao_sim_bridge.sim.walk.footsteps import FootPose
-from nao_sim_bridge.sim.walk.gait import feet_gait
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.sim.walk.plan import Phase, WalkPlan
-from nao_sim_bridge.sim.walk.settings import load_walk_settings
-from nao_sim_bridge.sim.walk.steps_course import Placement, StepsCourse
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.gait import feet_gait
+from nao_sim_bridge.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.walk.plan import Phase, WalkPlan
+from nao_sim_bridge.walk.settings import load_walk_settings
+from nao_sim_bridge.walk.steps_course import Placement, StepsCourse
 
 SETTINGS = load_walk_settings()
 DT, PERIOD = 1.0 / 120.0, 0.42

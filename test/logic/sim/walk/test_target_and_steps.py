@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.errors import BadValue
-from nao_sim_bridge.sim.walk.clipping import clip_step, step_limits
-from nao_sim_bridge.sim.walk.courses import STANDSTILL, rate_limits
-from nao_sim_bridge.sim.walk.footsteps import FootPose
-from nao_sim_bridge.sim.walk.gait import FeetGait, feet_gait
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.sim.walk.settings import load_walk_settings
-from nao_sim_bridge.sim.walk.steps_course import Placement, StepsCourse
-from nao_sim_bridge.sim.walk.target_course import ARRIVED, ARRIVED_TURN, TargetCourse, braking
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.walk.clipping import clip_step, step_limits
+from nao_sim_bridge.walk.courses import STANDSTILL, rate_limits
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.gait import FeetGait, feet_gait
+from nao_sim_bridge.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.walk.settings import load_walk_settings
+from nao_sim_bridge.walk.steps_course import Placement, StepsCourse
+from nao_sim_bridge.walk.target_course import ARRIVED, ARRIVED_TURN, TargetCourse, braking
 
 SETTINGS = load_walk_settings()
 GAIT = FeetGait()

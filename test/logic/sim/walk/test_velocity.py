@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_sim_bridge.sim.walk.clipping import clip_step, step_limits
-from nao_sim_bridge.sim.walk.courses import STANDSTILL, rate_limits
-from nao_sim_bridge.sim.walk.footsteps import FootPose
-from nao_sim_bridge.sim.walk.gait import FeetGait, feet_gait
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.sim.walk.settings import load_walk_settings
-from nao_sim_bridge.sim.walk.velocity_course import CLOSING_STEPS, VelocityCourse, within
+from nao_sim_bridge.walk.clipping import clip_step, step_limits
+from nao_sim_bridge.walk.courses import STANDSTILL, rate_limits
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.gait import FeetGait, feet_gait
+from nao_sim_bridge.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.walk.settings import load_walk_settings
+from nao_sim_bridge.walk.velocity_course import CLOSING_STEPS, VelocityCourse, within
 
 SETTINGS = load_walk_settings()
 LIMITS = step_limits()

@@ -6,17 +6,17 @@ import math
 
 import pytest
 
-from nao_sim_bridge.sim.model import load_model
-from nao_sim_bridge.sim.motion.joints import JointCommands
-from nao_sim_bridge.sim.postures import posture
-from nao_sim_bridge.sim.walk.arm_swing import ArmSwing
-from nao_sim_bridge.sim.walk.body import WalkingBody
-from nao_sim_bridge.sim.walk.gait import FeetGait
-from nao_sim_bridge.sim.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.sim.walk.plan import Phase
-from nao_sim_bridge.sim.walk.settings import load_walk_settings
-from nao_sim_bridge.sim.walk.velocity_course import VelocityCourse
-from nao_sim_bridge.sim.walk.walker import Readings, Walker
+from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.walk.arm_swing import ArmSwing
+from nao_sim_bridge.walk.body import WalkingBody
+from nao_sim_bridge.walk.gait import FeetGait
+from nao_sim_bridge.walk.legs import LEFT, RIGHT
+from nao_sim_bridge.walk.plan import Phase
+from nao_sim_bridge.walk.settings import load_walk_settings
+from nao_sim_bridge.walk.velocity_course import VelocityCourse
+from nao_sim_bridge.walk.walker import Readings, Walker
 
 MODEL = load_model()
 BODY = WalkingBody(MODEL)

@@ -9,11 +9,11 @@ import pytest
 import zxingcpp
 from PIL import Image
 
-from nao_sim_bridge.sim.errors import BadValue, UnknownName
-from nao_sim_bridge.sim.faces import load_faces
-from nao_sim_bridge.sim.landmarks import load_landmarks
-from nao_sim_bridge.sim.painting import names
-from nao_sim_bridge.sim.world_pictures import ASPECTS, WorldPicture, aspect, barcode, paint
+from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.world.painting import names
+from nao_sim_bridge.world.painting.known_faces import load_faces
+from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
+from nao_sim_bridge.world.pictures import ASPECTS, WorldPicture, aspect, barcode, paint
 
 EAN = "4006381333931"
 KNOWN = {

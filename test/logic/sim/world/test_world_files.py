@@ -11,19 +11,19 @@ import pytest
 import yaml
 from sounds import sound_of
 
-from nao_sim_bridge.sim.kinematics import rpy_matrix
-from nao_sim_bridge.sim.landmarks import load_landmarks
-from nao_sim_bridge.sim.meshes import tessellate
-from nao_sim_bridge.sim.places import RobotPlace
-from nao_sim_bridge.sim.rotations import rotate
-from nao_sim_bridge.sim.shapes import Shape
-from nao_sim_bridge.sim.sound.samples import sine
-from nao_sim_bridge.sim.world import MOST_PARTS, WorldError, load_world, world_names
-from nao_sim_bridge.sim.world_cards import CARDS
-from nao_sim_bridge.sim.world_objects import read_object
-from nao_sim_bridge.sim.world_pictures import WorldPicture
-from nao_sim_bridge.sim.world_reader import read_world
-from nao_sim_bridge.sim.world_sounds_made import make_sound, noise
+from nao_sim_bridge.base.rotations import rotate
+from nao_sim_bridge.base.samples import sine
+from nao_sim_bridge.model.kinematics import rpy_matrix
+from nao_sim_bridge.model.meshes import tessellate
+from nao_sim_bridge.model.shapes import Shape
+from nao_sim_bridge.world.cards import CARDS
+from nao_sim_bridge.world.objects import read_object
+from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
+from nao_sim_bridge.world.pictures import WorldPicture
+from nao_sim_bridge.world.places import RobotPlace
+from nao_sim_bridge.world.reader import read_world
+from nao_sim_bridge.world.sounds_made import make_sound, noise
+from nao_sim_bridge.world.world import MOST_PARTS, WorldError, load_world, world_names
 
 BALL = {"name": "ball", "sphere": 0.04, "position": [0.5, 0.0, 0.2], "mass": 0.1, "color": [1, 0, 0]}
 TABLE = {"name": "table", "box": [0.4, 0.6, 0.3], "position": [1.0, 0.0, 0.15], "friction": 0.9}

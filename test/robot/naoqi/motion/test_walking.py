@@ -2,7 +2,7 @@
 
 import pytest
 
-from nao_sim_bridge.services.motion.move_config import gait_list
+from nao_sim_bridge.naoqi.motion.move_config import gait_list
 
 WITH_SPEED = "setFootStepsWithSpeed"
 MARCH = (["LLeg", "RLeg"] * 6, [[0.04, 0.1, 0.0], [0.04, -0.1, 0.0]] * 6)

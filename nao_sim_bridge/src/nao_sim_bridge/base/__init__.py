@@ -1,0 +1,1 @@
+"""What every room needs: errors, bounds, settings, files, rotations, tasks. Knows no robot."""

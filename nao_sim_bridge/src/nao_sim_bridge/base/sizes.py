@@ -1,0 +1,277 @@
+"""How large what comes from files, clients and the network may be: all of `config/sizes.json`, read strictly."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+
+from nao_sim_bridge.base.config import read_settings
+from nao_sim_bridge.base.errors import BadValue, ConfigError
+from nao_sim_bridge.base.paths import config_file
+
+FILE = "sizes.json"
+_UNITS = {"bytes": "bytes", "s": "s", "hz": "Hz", "pixels": "pixels", "side": "pixels", "characters": "characters"}
+# What each section bounds, and what is bounded in it, of all its limits or of each; for the table of all limits.
+_WHERE: dict[str, str | dict[str, str]] = {
+    "sound": "sound files, of clients and of worlds",
+    "decoder": "the process that decodes sound files",
+    "loaded_sounds": "what ALAudioPlayer keeps of one robot: loaded, playing, and sound sets",
+    "world_sounds": "sounds of the world, of its file and of clients, while they sound",
+    "stream": "ALAudioPlayer.playWebStream",
+    "archive": "packages of behaviours (.pkg, .zip), files of known faces (.npz)",
+    "picture": "picture files on things of the world",
+    "yaml": "worlds, things and behaviours: values, those of aliases counted each time; lists in each other",
+    "call": "arguments of any call to the simulated robot",
+    "lists": {
+        "key_frames": "of all joints of a call: angles, stiffnesses, Bezier curves",
+        "poses": "of all effectors of a call: positionInterpolations, transformInterpolations",
+        "places": "control points of moveTo",
+        "steps": "setFootSteps, with those that are left of earlier calls",
+        "colours": "fadeListRGB",
+        "commands": "DCM.set, DCM.setAlias: of one actuator, with those that are left of earlier calls",
+        "aliases": "DCM.createAlias",
+        "devices": "of one alias of the DCM",
+    },
+    "clients": {
+        "stuck_s": "a client that takes nothing, though more waits than its system and ours can hold",
+        "calls": "that wait for a module of a client; of more the oldest are lost",
+        "call_s": "until a module of a client that does not answer gets no calls any more",
+        "changes": "ALMemory.getDataOnChange: calls that wait; of more the oldest is given up",
+        "subscribers": "names at an extractor; of more the oldest is taken off",
+        "sound_blocks": "of 170 ms that wait for a client; of more the oldest are lost",
+        "cameras": "ALVideoDevice: subscribers",
+        "camera_idle_s": "after which a subscriber of ALVideoDevice that asks for nothing has gone",
+        "cameras_remembered": "ALVideoDevice: subscribers that have gone, and are found again when they ask",
+        "frames": "calls that wait for a frame of one subscriber",
+        "series": "ALPhotoCapture: series that are under way",
+        "faces": "ALFaceDetection: calls that learn a face, and wait",
+        "things": "that clients have placed in the world",
+    },
+    "memory": "what clients write into ALMemory of one robot: values with their histories; keys and subscriptions",
+    "speech": "texts to say, files of speech, the dictionary of a language",
+    "vocabulary": "ALSpeechRecognition: phrases, and contexts that are put aside",
+    "behaviors": "behaviours of clients: those that are installed, and those of ALFrameManager",
+    "film": "texts in films",
+}
+
+
+@dataclass(frozen=True)
+class SoundSizes:
+    """Of sound files. `values` are frames x channels, as they are and at the rate of the simulated world."""
+
+    file_bytes: int
+    client_s: float
+    world_s: float
+    channels: int
+    lowest_rate_hz: int
+    highest_rate_hz: int
+    values: int
+
+
+@dataclass(frozen=True)
+class DecoderSizes:
+    """Of the process that decodes them: its address space, and the wall time for one file."""
+
+    memory_bytes: int
+    total_s: float
+
+
+@dataclass(frozen=True)
+class LoadedSizes:
+    """Of all sounds that the player of a robot keeps, or that the world has."""
+
+    bytes: int
+
+
+@dataclass(frozen=True)
+class StreamSizes:
+    """Of what is fetched from the web: all of it, its longest silence, redirections, how many at once."""
+
+    bytes: int
+    total_s: float
+    silence_s: float
+    redirects: int
+    at_once: int
+    memory_bytes: int
+
+
+@dataclass(frozen=True)
+class ArchiveSizes:
+    """Of ZIP archives; `total_bytes` is what is read of all members together."""
+
+    file_bytes: int
+    member_bytes: int
+    total_bytes: int
+    members: int
+
+
+@dataclass(frozen=True)
+class PictureSizes:
+    """Of picture files: bytes, pixels of a side, pixels of all."""
+
+    file_bytes: int
+    side: int
+    pixels: int
+
+
+@dataclass(frozen=True)
+class YamlSizes:
+    """Of YAML files and texts: values, those of aliases counted each time; lists and mappings in each other."""
+
+    values: int
+    levels: int
+
+
+@dataclass(frozen=True)
+class CallSizes:
+    """Of the arguments of a call: one text, one buffer, items of all lists together, lists in lists."""
+
+    text_characters: int
+    buffer_bytes: int
+    items: int
+    levels: int
+
+
+@dataclass(frozen=True)
+class ListSizes:
+    """Of lists that the simulation works through in one tick: all of a call together, and what is left of earlier ones.
+
+    `commands` are those of one actuator, `devices` those of one alias.
+    """
+
+    key_frames: int
+    poses: int
+    places: int
+    steps: int
+    colours: int
+    commands: int
+    aliases: int
+    devices: int
+
+
+@dataclass(frozen=True)
+class ClientSizes:
+    """Of what waits for clients and is kept for them; `_WHERE` says what each is."""
+
+    stuck_s: float
+    calls: int
+    call_s: float
+    changes: int
+    subscribers: int
+    sound_blocks: int
+    cameras: int
+    camera_idle_s: float
+    cameras_remembered: int
+    frames: int
+    series: int
+    faces: int
+    things: int
+
+
+@dataclass(frozen=True)
+class MemorySizes:
+    """Of what clients write into ALMemory of one robot: bytes with all histories, keys and subscriptions together."""
+
+    bytes: int
+    keys: int
+
+
+@dataclass(frozen=True)
+class SpeechSizes:
+    """Of a text to say and its pauses, of speech that is written to a file or sounds in the world, of a dictionary."""
+
+    text_characters: int
+    pauses_s: float
+    file_s: float
+    dictionary_words: int
+
+
+@dataclass(frozen=True)
+class VocabularySizes:
+    """Of what the robot listens for; `put_aside` is how often contexts may be pushed."""
+
+    phrases: int
+    phrase_characters: int
+    put_aside: int
+
+
+@dataclass(frozen=True)
+class BehaviorSizes:
+    """Of how many behaviours a robot keeps: those that clients install, and those that ALFrameManager makes."""
+
+    installed: int
+    made: int
+
+
+@dataclass(frozen=True)
+class FilmSizes:
+    """Of what is written into a film."""
+
+    caption_characters: int
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """All of `sizes.json`."""
+
+    sound: SoundSizes
+    decoder: DecoderSizes
+    loaded_sounds: LoadedSizes
+    world_sounds: LoadedSizes
+    stream: StreamSizes
+    archive: ArchiveSizes
+    picture: PictureSizes
+    yaml: YamlSizes
+    call: CallSizes
+    lists: ListSizes
+    clients: ClientSizes
+    memory: MemorySizes
+    speech: SpeechSizes
+    vocabulary: VocabularySizes
+    behaviors: BehaviorSizes
+    film: FilmSizes
+
+
+@lru_cache(maxsize=None)
+def load_sizes() -> Sizes:
+    """The limits as the file gives them.
+
+    Raises:
+        ConfigError: The file cannot be read, a key is unknown or missing, or a limit is not above 0.
+    """
+    sizes = read_settings(Sizes, config_file(FILE))
+    for name, limits in asdict(sizes).items():
+        for key, limit in limits.items():
+            if not limit > 0:
+                raise ConfigError(f"{FILE}: {name}: {key}", f"is {limit!r}, not a number above 0")
+    return sizes
+
+
+def require_few(field: str, count: int, what: str) -> None:
+    """See that a list is not too long.
+
+    Args:
+        field: Name of what holds it.
+        count: How long it is, with what it is added to.
+        what: Which of `ListSizes` bounds it.
+
+    Raises:
+        BadValue: It is too long.
+    """
+    most, words = getattr(load_sizes().lists, what), what.replace("_", " ")
+    if count > most:
+        raise BadValue(field, f"{count} {words}", f"{most} {words} at most")
+
+
+def size_rows() -> list[tuple[str, float, str, str]]:
+    """The limits as rows of a table: what, limit, unit (empty for a count), where it counts."""
+    return [
+        (f"{name}.{key}", limit, _unit(key), where if isinstance(where, str) else where[key])
+        for name, limits in asdict(load_sizes()).items()
+        for where in [_WHERE[name]]
+        for key, limit in limits.items()
+    ]
+
+
+def _unit(key: str) -> str:
+    return _UNITS.get(key.rsplit("_", 1)[-1], "")

@@ -1,0 +1,146 @@
+"""The behaviours that are installed on the robot. Any thread."""
+
+from __future__ import annotations
+
+import threading
+from functools import lru_cache
+from typing import Iterable, Mapping
+
+from nao_sim_bridge.base.errors import BadValue, ConfigError, NotAllowed, UnknownName
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.behaviors.reader import read_behaviors
+from nao_sim_bridge.behaviors.steps import Behavior, Gesture
+from nao_sim_bridge.speech.animations import POSTURE, POSTURE_PATTERN, AnimationLibrary
+
+FOLDER = "behaviors"
+# What old programs write in front of a name.
+PREFIXES = ("User/", "System/", "user/", "system/")
+# What stands for the first behaviour of a package.
+PACKAGE_END = "/."
+
+
+class InstalledBehaviors:
+    """Behaviours by name: those that come with the robot, and those of its users.
+
+    Args:
+        gestures: The animations of arms and head, each of which is a behaviour, too.
+    """
+
+    def __init__(self, gestures: AnimationLibrary) -> None:
+        self._lock = threading.Lock()
+        self._gestures = gestures
+        self._user: dict[str, Behavior] = {}
+
+    @property
+    def system(self) -> dict[str, Behavior]:
+        """Those that come with the robot."""
+        gestures = list(self._gestures.animations.values())
+        return {
+            **{a.name: Behavior(a.name, Gesture(a.name), "a gesture", tags=a.tags) for a in gestures},
+            **shipped_behaviors(),
+        }
+
+    @property
+    def user(self) -> dict[str, Behavior]:
+        """Those that somebody has installed."""
+        with self._lock:
+            return dict(self._user)
+
+    @property
+    def all(self) -> dict[str, Behavior]:
+        """All of them, sorted by name."""
+        return dict(sorted({**self.system, **self.user}.items()))
+
+    def knows(self, name: str) -> bool:
+        """Whether there is a behaviour of exactly this name."""
+        return _plain(name) in self.all
+
+    def resolve(self, name: str) -> Behavior:
+        """A behaviour by its name, by the end of it, or by that of a package that holds only one.
+
+        Raises:
+            UnknownName: There is no such behaviour.
+            BadValue: The name could be that of several.
+        """
+        known, path = self.all, _plain(name)
+        if path in known:
+            return known[path]
+        fitting = [
+            b for full, b in known.items() if path and (full.endswith("/" + path) or full.startswith(path + "/"))
+        ]
+        if len(fitting) == 1:
+            return fitting[0]
+        if fitting:
+            names = ", ".join(behavior.name for behavior in fitting[:5])
+            raise BadValue("behavior", name, f"one of {len(fitting)} behaviours in full: {names}...")
+        raise UnknownName("behavior", name, known)
+
+    def install(self, behaviors: Iterable[Behavior], overwrite: bool = True) -> tuple[list[str], list[str]]:
+        """Add behaviours.
+
+        Returns:
+            Names of those that are new, and of those that have replaced others.
+
+        Raises:
+            BadValue: A name is that of a behaviour of the system, or, without `overwrite`, of any other.
+            NotAllowed: There would be too many.
+        """
+        new, system = {behavior.name: behavior for behavior in behaviors}, self.system
+        with self._lock:
+            for name in new:
+                if name in system or (name in self._user and not overwrite):
+                    raise BadValue("behavior", name, "a name that is free")
+            most = load_sizes().behaviors.installed
+            if len({*self._user, *new}) > most:
+                raise NotAllowed(f"{most} behaviors are installed at most: removeBehavior first")
+            replaced = [name for name in new if name in self._user]
+            self._user.update(new)
+        return [name for name in new if name not in replaced], replaced
+
+    def remove(self, name: str) -> list[str]:
+        """Take a behaviour of a user away, or all of a package.
+
+        Returns:
+            Their names.
+
+        Raises:
+            BadValue: It comes with the robot.
+            UnknownName: There is no such behaviour.
+        """
+        path = _plain(name)
+        with self._lock:
+            gone = [full for full in self._user if full == path or full.startswith(path + "/")]
+            for full in gone:
+                del self._user[full]
+        if gone:
+            return gone
+        if path in self.system:
+            raise BadValue("behavior", name, "one that somebody has installed, not one of the robot")
+        raise UnknownName("behavior that somebody has installed", name, self.user)
+
+
+@lru_cache(maxsize=None)
+def shipped_behaviors() -> Mapping[str, Behavior]:
+    """The behaviours of the files that come with the simulator, read once.
+
+    Raises:
+        ConfigError: A file has a wrong, unknown or missing entry, or two have the same behaviour.
+    """
+    found: dict[str, Behavior] = {}
+    for path in sorted(config_file(FOLDER).glob("*.yaml")):
+        for name, behavior in read_behaviors(path).items():
+            if name in found:
+                raise ConfigError(path.name, f"{name} is in another file, too")
+            found[name] = behavior
+    return found
+
+
+def _plain(name: str) -> str:
+    path = name.strip().strip("/")
+    if path.endswith(PACKAGE_END):
+        path = path[: -len(PACKAGE_END)]
+    for prefix in PREFIXES:
+        if path.startswith(prefix):
+            path = path[len(prefix) :]
+    return path.replace(POSTURE_PATTERN, POSTURE)

@@ -1,0 +1,319 @@
+"""A NAO in a PyBullet world: motors in, raw readings out. Nothing here knows NAOqi.
+
+Whoever calls this owns the world: one thread only. Readings are plain tuples in ALMotion's Body order.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Callable, Mapping, Sequence
+
+import pybullet
+
+from nao_sim_bridge.base.finite import check_finite
+from nao_sim_bridge.base.readings import BodyReadings, Contact, JointReadings, Pose
+from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.base.settings import Settings
+from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.body.physics_body import (
+    JOINT_NAME,
+    LINK_NAME,
+    couple_hips,
+    index_by,
+    keep_apart,
+    limit_speeds,
+    load_robot,
+    load_torso,
+    set_friction,
+)
+from nao_sim_bridge.body.physics_world import PhysicsWorld
+from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.world.places import ORIGIN, RobotPlace, places_around
+from nao_sim_bridge.world.world import FLOOR, World
+
+# Columns of PyBullet's contact point tuples.
+BODY_B, LINK_A, POSITION_ON_A, NORMAL_ON_B, DISTANCE, NORMAL_FORCE = 2, 3, 5, 7, 8, 9
+NO_PUSHES: Mapping[str, Vector3] = {}
+# From the torso's origin no part of the robot is further away than this, m.
+REACH = 0.6
+# How far somebody looks who points at something, m.
+SIGHT = 50.0
+HIT_FRACTION = 2
+
+
+class Physics:
+    """A free NAO in a world with gravity, alone or among others.
+
+    Attributes:
+        shared: The world that it is in.
+        client: PyBullet's physics client.
+        bodies: The floor and the things of the world.
+        robot: PyBullet's body id of the NAO.
+        start: Where on the floor it starts.
+        links: Link name to PyBullet's index; the torso is -1.
+
+    Args:
+        model: The robot.
+        world: What else there is; or a world that there is already, and that others may be in.
+        settings: Time step, gains, friction.
+        angles: (26,) joint angles to start with, rad (hands 0..1).
+        pitch: Of the torso at the start, rad, for a robot that is not on its feet; see `place`.
+        payload: Mass that the torso carries besides its own, at its centre of mass, kg.
+        place: Where on the floor it starts.
+    """
+
+    def __init__(
+        self,
+        model: RobotModel,
+        world: World | PhysicsWorld,
+        settings: Settings,
+        angles: Sequence[float],
+        pitch: float | None = None,
+        payload: float = 0.0,
+        place: RobotPlace = ORIGIN,
+    ) -> None:
+        self._model = model
+        self._settings = settings
+        self.shared = world if isinstance(world, PhysicsWorld) else PhysicsWorld(world, settings)
+        self._floor = self.shared.world.floor
+        self.client = self.shared.client
+        self.bodies = self.shared.bodies
+        self.robot = load_robot(self.client, model)
+        self.shared.robots.append(self.robot)
+        self.links = index_by(self.client, self.robot, LINK_NAME)
+        joints = index_by(self.client, self.robot, JOINT_NAME)
+        self._indices = [joints[j.name] for j in model.joints]
+        self._travel = model.simulated_hand.travel
+        self._hands = [i for i, j in enumerate(model.joints) if j.is_hand]
+        self._torques = [float(j.max_torque) for j in model.joints]
+        self._position_gains = [settings.motor.position_gain] * len(self._indices)
+        self._velocity_gains = [settings.motor.velocity_gain] * len(self._indices)
+        self._forget_efforts()
+        keep_apart(self.client, self.robot, model, self.links)
+        set_friction(self.client, self.robot, settings.contact, self.links)
+        load_torso(self.client, self.robot, payload)
+        speeds = self._to_engine_speeds([j.max_velocity for j in model.joints])
+        limit_speeds(self.client, self.robot, dict(zip(self._indices, speeds)))
+        couple_hips(self.client, self.robot, joints, settings.motor.coupling_force_n)
+        local_position, local_orientation = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[3:5]
+        self._torso_to_com = (local_position, local_orientation)
+        self._com_to_torso = pybullet.invertTransform(local_position, local_orientation)
+        self.start = place
+        self.restart(angles, pitch)
+
+    def restart(self, angles: Sequence[float], pitch: float | None = None) -> None:
+        """Put the robot to where it started, at rest; what its motors were told is forgotten."""
+        self._forget_efforts()
+        self.place(angles, self.start.yaw, (self.start.x, self.start.y), pitch)
+
+    def restart_beside_others(self, angles: Sequence[float], pitch: float | None = None) -> None:
+        """As `restart`, but where something is there, at the nearest place around that is free, if there is one."""
+        for x, y in places_around(self.start):
+            self._forget_efforts()
+            self.place(angles, self.start.yaw, (x, y), pitch)
+            if not self.inside():
+                return
+        self.restart(angles, pitch)
+
+    def inside(self) -> dict[str, float]:
+        """How deep the robot is in what is there, m; see `PhysicsWorld.inside`."""
+        return self.shared.inside(self.robot)
+
+    def close(self) -> None:
+        """Free the engine's memory; the object, and all others in its world, are of no use afterwards."""
+        self.shared.close()
+
+    # --- moving ---------------------------------------------------------------------------------------------------
+
+    def place(
+        self,
+        angles: Sequence[float],
+        yaw: float = 0.0,
+        xy: tuple[float, float] = (0.0, 0.0),
+        pitch: float | None = None,
+        roll: float = 0.0,
+    ) -> None:
+        """Put the robot at rest on the floor; on a slope it is tilted as the floor is.
+
+        Args:
+            angles: (26,) joint angles, rad (hands 0..1).
+            yaw: Heading, rad.
+            xy: Of the torso's origin in world, m.
+            pitch: Of the torso over the floor, rad, positive with the face down; the lowest point of the body touches
+                the floor. Without it the left sole is flat on the floor.
+            roll: Of the torso over the floor, rad, positive with the left side up; of no meaning without a pitch.
+        """
+        check_finite("angles of the robot", angles)
+        for index, angle in zip(self._indices, self._to_engine(angles)):
+            pybullet.resetJointState(self.robot, index, angle, 0.0, physicsClientId=self.client)
+        if pitch is not None:
+            orientation = pybullet.getQuaternionFromEuler((roll, pitch, yaw))
+            self._put_over_floor((0.0, 0.0), REACH, orientation)
+            self._put_over_floor(xy, REACH - self._clearance(), orientation)
+            return
+        self._reset_base((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+        foot_orientation = self.link_pose("l_ankle").orientation
+        upright = pybullet.invertTransform((0, 0, 0), foot_orientation)[1]
+        heading = pybullet.getEulerFromQuaternion(upright)[2]
+        turn = pybullet.getQuaternionFromEuler((0, 0, yaw - heading))
+        orientation = pybullet.multiplyTransforms((0, 0, 0), turn, (0, 0, 0), upright)[1]
+        self._reset_base((0.0, 0.0, 0.0), orientation)
+        soles = [self.link_pose(f).position[2] - self._model.sole_height for f in ("l_ankle", "r_ankle")]
+        self._put_over_floor(xy, -min(soles), orientation)
+
+    def drive(self, joints: JointCommands) -> None:
+        """Tell the motors commands and stiffnesses; a limp joint has only the friction of its gears.
+
+        Raises:
+            NotFinite: One of the numbers is not; the motors go on with what they were told before.
+        """
+        share = self._settings.motor.feed_forward
+        if joints.efforts is not self._efforts:  # replaced as a whole and never changed
+            self._take_efforts(joints.efforts)
+        targets = self._to_engine(joints.aims)
+        velocities = [share * speed for speed in self._to_engine_speeds(joints.aim_velocities)]
+        if self._limp:
+            rests = self._to_engine(joints.rests)
+            for index in self._limp:
+                targets[index], velocities[index] = rests[index], 0.0
+        check_finite("targets, speeds and torques of the motors", [*targets, *velocities, *self._forces])
+        pybullet.setJointMotorControlArray(
+            self.robot,
+            self._indices,
+            pybullet.POSITION_CONTROL,
+            targetPositions=targets,
+            targetVelocities=velocities,
+            forces=self._forces,
+            positionGains=self._position_gains,
+            velocityGains=self._velocity_gains,
+            physicsClientId=self.client,
+        )
+
+    def _forget_efforts(self) -> None:
+        self._efforts: Sequence[float] = ()
+        self._limp: list[int] = []
+        self._forces: list[float] = []
+
+    def _take_efforts(self, efforts: Sequence[float]) -> None:
+        """Work out from efforts (26, 0..1) what stays the same until they change."""
+        self._efforts = efforts
+        self._limp = [index for index, effort in enumerate(efforts) if effort <= 0.0]
+        least = self._settings.motor.limp_friction
+        self._forces = [torque * max(effort, least) for torque, effort in zip(self._torques, efforts)]
+
+    def step(self, pushes: Mapping[str, Vector3] = NO_PUSHES) -> None:
+        """Advance the world by one tick while `pushes` act on links of this robot; see `pushing`."""
+        self.shared.step(self.pushing(pushes))
+
+    def pushing(self, pushes: Mapping[str, Vector3]) -> Sequence[Callable[[], None]]:
+        """What `PhysicsWorld.step` calls for pushes: link name -> force in N, in world, on its centre of mass.
+
+        Raises:
+            NotFinite: A force is not.
+        """
+        for link, force in pushes.items():
+            check_finite(f"push of {link}", force)
+        return [partial(self._push, link, force) for link, force in pushes.items()]
+
+    def _push(self, link: str, force: Vector3) -> None:
+        index = self.links.get(link, -1)
+        position = (
+            pybullet.getBasePositionAndOrientation(self.robot, physicsClientId=self.client)[0]
+            if index < 0
+            else pybullet.getLinkState(self.robot, index, physicsClientId=self.client)[0]
+        )
+        pybullet.applyExternalForce(
+            self.robot, index, force, position, pybullet.WORLD_FRAME, physicsClientId=self.client
+        )
+
+    # --- reading --------------------------------------------------------------------------------------------------
+
+    def read_joints(self) -> JointReadings:
+        """Angles, speeds and torques of the 26 joints.
+
+        Raises:
+            NotFinite: The engine has lost the body.
+        """
+        states = pybullet.getJointStates(self.robot, self._indices, physicsClientId=self.client)
+        positions, velocities, _, torques = map(list, zip(*states))
+        check_finite("joints of the robot", positions)
+        for index in self._hands:
+            positions[index] = positions[index] / self._travel + 1.0
+            velocities[index] /= self._travel
+        return JointReadings(tuple(positions), tuple(velocities), tuple(torques))
+
+    def read_body(self) -> BodyReadings:
+        """Pose and velocities of the torso frame.
+
+        Raises:
+            NotFinite: The engine has lost the body.
+        """
+        com, orientation = pybullet.getBasePositionAndOrientation(self.robot, physicsClientId=self.client)
+        check_finite("torso of the robot", (*com, *orientation))
+        position, orientation = pybullet.multiplyTransforms(com, orientation, *self._com_to_torso)
+        velocity, angular = pybullet.getBaseVelocity(self.robot, physicsClientId=self.client)
+        rx, ry, rz = position[0] - com[0], position[1] - com[1], position[2] - com[2]
+        wx, wy, wz = angular
+        linear = (
+            velocity[0] + wy * rz - wz * ry,
+            velocity[1] + wz * rx - wx * rz,
+            velocity[2] + wx * ry - wy * rx,
+        )
+        return BodyReadings(Pose(position, orientation), linear, angular)
+
+    def read_contacts(self) -> tuple[Contact, ...]:
+        """Every point where another body presses on the robot."""
+        points = pybullet.getContactPoints(self.robot, physicsClientId=self.client)
+        return tuple(
+            Contact(c[LINK_A], c[POSITION_ON_A], c[NORMAL_ON_B], c[NORMAL_FORCE])
+            for c in points
+            if c[BODY_B] != self.robot and c[NORMAL_FORCE] > 0.0
+        )
+
+    def link_pose(self, name: str) -> Pose:
+        """Pose of a link frame (not of its centre of mass) in world."""
+        state = pybullet.getLinkState(
+            self.robot, self.links[name], computeForwardKinematics=True, physicsClientId=self.client
+        )
+        return Pose(state[4], state[5])
+
+    def pose_of(self, name: str) -> Pose:
+        """As `link_pose`; of any other name that of the torso."""
+        return self.link_pose(name) if name in self.links else self.read_body().pose
+
+    def free_sight(self, eye: Vector3, direction: Vector3) -> float:
+        """How far a line of sight goes before it meets something, m."""
+        end = [a + SIGHT * b for a, b in zip(eye, direction)]
+        return SIGHT * pybullet.rayTest(eye, end, physicsClientId=self.client)[0][HIT_FRACTION]
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _clearance(self) -> float:
+        """Height of the lowest point of the body over the floor, m; below 2 m of it."""
+        floor = self.bodies.ids[FLOOR]
+        points = pybullet.getClosestPoints(self.robot, floor, 2.0, physicsClientId=self.client)
+        return min(point[DISTANCE] for point in points)
+
+    def _put_over_floor(self, xy: tuple[float, float], height: float, orientation: Sequence[float]) -> None:
+        """Put the torso over (x, y) in world, `height` over the floor along its normal; orientation over the floor."""
+        floor = self._floor
+        turned = pybullet.multiplyTransforms((0, 0, 0), floor.orientation, (0, 0, 0), orientation)[1]
+        self._reset_base((xy[0], xy[1], floor.height_at(xy[0], xy[1], height)), turned)
+
+    def _reset_base(self, position: Vector3, orientation: Sequence[float]) -> None:
+        com, turn = pybullet.multiplyTransforms(position, orientation, *self._torso_to_com)
+        check_finite("place of the robot", (*com, *turn))
+        pybullet.resetBasePositionAndOrientation(self.robot, com, turn, physicsClientId=self.client)
+        pybullet.resetBaseVelocity(self.robot, (0, 0, 0), (0, 0, 0), physicsClientId=self.client)
+
+    def _to_engine(self, angles: Sequence[float]) -> list[float]:
+        angles = list(angles)
+        for index in self._hands:
+            angles[index] = (angles[index] - 1.0) * self._travel
+        return angles
+
+    def _to_engine_speeds(self, speeds: Sequence[float]) -> list[float]:
+        speeds = list(speeds)
+        for index in self._hands:
+            speeds[index] *= self._travel
+        return speeds

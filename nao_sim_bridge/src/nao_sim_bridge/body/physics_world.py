@@ -1,0 +1,69 @@
+"""The PyBullet world that robots are put into: gravity, floor, things, and the steps of time for all of them."""
+
+from __future__ import annotations
+
+from typing import Callable, Sequence
+
+import pybullet
+
+from nao_sim_bridge.base.settings import Settings
+from nao_sim_bridge.world.bodies import WorldBodies
+from nao_sim_bridge.world.world import FLOOR, World
+
+DISTANCE = 8
+"""Column of PyBullet's closest points."""
+DEEPEST = 0.002
+"""What is inside the robot by less only touches it, m."""
+
+
+class PhysicsWorld:
+    """A world with gravity; whoever calls this owns it: one thread only.
+
+    Attributes:
+        client: PyBullet's physics client.
+        bodies: The floor and the things of the world.
+        robots: PyBullet's body ids of the robots.
+
+    Args:
+        world: What there is.
+        settings: Time step, gravity.
+    """
+
+    def __init__(self, world: World, settings: Settings) -> None:
+        self.world = world
+        self._steps = settings.steps_per_tick
+        self.client = pybullet.connect(pybullet.DIRECT)
+        pybullet.setGravity(0, 0, -settings.gravity_m_s2, physicsClientId=self.client)
+        pybullet.setPhysicsEngineParameter(
+            fixedTimeStep=settings.time_step_s,
+            numSolverIterations=settings.solver_iterations,
+            deterministicOverlappingPairs=1,
+            physicsClientId=self.client,
+        )
+        self.bodies = WorldBodies(world, self.client)
+        self.robots: list[int] = []
+
+    def step(self, pushes: Sequence[Callable[[], None]] = ()) -> None:
+        """Advance by one tick; `pushes` are called before each step, for the engine forgets forces after one."""
+        for _ in range(self._steps):
+            for push in pushes:
+                push()
+            pybullet.stepSimulation(physicsClientId=self.client)
+
+    def inside(self, robot: int) -> dict[str, float]:
+        """How deep a robot is in what is there, m: in things by name, in "robot 1"...; what only touches is left out.
+
+        The floor does not count.
+        """
+        others = {name: body for name, body in self.bodies.ids.items() if name != FLOOR}
+        others.update((f"robot {number + 1}", body) for number, body in enumerate(self.robots) if body != robot)
+        depths = {name: self._depth(robot, body) for name, body in others.items()}
+        return {name: depth for name, depth in depths.items() if depth > DEEPEST}
+
+    def _depth(self, robot: int, body: int) -> float:
+        points = pybullet.getClosestPoints(robot, body, 0.0, physicsClientId=self.client)
+        return max((-point[DISTANCE] for point in points), default=0.0)
+
+    def close(self) -> None:
+        """Free the engine's memory; the object and its robots are of no use afterwards."""
+        pybullet.disconnect(physicsClientId=self.client)

@@ -1,0 +1,134 @@
+"""What keeps readings from being the truth: noise, steps of the encoders, and the time until they arrive.
+
+Pure arithmetic on readings: what the robot feels of itself comes in true and of now, and goes out as a real robot's
+computer would see it.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections import deque
+from typing import Deque, Iterable, Mapping, NamedTuple, Sequence, Tuple
+
+from nao_sim_bridge.base.readings import Contact, JointReadings, Pose
+from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.body.sensors.noise_settings import NoiseSettings
+from nao_sim_bridge.body.sensors.snapshot import Imu
+
+
+class Felt(NamedTuple):
+    """What the robot feels of itself at one tick.
+
+    Attributes:
+        joints: Angles, speeds, torques.
+        imu: The inertial unit.
+        contacts: What presses on the robot.
+        link_poses: Link index to the pose in world of each link that has a contact.
+    """
+
+    joints: JointReadings
+    imu: Imu
+    contacts: Tuple[Contact, ...]
+    link_poses: Mapping[int, Pose]
+
+
+class Noise:
+    """Adds the errors of sensors to readings; a seeded stream makes them the same at each run.
+
+    Args:
+        settings: Sizes of the errors at a scale of 1.
+        scale: Multiplies all of them; 1 is a real robot.
+        stream: Where chance comes from.
+        feet: Link indices of the feet, whose force sensors have errors of their own.
+        dt: Length of a tick, s.
+    """
+
+    def __init__(
+        self, settings: NoiseSettings, scale: float, stream: random.Random, feet: Iterable[int], dt: float
+    ) -> None:
+        self._settings = settings
+        self._scale = scale
+        self._gauss = stream.gauss
+        self._gains = {foot: 1.0 + self._draw(settings.feet.calibration) for foot in feet}
+        wander = settings.inertial.angle_wander
+        self._wander = [self._draw(wander) for _ in range(3)]
+        # The error is drawn towards zero and pushed about, so that its size stays the same for ever.
+        self._keep = math.exp(-dt / settings.inertial.angle_wander_time_s)
+        self._stir = wander * math.sqrt(1.0 - self._keep * self._keep)
+
+    def spoil(self, felt: Felt) -> Felt:
+        """The readings of a tick with the errors of this tick."""
+        joints = felt.joints
+        return felt._replace(
+            joints=JointReadings(self._angles(joints.positions), self._speeds(joints.velocities), joints.torques),
+            imu=self._inertial(felt.imu),
+            contacts=tuple([self._pressed(contact) for contact in felt.contacts]),
+        )
+
+    def _angles(self, angles: Sequence[float]) -> tuple[float, ...]:
+        settings, scale, gauss = self._settings.joints, self._scale, self._gauss
+        noise, step = settings.angle * scale, settings.angle_step * scale
+        noisy = [angle + gauss(0.0, noise) for angle in angles]
+        return tuple([round(angle / step) * step for angle in noisy]) if step > 0.0 else tuple(noisy)
+
+    def _speeds(self, speeds: Sequence[float]) -> tuple[float, ...]:
+        return tuple([speed + self._draw(self._settings.joints.speed) for speed in speeds])
+
+    def _inertial(self, imu: Imu) -> Imu:
+        settings = self._settings.inertial
+        self._wander = [self._keep * error + self._draw(self._stir) for error in self._wander]
+        angles = [angle + error for angle, error in zip(imu.angles, self._wander)]
+        return Imu(
+            self._noisy(imu.accelerometer, settings.accelerometer),
+            self._noisy(imu.gyroscope, settings.gyroscope),
+            self._noisy(angles, settings.angle),
+        )
+
+    def _pressed(self, contact: Contact) -> Contact:
+        gain = self._gains.get(contact.link)
+        if gain is None:
+            return contact
+        # A force sensor under load never reads a pull.
+        share = max(0.0, gain * (1.0 + self._draw(self._settings.feet.force)))
+        return contact._replace(force=contact.force * share)
+
+    def _noisy(self, values: Sequence[float], noise: float) -> Vector3:
+        x, y, z = values
+        return (x + self._draw(noise), y + self._draw(noise), z + self._draw(noise))
+
+    def _draw(self, deviation: float) -> float:
+        return self._gauss(0.0, deviation * self._scale)
+
+
+class Delay:
+    """Lets readings arrive late.
+
+    Args:
+        ticks: By how many ticks; 0 is at once.
+    """
+
+    def __init__(self, ticks: int) -> None:
+        self._line: Deque[Felt] = deque(maxlen=ticks + 1)
+
+    def arrive(self, felt: Felt) -> Felt:
+        """What arrives now, when `felt` leaves; the first readings of all until something older than that is there."""
+        self._line.append(felt)
+        return self._line[0]
+
+
+class Imperfection:
+    """Noise and delay of one robot.
+
+    Args:
+        noise: What spoils its readings; None for a robot without noise.
+        delay: How late they arrive.
+    """
+
+    def __init__(self, noise: Noise | None, delay: Delay) -> None:
+        self._noise = noise
+        self._delay = delay
+
+    def of(self, felt: Felt) -> Felt:
+        """What the robot's computer sees at a tick."""
+        return self._delay.arrive(self._noise.spoil(felt) if self._noise is not None else felt)

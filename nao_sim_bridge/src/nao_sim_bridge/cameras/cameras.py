@@ -1,0 +1,308 @@
+"""Both cameras of the robot: which frames fall due, who looks, and how they are set.
+
+Simulated time is their only clock. At a tick at which somebody's frame falls due, a snapshot is kept; nothing is drawn
+before somebody asks for the frame. Then another process draws it, and the thread of the cameras hands it over:
+physics never waits, unless it runs faster than the wall clock and somebody needs every frame.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from fractions import Fraction
+from typing import Callable, Mapping
+
+import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.guard import Guard
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.cameras.asks import Answer, Ask, CameraClosed
+from nao_sim_bridge.cameras.automatics import NEUTRAL_KELVIN
+from nao_sim_bridge.cameras.darkroom import CapturesPictures, Darkroom
+from nao_sim_bridge.cameras.moment import Moment
+from nao_sim_bridge.cameras.optics import CameraOptics
+from nao_sim_bridge.cameras.parameters import (
+    AUTO_EXPOSURE,
+    AUTO_WHITE_BALANCE,
+    EXPOSURE,
+    GAIN,
+    KEEP_ALIVE,
+    LUMINANCE,
+    WHITE_BALANCE,
+)
+from nao_sim_bridge.cameras.places import CameraPlaces
+from nao_sim_bridge.cameras.rate import Shutter
+from nao_sim_bridge.cameras.sensor import Chosen
+from nao_sim_bridge.cameras.settings import CAMERAS, load_cameras
+from nao_sim_bridge.cameras.stream import CameraStream
+from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.world.render_state import RenderState
+
+log = logging.getLogger("nao_sim.cameras")
+
+# What automatics choose, by the parameter that says how it was; and the parameter that turns them on.
+CHOSEN_BY = {EXPOSURE: AUTO_EXPOSURE, GAIN: AUTO_EXPOSURE, WHITE_BALANCE: AUTO_WHITE_BALANCE}
+
+
+class Cameras:
+    """The cameras of one robot. Any thread but for `tick`, which is the simulation's.
+
+    Attributes:
+        tables: Resolutions, colour spaces and parameters that there are.
+        ticks_per_second: Of the simulation.
+        lock: Guards everything in here and in the streams.
+        active: Index of the camera that NAOqi's modules take when nobody says which.
+
+    Args:
+        model: The robot.
+        tick_s: Length of a tick, s.
+        renderer: What draws.
+        look: What there is to see at a snapshot.
+        seed: Of the noise.
+        released: Called when time that waited need not wait any more.
+        guard: Calls who gets frames; None for one of its own.
+    """
+
+    def __init__(
+        self,
+        model: RobotModel,
+        tick_s: float,
+        renderer: CapturesPictures,
+        look: Callable[[Snapshot], RenderState],
+        seed: int = 0,
+        released: Callable[[], None] = lambda: None,
+        guard: Guard | None = None,
+    ) -> None:
+        self.tables = load_cameras(model.version)
+        self.ticks_per_second = (1 / Fraction(tick_s)).limit_denominator(100000)
+        self.lock = threading.RLock()
+        self.active = 0
+        self.released = released
+        self._look = look
+        self._places = CameraPlaces(model)
+        self._darkroom = Darkroom(renderer, self._places, model.version, seed, guard or Guard())
+        self._streams: tuple[CameraStream, ...] = ()
+        self._shutters = [Shutter(self.ticks_per_second) for _ in CAMERAS]
+        self._stopped = [False for _ in CAMERAS]
+        self._numbers = [0 for _ in CAMERAS]
+        self._parameters: list[Mapping[int, int]] = [self.tables.defaults for _ in CAMERAS]
+        self._chosen = [self._nothing_chosen() for _ in CAMERAS]
+        self._replaced: list[np.ndarray | None] = [None for _ in CAMERAS]
+        self._snapshot: Snapshot | None = None
+        self._next_tick = Shutter.NEVER
+        self._closed = False
+
+    # --- in the simulation thread ---------------------------------------------------------------------------------
+
+    def begin(self, snapshot: Snapshot) -> None:
+        """The robot stands at its start."""
+        self._snapshot = snapshot
+
+    def tick(self, snapshot: Snapshot) -> None:
+        """A tick has passed."""
+        self._snapshot = snapshot
+        if snapshot.tick >= self._next_tick:
+            with self.lock:
+                self._take(snapshot)
+
+    def holds(self) -> bool:
+        """Whether time should wait, when it runs faster than the wall clock."""
+        return any(stream.waits for stream in self._streams)
+
+    # --- looking --------------------------------------------------------------------------------------------------
+
+    def open(
+        self,
+        name: str,
+        camera: int,
+        resolution: int,
+        color_space: int,
+        fps: float,
+        every: bool = False,
+        keep: int = 1,
+    ) -> CameraStream:
+        """Look through a camera from now on; the first frame is that of the next tick.
+
+        Args:
+            name: For the log.
+            camera: 0 top, 1 bottom.
+            resolution: NAOqi's id.
+            color_space: NAOqi's id.
+            fps: Frames a second, up to 30. The camera runs at the highest rate that somebody asks for; others get
+                those of its frames that come next when theirs is due.
+            every: Keep all frames that are due, in order, and let time that runs faster than the wall clock wait for
+                those who take them; else there is always just the newest one.
+            keep: With `every`, how many frames wait at most when time does not; the oldest ones are dropped first.
+
+        Raises:
+            BadValue: The cameras cannot do that.
+            CameraClosed: The simulation has ended.
+        """
+        if keep < 1:
+            raise BadValue("keep", keep, "1 or more")
+        stream = CameraStream(self, name, every, keep)
+        with self.lock:
+            if self._closed:
+                raise CameraClosed("the cameras are closed: the simulation has ended")
+            stream.set_up(camera, resolution, color_space, fps)
+            self._streams = (*self._streams, stream)
+            self.changed()
+        return stream
+
+    @property
+    def streams(self) -> tuple[CameraStream, ...]:
+        """Those who look."""
+        return self._streams
+
+    def optics(self, camera: int) -> CameraOptics:
+        """Field of view of a camera."""
+        return self._places.optics[self.tables.camera(camera)]
+
+    def rate(self, camera: int) -> float:
+        """Frames a second that a camera takes now."""
+        return float(self._shutters[self.tables.camera(camera)].rate)
+
+    # --- settings -------------------------------------------------------------------------------------------------
+
+    def parameter(self, camera: int, number: int) -> int:
+        """Value of a parameter, by NAOqi's id; of what an automatic chooses, what it chose for the last frame.
+
+        Raises:
+            BadValue: There is no such camera or parameter.
+        """
+        camera = self.tables.camera(camera)
+        parameter = self.tables.parameter(number)
+        with self.lock:
+            chosen, values = self._chosen[camera], self._parameters[camera]
+        if parameter.id == LUMINANCE:
+            return round(chosen.luminance)
+        if parameter.id in CHOSEN_BY and values[CHOSEN_BY[parameter.id]]:
+            return _chosen_value(chosen, parameter.id)
+        return values[parameter.id]
+
+    def set_parameter(self, camera: int, number: int, value: int) -> None:
+        """Change a parameter; frames that fall due from now on have it.
+
+        Raises:
+            BadValue: There is no such camera or parameter, the value is out of range, or the parameter can only be
+                read, at least while an automatic chooses it.
+        """
+        camera = self.tables.camera(camera)
+        parameter = self.tables.parameter(number)
+        if isinstance(value, bool) or not isinstance(value, int) or not parameter.least <= value <= parameter.most:
+            raise BadValue(parameter.name, value, f"{parameter.least} to {parameter.most}")
+        if parameter.read_only:
+            raise BadValue(parameter.name, value, "no value: it can only be read")
+        with self.lock:
+            values = dict(self._parameters[camera])
+            switch = CHOSEN_BY.get(parameter.id)
+            if switch is not None and values[switch]:
+                name = self.tables.parameters[switch].name
+                raise BadValue(parameter.name, value, f"no value while {name} is 1; set it to 0 first")
+            if parameter.id in CHOSEN_BY.values() and values[parameter.id] and not value:
+                # Who turns an automatic off finds what it chose last.
+                for chosen, by in CHOSEN_BY.items():
+                    if by == parameter.id and chosen in values:
+                        values[chosen] = _chosen_value(self._chosen[camera], chosen)
+            values[parameter.id] = value
+            self._parameters[camera] = values
+
+    def reset_parameters(self, camera: int) -> None:
+        """Put all parameters of a camera to their defaults."""
+        with self.lock:
+            self._parameters[self.tables.camera(camera)] = self.tables.defaults
+            self._chosen[camera] = self._nothing_chosen()
+
+    def kept_alive(self, camera: int) -> bool:
+        """Whether a camera stays on while nobody looks."""
+        return bool(self._parameters[self.tables.camera(camera)].get(KEEP_ALIVE, 0))
+
+    def stopped(self, camera: int) -> bool:
+        """Whether a camera has been stopped."""
+        return self._stopped[self.tables.camera(camera)]
+
+    def set_stopped(self, camera: int, stopped: bool) -> None:
+        """Stop a camera, so that no frames fall due, or let it run again."""
+        with self.lock:
+            self._stopped[self.tables.camera(camera)] = stopped
+            self.changed()
+
+    def show(self, camera: int, picture: np.ndarray | None) -> None:
+        """Let a camera see a (h, w, 3) uint8 RGB picture instead of the world; None for the world again."""
+        with self.lock:
+            self._replaced[self.tables.camera(camera)] = picture
+
+    def close(self) -> None:
+        """Everybody who waits gets CameraClosed, and nobody sees anything any more."""
+        with self.lock:
+            self._closed = True
+            for stream in self._streams:
+                stream.close()
+        self._darkroom.close()
+
+    # --- for the streams; with the lock held ----------------------------------------------------------------------
+
+    def changed(self) -> None:
+        """Somebody looks, or looks no more, or at another rate."""
+        now = self._snapshot.tick if self._snapshot is not None else 0
+        for camera, shutter in enumerate(self._shutters):
+            rates = [stream.rate for stream in self._streams if stream.camera == camera]
+            shutter.set_rate(Fraction(0) if self._stopped[camera] else max(rates, default=Fraction(0)), now)
+        self._next_tick = min(shutter.next_tick for shutter in self._shutters)
+
+    def forget(self, stream: CameraStream) -> None:
+        """A stream has been closed."""
+        self._streams = tuple(other for other in self._streams if other is not stream)
+        self.changed()
+
+    def draw(self, stream: CameraStream, ask: Ask, moment: Moment) -> None:
+        """Have a frame drawn for somebody who asked."""
+        self._darkroom.put(lambda: self._develop(stream, ask, moment))
+
+    def answer(self, ask: Ask, answer: Answer) -> None:
+        """Tell somebody who asked, in the cameras' thread."""
+        callback = ask.callback
+        self._darkroom.put(lambda: callback(answer))
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _take(self, snapshot: Snapshot) -> None:
+        """Frames fall due."""
+        state = None
+        for camera, shutter in enumerate(self._shutters):
+            if snapshot.tick < shutter.next_tick:
+                continue
+            exact_time = shutter.advance(snapshot.tick)
+            wanted = [stream for stream in self._streams if stream.camera == camera and stream.takes(exact_time)]
+            if wanted:
+                state = state or self._look(snapshot)
+                parameters, picture = self._parameters[camera], self._replaced[camera]
+                moment = Moment(camera, self._numbers[camera], snapshot, state, parameters, picture)
+                for stream in wanted:
+                    stream.put(moment)
+            self._numbers[camera] += 1
+        self._next_tick = min(shutter.next_tick for shutter in self._shutters)
+
+    def _develop(self, stream: CameraStream, ask: Ask, moment: Moment) -> None:
+        """Draw a frame and hand it over; cameras' thread."""
+        answer: Answer
+        try:
+            answer, photo = self._darkroom.develop(moment, stream.size, stream.pixels)
+        except Exception as error:
+            answer = error
+        else:
+            self._chosen[moment.camera] = photo.chosen
+        with self.lock:
+            callback = stream.handed_over(ask, moment)
+        if callback is not None:
+            callback(answer)
+        self.released()
+
+    def _nothing_chosen(self) -> Chosen:
+        sensor = self.tables.sensor
+        return Chosen(sensor.exposure, sensor.gain, NEUTRAL_KELVIN, 0.0)
+
+
+def _chosen_value(chosen: Chosen, number: int) -> int:
+    return {EXPOSURE: chosen.exposure, GAIN: chosen.gain, WHITE_BALANCE: chosen.white_balance}[number]

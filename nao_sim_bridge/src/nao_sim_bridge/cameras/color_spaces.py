@@ -1,0 +1,148 @@
+"""Pixels as NAOqi's colour spaces have them. Pure functions of arrays.
+
+Luminance and chrominance (Y, U, V) are those of JPEG: full range, BT.601; U and V are 128 where there is no colour.
+Hue goes once round the circle in 256 steps. CIE colour spaces are scaled to bytes as OpenCV does it: L times 2.55, the
+others plus 128, and in those with a chroma C instead, the hue h as above.
+"""
+
+from __future__ import annotations
+
+from typing import Callable, Mapping
+
+import cv2
+import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue
+
+Y_OF_RGB = (0.299, 0.587, 0.114)
+
+
+def encode(rgb: np.ndarray, color_space: int) -> bytes:
+    """The bytes of a picture.
+
+    Args:
+        rgb: (h, w, 3) uint8; the width is even.
+        color_space: NAOqi's id.
+
+    Raises:
+        BadValue: A colour camera does not have this colour space.
+    """
+    return np.ascontiguousarray(encoded(rgb, color_space)).tobytes()
+
+
+def encoded(rgb: np.ndarray, color_space: int) -> np.ndarray:
+    """As `encode`: (h, w) or (h, w, layers) uint8."""
+    if color_space not in ENCODERS:
+        raise BadValue("colorSpace", color_space, "one of " + ", ".join(map(str, ENCODERS)))
+    return ENCODERS[color_space](rgb)
+
+
+def luminance(rgb: np.ndarray) -> np.ndarray:
+    """(h, w) uint8."""
+    return cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
+
+
+def _plane(convert: Callable[[np.ndarray], np.ndarray], index: int) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda rgb: convert(rgb)[..., index]
+
+
+def _yuv(rgb: np.ndarray) -> np.ndarray:
+    """Y, U, V; OpenCV has the last two the other way round."""
+    return cv2.cvtColor(rgb, cv2.COLOR_RGB2YCrCb)[..., (0, 2, 1)]
+
+
+def _chroma_of_pairs(rgb: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Y (h, w), and U and V (h, w / 2) of two pixels each."""
+    y, v, u = cv2.split(cv2.cvtColor(rgb, cv2.COLOR_RGB2YCrCb))
+    half = (rgb.shape[1] // 2, rgb.shape[0])
+    u, v = (cv2.resize(plane, half, interpolation=cv2.INTER_AREA) for plane in (u, v))
+    return y, u, v
+
+
+def _yuv422(rgb: np.ndarray) -> np.ndarray:
+    """Four bytes for two pixels: Y of the left one, U, Y of the right one, V; the cameras themselves give this."""
+    y, u, v = _chroma_of_pairs(rgb)
+    merged = cv2.merge((y[:, 0::2], u, y[:, 1::2], v))
+    return merged.reshape(*rgb.shape[:2], 2)
+
+
+def _yycbcr(rgb: np.ndarray) -> np.ndarray:
+    """Four bytes for two pixels: Y of the left one, Y of the right one, Cb, Cr."""
+    y, u, v = _chroma_of_pairs(rgb)
+    merged = cv2.merge((y[:, 0::2], y[:, 1::2], u, v))
+    return merged.reshape(*rgb.shape[:2], 2)
+
+
+def _hsy(rgb: np.ndarray) -> np.ndarray:
+    """Hue and saturation as in HSV, with luminance."""
+    pixels = cv2.cvtColor(rgb, cv2.COLOR_RGB2HSV_FULL)
+    pixels[..., 2] = luminance(rgb)
+    return pixels
+
+
+def _hue_as_color(rgb: np.ndarray) -> np.ndarray:
+    """The pure colour of each pixel's hue; grey has the hue of red."""
+    pixels = cv2.cvtColor(rgb, cv2.COLOR_RGB2HSV_FULL)
+    pixels[..., 1:] = 255
+    return cv2.cvtColor(pixels, cv2.COLOR_HSV2RGB_FULL)
+
+
+def _hue_saturation_mixed(rgb: np.ndarray) -> np.ndarray:
+    """Hue, saturation, and their mean."""
+    pixels = _hsy(rgb)
+    pixels[..., 2] = (pixels[..., 0].astype(np.uint16) + pixels[..., 1]) // 2
+    return pixels
+
+
+def _argb(rgb: np.ndarray) -> np.ndarray:
+    opaque = np.full(rgb.shape[:2], 255, dtype=np.uint8)
+    return cv2.merge((opaque, *cv2.split(rgb)))
+
+
+def _cie(code: int) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda rgb: cv2.cvtColor(rgb, code)
+
+
+def _polar(code: int) -> Callable[[np.ndarray], np.ndarray]:
+    """Lightness, chroma and hue from a CIE colour space with two colour axes."""
+
+    def convert(rgb: np.ndarray) -> np.ndarray:
+        # From floats: in bytes the axes have offsets and scales of their own.
+        lightness, a, b = cv2.split(cv2.cvtColor(rgb.astype(np.float32) / np.float32(255.0), code))
+        chroma, hue = cv2.cartToPolar(a, b)
+        planes = (lightness * 2.55, chroma, np.mod(hue * (256.0 / (2.0 * np.pi)), 256.0))
+        return np.stack([np.clip(plane + 0.5, 0.0, 255.0).astype(np.uint8) for plane in planes], axis=-1)
+
+    return convert
+
+
+def _same(rgb: np.ndarray) -> np.ndarray:
+    return rgb
+
+
+ENCODERS: Mapping[int, Callable[[np.ndarray], np.ndarray]] = {
+    0: luminance,
+    1: _plane(_yuv, 1),
+    2: _plane(_yuv, 2),
+    3: _plane(_same, 0),
+    4: _plane(_same, 1),
+    5: _plane(_same, 2),
+    6: _plane(_hsy, 0),
+    7: _plane(_hsy, 1),
+    8: luminance,
+    9: _yuv422,
+    10: _yuv,
+    11: _same,
+    12: _hsy,
+    13: lambda rgb: cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR),
+    14: _yycbcr,
+    15: _hue_as_color,
+    16: _hue_saturation_mixed,
+    18: _argb,
+    19: _cie(cv2.COLOR_RGB2XYZ),
+    22: _cie(cv2.COLOR_RGB2Lab),
+    24: _cie(cv2.COLOR_RGB2Luv),
+    25: _polar(cv2.COLOR_RGB2Lab),
+    26: _polar(cv2.COLOR_RGB2Luv),
+}
+"""By NAOqi's id. What is missing needs a depth camera."""

@@ -1,0 +1,87 @@
+"""Where the robot believes that it is: dead reckoning of the foot that carries it, headings from the inertial unit.
+
+Its world is where the robot stood at the start: the origin on the ground between the feet, X where they pointed. The
+ground is taken for level, and the point of the sole below the ankle of the foot that carries for a fixed point on it,
+also while the foot rolls over an edge; slips go unnoticed, as on a real robot.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Iterable, Sequence
+
+from nao_sim_bridge.base.readings import Contact, Pose
+from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw, rotate
+from nao_sim_bridge.control.balance.stance import StanceReader
+from nao_sim_bridge.model.robot_model import RobotModel
+
+LEFT, RIGHT = 0, 1
+# The other foot takes over when it carries so many times the load of the one before.
+TAKE_OVER = 2.0
+
+
+class Odometry:
+    """Follows the torso from encoders, inertial unit and foot sensors, a few microseconds a tick.
+
+    Attributes:
+        torso: Pose of the torso in the world of odometry.
+
+    Args:
+        model: The robot.
+        ankles: PyBullet's index of the left and the right foot.
+        positions: (26,) joint angles at the start, rad.
+        tilt: Roll, pitch and yaw at the start by the inertial unit, rad.
+    """
+
+    def __init__(
+        self, model: RobotModel, ankles: Sequence[int], positions: Sequence[float], tilt: Sequence[float]
+    ) -> None:
+        self._reader = StanceReader(model)
+        self._side_of = {ankle: side for side, ankle in enumerate(ankles)}
+        level = from_roll_pitch_yaw(tilt[0], tilt[1], 0.0)
+        ahead = [rotate(level, self._reader.toe_direction(side, positions)) for side in (LEFT, RIGHT)]
+        heading = math.atan2(ahead[LEFT][1] + ahead[RIGHT][1], ahead[LEFT][0] + ahead[RIGHT][0])
+        self._start_yaw = tilt[2] + heading
+        turn = self._turn(tilt)
+        left, right = (rotate(turn, self._reader.sole_center(side, positions)) for side in (LEFT, RIGHT))
+        self._foot = LEFT if left[2] <= right[2] else RIGHT
+        height = -min(left[2], right[2])
+        self.torso = Pose((-(left[0] + right[0]) / 2, -(left[1] + right[1]) / 2, height), turn)
+        self._anchor = _plus(self.torso.position, (left, right)[self._foot])
+
+    def update(self, positions: Sequence[float], tilt: Sequence[float], contacts: Iterable[Contact]) -> Pose:
+        """Take in the readings of a tick.
+
+        Args:
+            positions: (26,) measured joint angles, rad.
+            tilt: Roll, pitch and yaw of the torso by the inertial unit, rad.
+            contacts: What presses on the robot.
+
+        Returns:
+            Pose of the torso in the world of odometry.
+        """
+        turn = self._turn(tilt)
+        loads = [0.0, 0.0]
+        for link, _, _, force in contacts:
+            side = self._side_of.get(link)
+            if side is not None:
+                loads[side] += force
+        sole = rotate(turn, self._reader.sole_center(self._foot, positions))
+        if loads == [0.0, 0.0]:
+            # In the air or lying: nothing tells where it goes.
+            self._anchor = _plus(self.torso.position, sole)
+        x, y, z = self._anchor
+        self.torso = Pose((x - sole[0], y - sole[1], z - sole[2]), turn)
+        other = RIGHT if self._foot == LEFT else LEFT
+        if loads[other] > TAKE_OVER * loads[self._foot]:
+            self._foot = other
+            x, y, _ = _plus(self.torso.position, rotate(turn, self._reader.sole_center(other, positions)))
+            self._anchor = (x, y, 0.0)
+        return self.torso
+
+    def _turn(self, tilt: Sequence[float]) -> Quaternion:
+        return from_roll_pitch_yaw(tilt[0], tilt[1], tilt[2] - self._start_yaw)
+
+
+def _plus(a: Vector3, b: Vector3) -> Vector3:
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])

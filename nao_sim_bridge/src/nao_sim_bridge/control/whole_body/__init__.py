@@ -1,0 +1,1 @@
+"""Hands, feet and centre of mass in space: inverse kinematics and whole-body tasks."""

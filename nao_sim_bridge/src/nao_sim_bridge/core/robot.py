@@ -1,0 +1,291 @@
+"""The simulated NAO as one thing: commands in, physics, sensors out. One thread only."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, replace
+from typing import Iterable, Mapping, Sequence
+
+from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.finite import NotFinite, check_finite
+from nao_sim_bridge.base.readings import Contact, Pose
+from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.base.settings import Settings
+from nao_sim_bridge.base.tasks import TaskIds
+from nao_sim_bridge.body.faults import Faults
+from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.body.led_animations import power_on
+from nao_sim_bridge.body.leds import LedBank
+from nao_sim_bridge.body.physics import NO_PUSHES, Physics
+from nao_sim_bridge.body.pointing import pointed_at
+from nao_sim_bridge.body.sensors.body import BodySensors
+from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise
+from nao_sim_bridge.body.sensors.inertial import InertialUnit
+from nao_sim_bridge.body.sensors.noise_settings import load_noise
+from nao_sim_bridge.body.sensors.power import PowerSystem
+from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
+from nao_sim_bridge.body.sensors.sonar import Sonars
+from nao_sim_bridge.body.sensors.surroundings import PhysicalSurroundings
+from nao_sim_bridge.control.balance.odometry import Odometry
+from nao_sim_bridge.control.balance.reflexes import Reflexes
+from nao_sim_bridge.control.balance.stability import Stability
+from nao_sim_bridge.control.joints.engine import MotionEngine
+from nao_sim_bridge.control.whole_body.whole_body import WholeBody
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.model.leds_layout import LedLayout
+from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.walk.locomotion import Locomotion
+
+# The links under which the soles are.
+ANKLES = ("l_ankle", "r_ankle")
+
+
+@dataclass(frozen=True)
+class _Push:
+    link: str
+    force: Vector3
+    until: float
+
+
+class SimulatedRobot:
+    """Motors, LEDs and sensors of one NAO around its physics.
+
+    Attributes:
+        model: Its tables.
+        joints: Command angles and stiffnesses.
+        motion: Tasks and targets of the joints.
+        stability: Balance and fall manager.
+        whole_body: Control of all joints at once.
+        locomotion: Walks.
+        reflexes: What protects the robot from itself, from obstacles and from heat, and moves idle chains.
+        leds: The LEDs.
+        power: Heat of the motors, and the battery.
+        faults: What is broken.
+        random: The only source of chance, so that a seed decides everything.
+        getting_up: True while a move runs that takes the robot off its feet or back on them: leaning is no fall then.
+
+    Its clock starts at 0 with it: after a reset equal commands must meet equal times, to the last bit.
+
+    Args:
+        model: The robot.
+        leds: Layout of its LEDs.
+        settings: Physics settings.
+        physics: The world with the robot in it.
+        angles: (26,) joint angles it was placed with, rad (hands 0..1).
+        scene: Seed of the random numbers, noise and delay of the sensors.
+        task_ids: Source of the tasks' numbers.
+    """
+
+    def __init__(
+        self,
+        model: RobotModel,
+        leds: LedLayout,
+        settings: Settings,
+        physics: Physics,
+        angles: Sequence[float],
+        scene: Scene,
+        task_ids: TaskIds,
+    ) -> None:
+        self.model = model
+        self.led_layout = leds
+        self.random = random.Random(scene.seed)
+        self._dt = settings.tick_s
+        self.joints = JointCommands(model, angles)
+        self.motion = MotionEngine(self.joints, task_ids)
+        self.stability = Stability(model, settings, self.joints, self.motion)
+        self.whole_body = WholeBody(model, self.joints, self.motion)
+        self.reflexes = Reflexes(model, self.joints, self.motion, lambda: self._sensed)
+        self.locomotion = Locomotion(
+            model, settings, self.joints, self.motion, self.stability, self.reflexes, task_ids, lambda: self._sensed
+        )
+        self.leds = LedBank(len(leds.devices), task_ids)
+        self.task_ids = task_ids
+        self.leds.set(power_on(leds))
+        self._sensors = BodySensors(model, settings, physics.links)
+        self._physics = physics
+        self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2, physics.start.yaw)
+        self._imperfection = self._imperfect(scene)
+        self._odometry: Odometry | None = None
+        self._sonars = Sonars(model, PhysicalSurroundings(physics.client, physics.robot))
+        self.power = PowerSystem(self._sensors.motors.heat_capacities, settings, model.version != "V6")
+        self.power.battery.plug(scene.charger)
+        self.faults = Faults(model, self._sensors.touch_names)
+        self.reflexes.faults = self.faults
+        self._pushes: list[_Push] = []
+        self._fingers: frozenset[str] = frozenset()
+        self._pointed: frozenset[str] = frozenset()
+        self._link_names = {index: name for name, index in physics.links.items()}
+        self.getting_up = False
+        self._measured = tuple(angles)
+        self._sensed: Snapshot | None = None
+        self._ticks = 0
+
+    @property
+    def time(self) -> float:
+        """Simulated time since the robot was put into the world, s."""
+        return self._ticks * self._dt
+
+    @property
+    def snapshot(self) -> Snapshot | None:
+        """What was sensed at the last tick; None before the first one."""
+        return self._sensed
+
+    @property
+    def true_positions(self) -> tuple[float, ...]:
+        """(26,) joint angles as they are, not as noisy or late sensors say, rad (hands 0..1)."""
+        return self._measured
+
+    def warm_up(self, joint: str, celsius: float) -> None:
+        """Put a motor to a temperature, degC, from where it goes on by itself.
+
+        Raises:
+            UnknownName: There is no such joint.
+        """
+        if joint not in self.model.joint_index:
+            raise UnknownName("joint", joint, self.model.joint_index)
+        self.power.warm_up(self.model.joint_index[joint], celsius)
+
+    def link_name(self, index: int) -> str:
+        """Name of the link that a contact names by its index."""
+        return self._link_names.get(index, "torso")
+
+    def push(self, force: Vector3, duration: float, link: str = "torso") -> None:
+        """Push a link with `force` (N, in world) for `duration` s from now on."""
+        if link != "torso" and link not in self._physics.links:
+            raise UnknownName("link", link, ["torso", *self._physics.links])
+        check_finite(f"push of {link}", (*force, duration))
+        self._pushes.append(_Push(link, force, self.time + duration))
+
+    def press(self, sensors: Iterable[str]) -> None:
+        """Simulated fingers on these touch sensors, and on no others, from now on.
+
+        Raises:
+            UnknownName: There is no such sensor.
+        """
+        wanted = frozenset(sensors)
+        for name in wanted:
+            if name not in self._sensors.touch_names:
+                raise UnknownName("touch sensor", name, self._sensors.touch_names)
+        self._fingers = wanted
+
+    def point_at(self, ray: tuple[Vector3, Vector3] | None) -> None:
+        """Touch the sensor that a line of sight meets, and let go of the one before; None: let go.
+
+        Args:
+            ray: Eye (m) and unit vector, in world.
+        """
+        self._pointed = frozenset() if ray is None else pointed_at(self.model, self._physics, *ray)
+
+    def act(self) -> None:
+        """First half of a tick for a robot that is alone: LEDs, motion and motors up to its end, then physics."""
+        self.command()
+        self._physics.step(self.take_pushes())
+
+    def command(self) -> None:
+        """First half of a tick: LEDs, motion and motors up to its end, before the step of physics."""
+        self._ticks += 1
+        now = self.time
+        self.task_ids.guard.call(self.leds.tick, now)
+        self.whole_body.suspended = self.getting_up or self.locomotion.active
+        self.reflexes.prepare(self._sensed, self.getting_up or self.stability.falls.falling, self.stability.on_feet)
+        if self.locomotion.active:
+            self.locomotion.tick(self._dt)
+            self.motion.idle = self.locomotion.arms.over(self.motion.idle)
+            self.reflexes.self_collision.suspended |= self.locomotion.arms.alone
+        self.motion.tick(now, self._dt)
+        if self._sensed is not None:
+            self.stability.act(self._sensed, self.getting_up, self._dt)
+        self.joints.slip(self._measured)
+        if self._sensed is not None:
+            self.reflexes.limit_efforts(self._sensed, self._dt)
+        if self.joints.changed:
+            try:
+                self._physics.drive(self.joints)
+            except NotFinite as error:
+                self._put_right(error)
+            self.joints.changed = False
+
+    def _put_right(self, error: NotFinite) -> None:
+        """Leave joints where they are whose commands are not finite; what moves them ends."""
+        self.task_ids.guard.caught("motion", error)
+        self.motion.kill_using(self.joints.put_right(self._measured))
+        self._physics.drive(self.joints)
+
+    def take_pushes(self) -> Mapping[str, Vector3]:
+        """Forces on links in the coming step of physics, N, in world, by link."""
+        if not self._pushes:
+            return NO_PUSHES
+        forces = {push.link: push.force for push in self._pushes}
+        self._pushes = [push for push in self._pushes if push.until > self.time + 1e-9]
+        return forces
+
+    def sense(self, tick: int, now: float) -> Snapshot:
+        """Second half of a tick: read every sensor."""
+        joints = self._physics.read_joints()
+        self._measured = joints.positions
+        body = self._physics.read_body()
+        contacts = self._physics.read_contacts()
+        imu = self._imu.read(body, self._dt)
+        link_poses = {link: self._pose_of(link, body.pose) for link in {contact.link for contact in contacts}}
+        work = self._sensors.motors.work
+        self.power.advance(lambda: work(joints.torques, joints.velocities, self.joints.efforts), self._dt)
+        if self._imperfection is not None:
+            joints, imu, contacts, link_poses = self._imperfection.of(Felt(joints, imu, contacts, link_poses))
+        self._sensed = Snapshot(
+            tick=tick,
+            time=now,
+            positions=joints.positions,
+            velocities=joints.velocities,
+            torques=joints.torques,
+            temperatures=self.power.temperatures,
+            commands=self.joints.commands,
+            stiffnesses=self.joints.stiffnesses,
+            torso=body.pose,
+            linear_velocity=body.linear_velocity,
+            angular_velocity=body.angular_velocity,
+            imu=imu,
+            odometry=self._reckon(joints.positions, imu, contacts),
+            sonars=self._sonars.read(self.time, body.pose),
+            echoes=self._sonars.echoes,
+            head_temperature=self.power.head,
+            battery=self.power.battery.reading,
+            objects=self._physics.bodies.read(),
+            placed=self._physics.bodies.placed,
+            gone=self._physics.bodies.gone,
+            contacts=contacts,
+            link_poses=link_poses,
+            fingers=self._fingers | self._pointed,
+            sensors=self._sensors,
+        )
+        if self.faults.sensors:
+            self._sensed = self.faults.spoil(self._sensed)
+        return self._sensed
+
+    def shoot_sonars(self) -> Snapshot | None:
+        """What is sensed now, with sonars that have just measured; None before the first tick."""
+        if self._sensed is None:
+            return None
+        self._sonars.reset()
+        sonars = self._sonars.read(self.time, self._physics.read_body().pose)
+        now = replace(self._sensed, sonars=sonars, echoes=self._sonars.echoes)
+        return self.faults.spoil(now) if self.faults.sensors else now
+
+    def _imperfect(self, scene: Scene) -> Imperfection | None:
+        """What spoils and delays the readings; None when nothing does."""
+        ticks = round(scene.sensor_delay / self._dt)
+        if not scene.sensor_noise and not ticks:
+            return None
+        noise = None
+        if scene.sensor_noise:
+            feet = [self._physics.links[name] for name in ANKLES]
+            noise = Noise(load_noise(), scene.sensor_noise, self.random, feet, self._dt)
+        return Imperfection(noise, Delay(ticks))
+
+    def _reckon(self, positions: Sequence[float], imu: Imu, contacts: Sequence[Contact]) -> Pose:
+        if self._odometry is None:
+            ankles = [self._physics.links[name] for name in ANKLES]
+            self._odometry = Odometry(self.model, ankles, positions, imu.angles)
+        return self._odometry.update(positions, imu.angles, contacts)
+
+    def _pose_of(self, link: int, torso: Pose) -> Pose:
+        return torso if link < 0 else self._physics.link_pose(self._link_names[link])

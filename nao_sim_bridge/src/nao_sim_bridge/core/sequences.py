@@ -1,0 +1,124 @@
+"""Motions made of several steps, as one task that can be killed at any point. Simulation thread only."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
+
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.control.balance.posture_recognition import CROUCHING, STANDING, recognise
+from nao_sim_bridge.control.joints.curves import Ramp, SmoothCurve
+from nao_sim_bridge.core.robot import SimulatedRobot
+from nao_sim_bridge.model.postures import posture
+
+Step = Callable[[], Optional[Task]]
+
+AWAKE_POSTURE = "Stand"
+REST_POSTURE = "Crouch"
+# Time to stiffen or release the body, s, and to move between standing and crouching.
+STIFFEN_TIME = 0.2
+POSTURE_TIME = 2.0
+
+
+def run_steps(
+    robot: SimulatedRobot, name: str, steps: Iterable[Step], outcome: Callable[[], Any] = lambda: None
+) -> Task:
+    """Run steps one after the other; each returns the task to wait for, or None.
+
+    Args:
+        robot: Whose task numbers are used.
+        name: NAOqi name of the whole.
+        steps: Called in order, each when the one before has ended; a killed step ends the whole.
+        outcome: Called at the end, also at one before time; what it returns is the result of the whole.
+    """
+    remaining: Iterator[Step] = iter(steps)
+    running: list[Task] = []
+
+    def stop(_: Task) -> None:
+        for task in running:
+            task.kill()
+        whole.finish(outcome())
+
+    whole = robot.task_ids.make(name, on_kill=stop)
+
+    def proceed(done: Task | None = None) -> None:
+        if whole.finished or whole.killed:
+            return
+        if done is not None and done.killed:
+            whole.kill()
+            return
+        for step in remaining:
+            task = step()
+            if task is not None:
+                running[:] = [task]
+                task.add_done_callback(proceed)
+                return
+        whole.finish(outcome())
+
+    proceed()
+    return whole
+
+
+def stop_walk(robot: SimulatedRobot) -> Task | None:
+    """Bring a walk to its end on two feet, before legs do something else; None when there is none."""
+    return robot.locomotion.stop() if robot.locomotion.active else None
+
+
+def is_on_feet(robot: SimulatedRobot, snapshot: Snapshot) -> bool:
+    """Whether the robot stands or crouches: from anywhere else, standing up is more than one motion."""
+    return recognise(robot.model, snapshot).family in (STANDING, CROUCHING)
+
+
+def wake_up(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
+    """Stiffen the body where it is and, when on its feet, stand up; `on_end` is called after the last step."""
+    body = range(len(robot.model.joints))
+
+    def stiffen() -> Task:
+        now = snapshot()
+        limp = [i for i in body if robot.joints.stiffnesses[i] == 0.0]
+        robot.joints.hold(now.positions, limp)
+        return stiffness_task(robot, "wakeUp", body, 1.0, STIFFEN_TIME)
+
+    def stand() -> Task | None:
+        return posture_task(robot, "wakeUp", AWAKE_POSTURE) if is_on_feet(robot, snapshot()) else None
+
+    return run_steps(robot, "wakeUp", [lambda: stop_walk(robot), stiffen, stand, on_end])
+
+
+def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
+    """Crouch when on its feet and stiff, then release all motors; `on_end` is called after the last step."""
+    body = range(len(robot.model.joints))
+
+    def crouch() -> Task | None:
+        standing = is_on_feet(robot, snapshot()) and _body_is_stiff(robot)
+        return posture_task(robot, "rest", REST_POSTURE) if standing else None
+
+    def release() -> Task:
+        return stiffness_task(robot, "rest", body, 0.0, STIFFEN_TIME)
+
+    return run_steps(robot, "rest", [lambda: stop_walk(robot), crouch, release, on_end])
+
+
+def _body_is_stiff(robot: SimulatedRobot) -> bool:
+    """Whether nothing but hands is limp: these often are, and bear nothing."""
+    return all(stiff for stiff, joint in zip(robot.joints.stiffnesses, robot.model.joints) if not joint.is_hand)
+
+
+def posture_task(robot: SimulatedRobot, name: str, target: str, duration: float = POSTURE_TIME) -> Task:
+    """Move the whole body to a posture in `duration` s."""
+    goal = posture(robot.model, target)
+
+    def curves(commands: Sequence[float]) -> dict[int, SmoothCurve]:
+        return {i: SmoothCurve((0.0, duration), (commands[i], angle)) for i, angle in enumerate(goal)}
+
+    return robot.motion.follow(name, range(len(goal)), curves)
+
+
+def stiffness_task(robot: SimulatedRobot, name: str, indices: Iterable[int], target: float, duration: float) -> Task:
+    """Change stiffness of joints to `target` in `duration` s."""
+    indices = list(indices)
+
+    def ramps(now: Sequence[float]) -> dict[int, Ramp]:
+        return {i: Ramp(now[i], target, max(abs(target - now[i]), 1e-6) / duration) for i in indices}
+
+    return robot.motion.stiffen(name, indices, ramps)

@@ -1,0 +1,173 @@
+"""What robots share: the world with its physics and its things, time, sound in the air, and what draws.
+
+No thread and no wall clock: whoever calls `tick` minds both.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Callable
+
+from nao_sim_bridge.base.finite import NotFinite
+from nao_sim_bridge.base.settings import Settings, load_settings
+from nao_sim_bridge.base.tasks import TaskIds
+from nao_sim_bridge.body.physics_world import PhysicsWorld
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.things import Things
+from nao_sim_bridge.render.client import Renderer
+from nao_sim_bridge.sound.air import Air
+from nao_sim_bridge.world.places import ORIGIN, RobotPlace
+from nao_sim_bridge.world.render_state import RobotLook
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.core.simulation import Simulation
+
+
+class SharedWorld:
+    """One world for one robot or more. Each of them is a `Simulation`, and joins when it is made.
+
+    Attributes:
+        scene: What it started with.
+        settings: Of the physics.
+        world: Floor, things, sounds.
+        robots: Those that are in it, in the order of their numbers.
+        physics: The engine; replaced at a reset.
+        task_ids: Source of the numbers of all tasks.
+        guard: Calls what belongs to a tick besides physics and sensors, and knows what of it has failed.
+        things: What is in the world and may come, move and go; a reset puts it to where the world file says.
+        air: What sounds, and the clock of sound; it stays at a reset.
+        renderer: What draws, for all robots.
+        ticks: Since the start; it never goes back.
+        after_reset: Called at the end of each reset: world and robots are at the start again.
+        wake: To be called, from any thread, when time need not wait any more for what a robot holds it for; set by
+            who lets time pass.
+
+    Args:
+        scene: World, version of all robots, friction.
+        settings: None for those of the file.
+        renderer: What draws: "auto", "opengl" or "builtin", see `Renderer`; or one that has drawn this world before.
+    """
+
+    def __init__(self, scene: Scene, settings: Settings | None = None, renderer: str | Renderer = "auto") -> None:
+        self.scene = scene
+        self.settings = settings or load_settings()
+        self.world = scene.load_world(self.settings.contact.sole_friction)
+        self.robots: list[Simulation] = []
+        self.physics: PhysicsWorld | None = None
+        self.ticks = 0
+        self.after_reset: list[Callable[[], None]] = []
+        self.task_ids = TaskIds()
+        self.guard = self.task_ids.guard
+        self.wake: Callable[[], None] = lambda: None
+        self.air = Air(self.task_ids, self.settings.tick_s)
+        self.renderer = renderer if isinstance(renderer, Renderer) else Renderer(scene.world, scene.version, renderer)
+        self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self.ticks * self.settings.tick_s
+
+    @property
+    def next_place(self) -> RobotPlace:
+        """Where the world has the next robot that joins: at the origin when it does not say."""
+        places = self.world.robots[len(self.robots) :]
+        return places[0] if places else ORIGIN
+
+    def holds(self) -> bool:
+        """Whether time that runs faster than the wall clock should wait for one of the robots."""
+        for robot in self.robots:
+            for waits in robot.holds:
+                try:
+                    if waits():
+                        return True
+                except Exception as error:
+                    self.guard.caught(waits, error)
+        return False
+
+    def join(self, robot: Simulation) -> None:
+        """Take a robot in, before time passes, and let it begin."""
+        self.robots.append(robot)
+        if self.physics is None:
+            self.physics = PhysicsWorld(self.world, self.settings)
+            self.things.begin(self.physics)
+        robot.begin(self.physics)
+
+    def reset(self) -> None:
+        """Put all robots and the world to where they started; running tasks are killed, time goes on."""
+        for robot in self.robots:
+            robot.end_tasks()
+        self.air.stop_all()
+        self.physics.close()
+        self.physics = PhysicsWorld(self.world, self.settings)
+        self.things.begin(self.physics)
+        for robot in self.robots:
+            robot.begin(self.physics)
+        for call in self.after_reset:
+            self.guard.call(call)
+
+    def tick(self) -> None:
+        """Advance by one tick: things, LEDs, motion, motors, physics, sensors, sound, cameras, in this order.
+
+        Each of them for all robots: none is a tick ahead of what it sees, hears and touches of another. What raises of
+        it fails alone, see `guard`, but for the engine: without it nothing can go on. Where that has lost a body, whose
+        place is no number any more, world and robots are put to their start, and `guard` tells why.
+        """
+        self.ticks += 1
+        call, robots = self.guard.call, self.robots
+        call(self.things.tick)
+        pushes: list[Callable[[], None]] = []
+        for robot in robots:
+            pushes += call(robot.act) or ()
+        self.physics.step(pushes)
+        self._sense()
+        call(self.air.tick, self.ticks)
+        for robot in robots:
+            call(robot.perceive)
+        for robot in robots:
+            snapshot = robot.snapshot
+            for look in robot.after_tick:
+                try:  # not by `call`: this is for each of many at every tick
+                    look(snapshot)
+                except Exception as error:
+                    self.guard.caught(look, error)
+
+    def _sense(self) -> None:
+        lost: NotFinite | None = None
+        for robot in self.robots:
+            try:
+                robot.sense()
+            except NotFinite as error:
+                lost = error
+            except Exception as error:
+                self.guard.caught(robot.sense, error)
+        if lost is not None:
+            self.guard.caught("physics, which begins anew,", lost)
+            self.reset()
+
+    def looks_beside(self, robot: Simulation) -> tuple[RobotLook, ...]:
+        """What all robots but one look like at the last tick. Any thread."""
+        return tuple(other.look() for other in self.robots if other is not robot)
+
+    def close(self, keep_renderer: bool = False) -> None:
+        """Free the engine; nothing sounds or is heard or seen any more.
+
+        Args:
+            keep_renderer: Leave what draws to another world.
+        """
+        self.air.stop_all()
+        for robot in self.robots:
+            robot.close_senses()
+        if not keep_renderer:
+            self.renderer.close()
+        self.things.stop()
+        if self.physics is not None:
+            for robot in self.robots:
+                robot.end_tasks()
+                robot.hands.end()
+            self.physics.close()
+            self.physics = None
+
+    def _look_again(self) -> None:
+        """Let the last snapshots have the things that there are now, as time may stand still."""
+        for robot in self.robots:
+            robot.look_again()

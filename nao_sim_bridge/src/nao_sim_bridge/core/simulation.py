@@ -1,0 +1,218 @@
+"""One NAO in a world, advanced tick by tick. No thread and no wall clock: whoever calls `tick` minds both."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Callable, Sequence
+
+from nao_sim_bridge.base.settings import Settings
+from nao_sim_bridge.body.physics import Physics
+from nao_sim_bridge.body.physics_world import PhysicsWorld
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.cameras.cameras import Cameras
+from nao_sim_bridge.core.hands import Hands
+from nao_sim_bridge.core.robot import SimulatedRobot
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.shared_world import SharedWorld
+from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.start_lean import start_pitch
+from nao_sim_bridge.render.client import Renderer
+from nao_sim_bridge.sound.sound_world import SoundWorld
+from nao_sim_bridge.world.places import RobotPlace
+from nao_sim_bridge.world.render_state import RenderState, RobotLook
+
+
+class Simulation:
+    """A robot and the world around it as this robot knows it. The world and time may be shared with other robots.
+
+    Time never goes back: `reset` puts everything to the start but the clock.
+
+    Attributes:
+        scene: What it started with.
+        shared: What it shares with other robots, or has for itself.
+        robot: The robot; replaced at a reset.
+        task_ids: Source of the numbers of all tasks.
+        snapshot: What was sensed at the last tick; any thread may read it.
+        after_tick: Called with the snapshot at the end of every tick; they stay at a reset.
+        after_reset: Called in the simulation thread when the robot is at its start again, with the world or alone.
+        sound: What sounds and what is heard; it stays at a reset, which ends everything that plays.
+        renderer: What draws what the cameras see, and pictures from outside; any thread may ask.
+        cameras: What the robot sees; it stays at a reset.
+        things: What is in the world and may come, move and go; a reset puts it to where the world file says.
+        holds: As long as one of them answers True, time that runs faster than the wall clock waits: for work in other
+            threads without which a fast run would give other results. Asked in the simulation thread.
+
+    Args:
+        scene: World, robot, posture, seed.
+        settings: Of the physics, for a world of its own; None for those of the file.
+        renderer: What draws, for a world of its own; see `SharedWorld`.
+        shared: A world that others are in, too; None for one of its own.
+        place: Where on the floor it starts; None for where the world says, or else the origin.
+    """
+
+    def __init__(
+        self,
+        scene: Scene | None = None,
+        settings: Settings | None = None,
+        renderer: str | Renderer = "auto",
+        shared: SharedWorld | None = None,
+        place: RobotPlace | None = None,
+    ) -> None:
+        self.scene = scene or Scene()
+        self.shared = shared or SharedWorld(self.scene, settings, renderer)
+        self.settings = self.shared.settings
+        self.model = load_model(self.scene.version)
+        self.led_layout = load_leds(self.scene.version)
+        self._place = place or self.shared.next_place
+        self._physics: Physics | None = None
+        self.task_ids = self.shared.task_ids
+        self.after_tick: list[Callable[[Snapshot], None]] = []
+        self.after_reset: list[Callable[[], None]] = []
+        self.sound = SoundWorld(self.model, self.shared.air, self.scene.seed, released=lambda: self.wake())
+        self.renderer = self.shared.renderer
+        self.cameras = Cameras(
+            self.model,
+            self.settings.tick_s,
+            self.renderer,
+            self.render_state,
+            self.scene.seed,
+            released=lambda: self.wake(),
+            guard=self.shared.guard,
+        )
+        self.holds: list[Callable[[], bool]] = [self.sound.ears.holds, self.cameras.holds]
+        self.things = self.shared.things
+        self.hands = Hands(self.model, self.task_ids)
+        self.robot: SimulatedRobot
+        self.snapshot: Snapshot
+        self.shared.join(self)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self.shared.time
+
+    @property
+    def ticks(self) -> int:
+        """Ticks since the start."""
+        return self.shared.ticks
+
+    @property
+    def wake(self) -> Callable[[], None]:
+        """To be called, from any thread, when one of `holds` may answer differently."""
+        return self.shared.wake
+
+    def reset(self) -> None:
+        """Put all robots and the world to where they started; running tasks are killed."""
+        self.shared.reset()
+
+    def reboot(self) -> None:
+        """Put this robot alone to where it started; its running tasks are killed.
+
+        Where something is there, it stands beside it. A robot that has the world for itself resets the world.
+        """
+        if len(self.shared.robots) == 1:
+            self.reset()
+            return
+        self.end_tasks()
+        self.sound.loudspeakers.stop_all()
+        angles = posture(self.model, self.scene.posture)
+        self._physics.restart_beside_others(angles, start_pitch(self.scene.posture))
+        self._start(angles)
+
+    def tick(self) -> Snapshot:
+        """Advance all robots and the world by one tick; see `SharedWorld.tick`."""
+        self.shared.tick()
+        return self.snapshot
+
+    def run(self, seconds: float) -> Snapshot:
+        """Advance by `seconds` of simulated time, rounded to ticks."""
+        for _ in range(round(seconds / self.settings.tick_s)):
+            self.tick()
+        return self.snapshot
+
+    def inside(self) -> dict[str, float]:
+        """How deep the robot is in things and in other robots, m, by name; see `Physics.inside`."""
+        return self._physics.inside()
+
+    def look(self) -> RobotLook:
+        """What the robot looks like at the last tick. Any thread."""
+        torso = self.snapshot.torso
+        return RobotLook(torso.position, torso.orientation, self.robot.true_positions, self.robot.leds.values)
+
+    def render_state(self, snapshot: Snapshot) -> RenderState:
+        """What there is to see at a snapshot, which is the last one. Any thread."""
+        return RenderState(
+            snapshot.torso.position,
+            snapshot.torso.orientation,
+            self.robot.true_positions,
+            self.robot.leds.values,
+            snapshot.objects,
+            snapshot.placed,
+            snapshot.gone,
+            self.shared.looks_beside(self),
+        )
+
+    def close(self) -> None:
+        """Free the engine, for all robots of the world."""
+        self.shared.close()
+
+    # --- for the world that it is in -------------------------------------------------------------------------------
+
+    def begin(self, physics: PhysicsWorld) -> None:
+        """Be put into a world that has just been made."""
+        angles = posture(self.model, self.scene.posture)
+        pitch = start_pitch(self.scene.posture)
+        self._physics = Physics(self.model, physics, self.settings, angles, pitch, self.scene.payload, self._place)
+        self._start(angles)
+
+    def act(self) -> Sequence[Callable[[], None]]:
+        """First part of a tick, up to the step of physics; what is to be called before each step of the engine."""
+        self.shared.guard.call(self.hands.tick)
+        self.robot.command()
+        pushes = self.robot.take_pushes()
+        return self._physics.pushing(pushes) if pushes else ()
+
+    def sense(self) -> None:
+        """Second part of a tick: read every sensor."""
+        self.snapshot = self.robot.sense(self.shared.ticks, self.shared.time)
+        self.sound.record(self.snapshot)
+
+    def perceive(self) -> None:
+        """Third part of a tick: hear and see."""
+        self.shared.guard.call(self.sound.hear)
+        self.cameras.tick(self.snapshot)
+
+    def end_tasks(self) -> None:
+        """Kill what moves and lights up."""
+        self.robot.motion.kill_all()
+        self.robot.leds.kill_all()
+
+    def look_again(self) -> None:
+        """Let the last snapshot have the things that there are now."""
+        bodies = self._physics.bodies
+        self.snapshot = replace(self.snapshot, objects=bodies.read(), placed=bodies.placed, gone=bodies.gone)
+
+    def close_senses(self) -> None:
+        """Hear and see nothing any more."""
+        self.sound.close()
+        self.cameras.close()
+
+    def _start(self, angles: Sequence[float]) -> None:
+        """A new robot around its body, which is at its start."""
+        self.robot = SimulatedRobot(
+            self.model,
+            self.led_layout,
+            self.settings,
+            self._physics,
+            angles,
+            self.scene,
+            self.task_ids,
+        )
+        self.hands.begin(self._physics, self.robot)
+        self.snapshot = self.robot.sense(self.shared.ticks, self.time)
+        self.sound.begin(self.snapshot)
+        self.cameras.begin(self.snapshot)
+        for call in self.after_reset:
+            self.shared.guard.call(call)

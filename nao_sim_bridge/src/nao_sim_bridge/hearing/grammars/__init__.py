@@ -1,0 +1,1 @@
+"""What the recogniser listens for: vocabularies, grammars in BNF, and numbers in words."""

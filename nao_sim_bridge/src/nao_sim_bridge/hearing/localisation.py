@@ -1,0 +1,162 @@
+"""Where a sound comes from, out of the delays between the microphones. Pure arithmetic on blocks of samples.
+
+The delays of the six pairs are searched together (steered response power): over the shadows that a direction can have
+on the plane of the microphones, the one is taken at which the cross-correlations of all pairs add up highest. Each
+frequency counts by how far it stands out from the noise, up to a bound: so tones, whose lines carry everything, are
+found as well as noise and speech.
+
+A shadow belongs to two directions (see `array.py`). Sounds that matter are mostly somewhat above the level of a NAO's
+head, so the elevations that `PRIOR` likes are believed; where both directions are near each other, or the shadow is too
+near the rim to tell, the mean of what is likely is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Sequence
+
+import numpy as np
+
+from nao_sim_bridge.hearing.array import MicrophoneArray
+from nao_sim_bridge.hearing.spectra import CrossSpectra, frequencies
+
+# Elevations above the horizon that sounds have: mean and standard deviation, rad. Sources 0.2 to 1.7 m above the floor
+# at 1 to 3 m from a head at 0.5 m.
+PRIOR = (math.radians(10.0), math.radians(15.0))
+# Standard deviation of a shadow: what noise and the curvature of waves from 1 m make of it.
+SHADOW_ERROR = 0.006
+# Two directions nearer to each other than this are not told apart: their mean is taken, rad.
+SAME = math.radians(25.0)
+# A frequency does not count more than one that stands out by this power ratio.
+MOST_WEIGHT = 10.0**2.5
+OVERSAMPLING = 8
+# Shadows searched first, and by how much the rim is overstepped: noise may put the best one outside.
+STEP, RIM = 0.05, 1.1
+REFINEMENTS = 3
+# Square of the radius within which shadows have a direction on each side of the plane.
+INNERMOST_RIM = 1.0 - 1e-6
+UPRIGHT = (0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """The direction of a sound.
+
+    Attributes:
+        azimuth: From ahead to the left, in the frame of the head, rad.
+        elevation: Upwards, in the frame of the head, rad.
+        coherence: Share of the sound that fits to this direction, 0..1.
+    """
+
+    azimuth: float
+    elevation: float
+    coherence: float
+
+
+class DirectionFinder:
+    """Finds directions with one array.
+
+    Args:
+        array: The microphones.
+        rate: Of the samples, Hz.
+    """
+
+    def __init__(self, array: MicrophoneArray, rate: int) -> None:
+        self._array = array
+        self._step = 1.0 / rate / OVERSAMPLING
+        self._bound = RIM * array.longest_lag + 2.0 * self._step
+        lags = np.arange(-self._bound, self._bound + self._step, self._step)
+        self._steering = np.exp(-2j * np.pi * np.outer(lags, frequencies(rate)))
+        self._shadows = _disc(STEP, RIM)
+        self._places = self._rows(self._shadows).round().astype(int)
+        self._errors = _square(3.0 * SHADOW_ERROR)
+        self._chances = np.exp(-0.5 * (self._errors**2).sum(axis=1) / SHADOW_ERROR**2)
+
+    def find(self, spectra: CrossSpectra, up: Sequence[float] = UPRIGHT) -> Bearing:
+        """Direction that the loudest sound of a block comes from.
+
+        Args:
+            spectra: Of the block.
+            up: Unit vector upwards in the world, in the frame of the head.
+        """
+        shadow, coherence = self.shadow(spectra)
+        x, y, z = self.direction_of(shadow, up)
+        return Bearing(math.atan2(y, x), math.asin(max(-1.0, min(1.0, z))), coherence)
+
+    def shadow(self, spectra: CrossSpectra) -> tuple[np.ndarray, float]:
+        """Shadow (2,) of the direction of a sound, and its coherence."""
+        power = spectra.power
+        ratio = np.maximum(power / spectra.noise - 1.0, 0.0)
+        weights = np.minimum(ratio, MOST_WEIGHT) / power
+        first, second = self._array.pairs.T
+        correlations = (self._steering @ (spectra.products[:, first, second] * weights[:, None])).real
+        columns = np.arange(len(first))
+        response = correlations[self._places, columns].sum(axis=1)
+        best, reach = self._shadows[np.argmax(response)], STEP
+        for _ in range(REFINEMENTS):
+            around = best + _square(reach)
+            response = self._interpolated(correlations, around)
+            best = around[np.argmax(response)]
+            reach /= 4.0
+        most = len(first) * float(weights @ power)
+        return best, max(0.0, float(response.max()) / most) if most > 0.0 else 0.0
+
+    def direction_of(self, shadow: np.ndarray, up: Sequence[float] = UPRIGHT) -> np.ndarray:
+        """The unit vector that a shadow is most likely of."""
+        shadows = shadow + self._errors
+        squares = (shadows**2).sum(axis=1)
+        inside = squares < INNERMOST_RIM
+        if not inside.any():
+            shadows, squares = shadow[None] * math.sqrt(INNERMOST_RIM / (shadow @ shadow)), np.array([INNERMOST_RIM])
+            inside = np.array([True])
+        heights = np.sqrt(1.0 - squares[inside])
+        # The same area on the plane is a larger piece of the sphere towards the rim.
+        likely = self._chances[inside] / heights if inside.size > 1 else np.ones(1)
+        sides = [self._mean(shadows[inside], side * heights, likely, up) for side in (1.0, -1.0)]
+        (above, more), (below, less) = sides
+        if _angle(above, below) < SAME:
+            mean = above + below
+        else:
+            mean = above if more >= less else below
+        return mean / np.linalg.norm(mean)
+
+    def _mean(
+        self, shadows: np.ndarray, heights: np.ndarray, likely: np.ndarray, up: Sequence[float]
+    ) -> tuple[np.ndarray, float]:
+        """Sum (3,) of the directions on one side of the plane, each times how likely it is, and that of the chances."""
+        directions = np.concatenate([shadows, heights[:, None]], axis=1) @ self._array.axes
+        elevations = np.arcsin(np.clip(directions @ np.asarray(up), -1.0, 1.0))
+        chances = likely * np.exp(-0.5 * ((elevations - PRIOR[0]) / PRIOR[1]) ** 2)
+        return chances @ directions, float(chances.sum())
+
+    def _rows(self, shadows: np.ndarray) -> np.ndarray:
+        """(n, 6) rows of the lags in the table of correlations."""
+        return (self._array.lags(shadows) + self._bound) / self._step
+
+    def _interpolated(self, correlations: np.ndarray, shadows: np.ndarray) -> np.ndarray:
+        rows = np.clip(self._rows(shadows), 0.0, len(correlations) - 2.0)
+        below = rows.astype(int)
+        share = rows - below
+        columns = np.arange(rows.shape[1])
+        values = correlations[below, columns] * (1.0 - share) + correlations[below + 1, columns] * share
+        return values.sum(axis=1)
+
+
+def _disc(step: float, radius: float) -> np.ndarray:
+    """(n, 2) points of a square grid within a circle."""
+    steps = np.arange(-math.ceil(radius / step), math.ceil(radius / step) + 1) * step
+    points = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
+    return points[np.hypot(points[:, 0], points[:, 1]) <= radius]
+
+
+def _angle(first: np.ndarray, second: np.ndarray) -> float:
+    """Angle between two vectors of any length, rad."""
+    cosine = first @ second / (np.linalg.norm(first) * np.linalg.norm(second) + 1e-300)
+    return math.acos(max(-1.0, min(1.0, cosine)))
+
+
+def _square(reach: float) -> np.ndarray:
+    """(81, 2) points around the origin, up to `reach` away on each axis."""
+    steps = np.linspace(-reach, reach, 9)
+    return np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)

@@ -1,0 +1,98 @@
+"""Follows what the microphones hear, and says of each block where its sound comes from, if there is one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Callable, Sequence
+
+import numpy as np
+
+from nao_sim_bridge.hearing.array import MicrophoneArray
+from nao_sim_bridge.hearing.detection import START, SoundDetector
+from nao_sim_bridge.hearing.localisation import UPRIGHT, DirectionFinder
+from nao_sim_bridge.hearing.spectra import CrossSpectra, cross_spectra
+
+# What is taken for a quiet room before anything was heard: power in samples of int16 squared, about 36 dB SPL. A sound
+# that is there from the first moment on is found then; a noise without a direction is not, however loud.
+QUIET = 170.0
+# Coherence of what comes from nowhere in particular, and from which confidence on it is a direction.
+NO_COHERENCE, LEAST_CONFIDENCE = 0.3, 0.3
+# A frequency counts when it has more than this times the power of the background.
+ABOVE_BACKGROUND = 2.0
+# The own voice hides other sounds when it has more than this share of the power at the microphones.
+MOST_OWN = 0.1
+
+
+@dataclass(frozen=True)
+class HeardSound:
+    """A sound that was located.
+
+    Attributes:
+        time: Simulated time at which it begins in the block, or of the block itself if it has begun before, s.
+        azimuth: From ahead to the left, in the frame of the head, rad.
+        elevation: Upwards, in the frame of the head, rad.
+        confidence: 0..1.
+        energy: Root mean square of the samples, 0..32768.
+    """
+
+    time: float
+    azimuth: float
+    elevation: float
+    confidence: float
+    energy: float
+
+
+class Localiser:
+    """Locates the sounds that stand out from the background.
+
+    Args:
+        array: The microphones.
+        rate: Hz.
+    """
+
+    def __init__(self, array: MicrophoneArray, rate: int) -> None:
+        self._detector = SoundDetector(rate, QUIET)
+        self._finder = DirectionFinder(array, rate)
+
+    @property
+    def sensitivity(self) -> float:
+        """0..1; the higher, the softer a sound may be."""
+        return self._detector.sensitivity
+
+    @sensitivity.setter
+    def sensitivity(self, value: float) -> None:
+        self._detector.sensitivity = value
+
+    def feed(
+        self,
+        samples: np.ndarray,
+        time: float,
+        up: Sequence[float] = UPRIGHT,
+        own_power: Callable[[], float] = lambda: 0.0,
+    ) -> HeardSound | None:
+        """Listen to a block; the sound in it, if one stands out and has a direction.
+
+        Args:
+            samples: (n, microphones) int16.
+            time: Simulated time of its first sample, s.
+            up: Unit vector upwards in the world, in the frame of the head.
+            own_power: Tells what the own loudspeakers add to the mean square of the samples; asked when it matters.
+        """
+        edges = self._detector.feed(samples, time)
+        if not self._detector.loud:
+            return None
+        power = float(np.mean(samples.astype(np.float32) ** 2))
+        if own_power() > MOST_OWN * power:
+            return None
+        # What does not stand out from the background is no part of the sound: so a fan does not hide a voice.
+        spectra = cross_spectra(self._detector.spectra)
+        noise = np.maximum(spectra.noise, ABOVE_BACKGROUND * self._detector.background)
+        bearing = self._finder.find(CrossSpectra(spectra.products, noise), up)
+        confidence = (bearing.coherence - NO_COHERENCE) / (1.0 - NO_COHERENCE)
+        if confidence < LEAST_CONFIDENCE:
+            return None
+        begun = [edge.time for edge in edges if edge.kind == START]
+        return HeardSound(
+            max([time, *begun[:1]]), bearing.azimuth, bearing.elevation, min(confidence, 1.0), math.sqrt(power)
+        )

@@ -1,0 +1,77 @@
+"""The predefined postures of ALRobotPosture, from `config/nao_postures.json`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from nao_sim_bridge.base.config import check_keys, read_json, vector
+from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.model.robot_model import RobotModel, frozen_mapping, load_model
+
+FILE = "nao_postures.json"
+SECTIONS = ("_meta", "posture_families", "family_of", "description", "postures")
+OPTIONAL_SECTIONS = ("unknown_posture_name", "default_max_tries_goToPosture", "alternatives")
+
+
+@dataclass(frozen=True, eq=False)
+class Posture:
+    """A predefined posture.
+
+    Attributes:
+        name: For example `StandInit`.
+        family: For example `Standing`.
+        angles: (26,) in Body order, rad (hands: opening in [0, 1]), read-only.
+    """
+
+    name: str
+    family: str
+    angles: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Postures:
+    """All postures the robot knows.
+
+    Attributes:
+        by_name: Posture name to posture.
+        families: Names of all families, also of those without a predefined posture.
+    """
+
+    by_name: Mapping[str, Posture]
+    families: tuple[str, ...]
+
+
+@lru_cache(maxsize=None)
+def load_postures() -> Postures:
+    """The predefined postures, read once.
+
+    Raises:
+        ConfigError: If the file has a wrong, unknown or missing entry.
+    """
+    tables = check_keys(read_json(config_file(FILE)), FILE, SECTIONS, OPTIONAL_SECTIONS)
+    names = [joint.name for joint in load_model().joints]
+    postures = {}
+    for name, angles in tables["postures"].items():
+        where = f"{FILE}: postures.{name}"
+        check_keys(angles, where, names)
+        array = vector([angles[joint] for joint in names], where, len(names))
+        postures[name] = Posture(name, tables["family_of"][name], array)
+    return Postures(frozen_mapping(postures), tuple(tables["posture_families"]))
+
+
+def posture(model: RobotModel, name: str) -> tuple[float, ...]:
+    """Joint angles of a predefined posture in Body order, rad (hands 0..1), kept within the joint limits.
+
+    Raises:
+        UnknownName: If there is no such posture.
+    """
+    by_name = load_postures().by_name
+    if name not in by_name:
+        raise UnknownName("posture", name, by_name)
+    lower, upper = model.limits_array().T
+    return tuple(np.clip(by_name[name].angles, lower, upper).tolist())

@@ -1,0 +1,1 @@
+"""The model as URDF: the full one for ROS, a lean one for the physics."""

@@ -1,0 +1,192 @@
+"""ALBehaviorManager of the simulated robot. Only NAOqi methods live here."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import Sequence
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.behaviors.packages import MANIFEST, read_package, renamed
+from nao_sim_bridge.behaviors.steps import Behavior
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.behaviors.running import RUN, RunningBehaviors
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+
+NAME = "ALBehaviorManager"
+ADDED, REMOVED, UPDATED = (f"{NAME}/Behavior{what}" for what in ("Added", "Removed", "Updated"))
+SEVERAL_ADDED = f"{NAME}/BehaviorsAdded"
+
+
+class ALBehaviorManager:
+    """ALBehaviorManager as the simulated robot offers it.
+
+    Behaviours that are installed, and the list of default behaviours, are kept as long as the simulator runs.
+
+    Args:
+        running: Starts and stops behaviours.
+        runner: Runs commands in the simulation thread.
+        memory: Where events go.
+        files: Where clients have files to install.
+    """
+
+    def __init__(
+        self, running: RunningBehaviors, runner: SimulationRunner, memory: MemoryStore, files: ClientFiles
+    ) -> None:
+        self._running = running
+        self._installed = running.installed
+        self._runner = runner
+        self._memory = memory
+        self._files = files
+        self._lock = threading.Lock()
+        self._preloaded: list[str] = []
+        self._defaults: list[str] = []
+        for event in (RUN, ADDED, REMOVED, UPDATED, SEVERAL_ADDED):
+            memory.declare_event(event, NAME)
+
+    # --- what there is --------------------------------------------------------------------------------------------
+
+    def getBehaviorNames(self) -> list[str]:
+        return list(self._installed.all)
+
+    def getInstalledBehaviors(self) -> list[str]:
+        return list(self._installed.all)
+
+    def getSystemBehaviorNames(self) -> list[str]:
+        return sorted(self._installed.system)
+
+    def getUserBehaviorNames(self) -> list[str]:
+        return sorted(self._installed.user)
+
+    def isBehaviorInstalled(self, name: str) -> bool:
+        return self._installed.knows(name)
+
+    def isBehaviorPresent(self, name: str) -> bool:
+        return self._installed.knows(name)
+
+    def resolveBehaviorName(self, name: str) -> str:
+        return self._installed.resolve(name).name
+
+    def getBehaviorNature(self, name: str) -> str:
+        return self._installed.resolve(name).nature
+
+    def getBehaviorTags(self, name: str) -> list[str]:
+        return list(self._installed.resolve(name).tags)
+
+    def getBehaviorsByTag(self, tag: str) -> list[str]:
+        return [b.name for b in self._installed.all.values() if tag.lower() in map(str.lower, b.tags)]
+
+    def getTagList(self) -> list[str]:
+        return sorted({tag for behavior in self._installed.all.values() for tag in behavior.tags})
+
+    # --- coming and going -----------------------------------------------------------------------------------------
+
+    def installBehavior(self, path: str, name: str | None = None, overwrite: bool = True) -> bool:
+        """A file, or the folder of a package, in the folder for files of clients; see docs/robot_behaviors.md."""
+        behaviors = read_package(self._file(path))
+        if name:
+            behaviors = renamed(behaviors, name)
+        added, updated = self._installed.install(behaviors, overwrite)
+        for event, names in ((ADDED, added), (UPDATED, updated)):
+            for one in names:
+                self._memory.raise_event(event, one)
+        if added:
+            self._memory.raise_event(SEVERAL_ADDED, added)
+        return True
+
+    def removeBehavior(self, name: str) -> Task:
+        """Stops it, too."""
+        gone = self._installed.remove(name)
+        with self._lock:
+            self._preloaded = [one for one in self._preloaded if one not in gone]
+            self._defaults = [one for one in self._defaults if one not in gone]
+
+        def stop() -> bool:
+            for one in set(gone) & set(self._running.names):
+                self._running.stop(one)
+            for one in gone:
+                self._memory.raise_event(REMOVED, one)
+            return True
+
+        return self._runner.execute(stop, "removeBehavior")
+
+    def preloadBehavior(self, name: str) -> bool:
+        full = self._installed.resolve(name).name
+        with self._lock:
+            if full not in self._preloaded:
+                self._preloaded.append(full)
+        return True
+
+    def getLoadedBehaviors(self) -> list[str]:
+        with self._lock:
+            return list(dict.fromkeys([*self._preloaded, *self._running.names]))
+
+    def isBehaviorLoaded(self, name: str) -> bool:
+        return self._installed.resolve(name).name in self.getLoadedBehaviors()
+
+    # --- running --------------------------------------------------------------------------------------------------
+
+    def runBehavior(self, name: str) -> Task:
+        """Ends with the behaviour, also when somebody stops it."""
+        behavior = self._installed.resolve(name)
+        return self._runner.execute(lambda: self._running.start(behavior), "runBehavior")
+
+    def startBehavior(self, name: str) -> Task:
+        return self._start([self._installed.resolve(name)], "startBehavior")
+
+    def stopBehavior(self, name: str) -> Task:
+        full = self._installed.resolve(name).name
+        return self._runner.execute(lambda: self._running.stop(full), "stopBehavior")
+
+    def stopAllBehaviors(self) -> Task:
+        return self._runner.execute(self._running.stop_all, "stopAllBehaviors")
+
+    def getRunningBehaviors(self) -> list[str]:
+        return self._running.names
+
+    def isBehaviorRunning(self, name: str) -> bool:
+        return self._installed.resolve(name).name in self._running.names
+
+    # --- default behaviours ---------------------------------------------------------------------------------------
+
+    def addDefaultBehavior(self, name: str) -> None:
+        full = self._installed.resolve(name).name
+        with self._lock:
+            if full not in self._defaults:
+                self._defaults.append(full)
+
+    def removeDefaultBehavior(self, name: str) -> None:
+        full = self._installed.resolve(name).name
+        with self._lock:
+            if full not in self._defaults:
+                raise BadValue("behavior", name, f"one of the default behaviors: {', '.join(self._defaults) or 'none'}")
+            self._defaults.remove(full)
+
+    def getDefaultBehaviors(self) -> list[str]:
+        with self._lock:
+            return list(self._defaults)
+
+    def playDefaultProject(self) -> Task:
+        behaviors = [self._installed.resolve(name) for name in self.getDefaultBehaviors()]
+        return self._start([b for b in behaviors if b.name not in self._running.names], "playDefaultProject")
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _start(self, behaviors: Sequence[Behavior], call: str) -> Task:
+        def start() -> None:
+            for behavior in behaviors:
+                self._running.start(behavior)
+
+        return self._runner.execute(start, call)
+
+    def _file(self, path: str) -> Path:
+        try:
+            return self._files.to_read(path)
+        except NoSuchFile:
+            try:  # the folder of a package is known by its manifest
+                return self._files.to_read(f"{path.rstrip('/')}/{MANIFEST}")
+            except NoSuchFile:
+                pass
+            raise

@@ -1,0 +1,1 @@
+"""How a Python class becomes a NAOqi service: the table of methods, types, arguments, errors, clients."""

@@ -1,0 +1,125 @@
+"""NAOqi's methods as the robot publishes them: overloads, names and summaries, from `config/naoqi_api.json`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Mapping, Tuple
+
+from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.base.paths import config_file
+
+FILE = "naoqi_api.json"
+COMMON = "_common_module"
+EXTRACTOR = "_common_extractor"
+
+SIMPLE_TYPES = {
+    "void": "v",
+    "bool": "b",
+    "int": "i",
+    "float": "f",
+    "string": "s",
+    "ALValue": "m",
+    "object": "o",
+    "buffer": "r",
+    # A raw address in the robot's memory; on the wire it would be a number.
+    "pointer": "L",
+    # Structures of single modules: ability, enabled, running; tag to animations.
+    "AutonomousAbilityStatus": "(sbb)",
+    "TagForAnimations": "{s[s]}",
+}
+
+
+@dataclass(frozen=True)
+class Overload:
+    """One way to call a method: parameter types as NAOqi writes them, and their names."""
+
+    types: Tuple[str, ...]
+    names: Tuple[str, ...]
+
+    @property
+    def signature(self) -> str:
+        """The parameters as a libqi signature, for example "(sf)"."""
+        return "(" + "".join(qi_type(t) for t in self.types) + ")"
+
+    def __str__(self) -> str:
+        """The parameters as a person reads them, for example "string name, float intensity"."""
+        return ", ".join(f"{t} {n}" for t, n in zip(self.types, self.names))
+
+
+@dataclass(frozen=True)
+class Method:
+    """One method of a NAOqi module."""
+
+    name: str
+    overloads: Tuple[Overload, ...]
+    returns: str
+    summary: str
+
+    def usage(self) -> str:
+        """All ways to call it, one a line."""
+        return "\n".join(f"{self.returns} {self.name}({overload})" for overload in self.overloads)
+
+
+def qi_type(name: str) -> str:
+    """Libqi's letter code of a type as NAOqi writes it.
+
+    Raises:
+        ConfigError: The type is unknown.
+    """
+    if name in SIMPLE_TYPES:
+        return SIMPLE_TYPES[name]
+    kind, _, inner = name.partition("<")
+    parts = _split(inner[:-1])
+    if kind == "list" and len(parts) == 1:
+        return f"[{qi_type(parts[0])}]"
+    if kind == "map" and len(parts) == 2:
+        return "{" + "".join(map(qi_type, parts)) + "}"
+    if (kind == "tuple" and parts) or (kind == "pair" and len(parts) == 2):
+        return "(" + "".join(map(qi_type, parts)) + ")"
+    raise ConfigError(FILE, f"unknown type {name!r}")
+
+
+@lru_cache(maxsize=1)
+def _tables() -> Mapping[str, Any]:
+    return read_json(config_file(FILE))
+
+
+@lru_cache(maxsize=None)
+def module_methods(module: str) -> Mapping[str, Method]:
+    """Methods of a module by name, those included that it shares with others: "_inherits" names their tables.
+
+    Raises:
+        ConfigError: The module is not in the table.
+    """
+    tables = _tables()
+    if module not in tables:
+        raise ConfigError(FILE, f"no module {module!r}")
+    methods: dict[str, Method] = {}
+    # The common methods are of every module, also of one whose entry does not say so.
+    shared = [COMMON, *(table for table in tables[module].get("_inherits", ()) if table != COMMON)]
+    for table in (*shared, module):
+        for name, entry in tables[table].items():
+            if not name.startswith("_"):
+                methods[name] = _method(name, entry)
+    return methods
+
+
+def _method(name: str, entry: Mapping[str, Any]) -> Method:
+    overloads = tuple(
+        Overload(tuple(types), tuple(n or f"arg{i}" for i, n in enumerate(names)))
+        for types, names in zip(entry["overloads"], entry["params"])
+    )
+    return Method(name, overloads, entry["returns"], entry["summary"])
+
+
+def _split(text: str) -> list[str]:
+    """Split at commas that are not inside angle brackets."""
+    parts, depth, start = [], 0, 0
+    for i, letter in enumerate(text):
+        depth += (letter == "<") - (letter == ">")
+        if letter == "," and depth == 0:
+            parts.append(text[start:i])
+            start = i + 1
+    return [*parts, text[start:]] if text else []

@@ -1,0 +1,58 @@
+"""Checks of arguments from the wire, shared by the services: what is wrong, and what would be right."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from nao_sim_bridge.base.errors import BadValue
+
+
+def number(value: Any, field: str, low: float = -math.inf, high: float = math.inf) -> float:
+    """`value` as a finite number within [low, high]."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise BadValue(field, value, "a finite number")
+    if not low <= value <= high:
+        raise BadValue(field, value, _range(low, high))
+    return float(value)
+
+
+def whole_number(value: Any, field: str, low: int, high: int) -> int:
+    """`value` as a whole number within [low, high]."""
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise BadValue(field, value, f"a whole number, {low} to {high}")
+    return value
+
+
+def text(value: Any, field: str, longest: int) -> str:
+    """`value` as a text of at most `longest` characters."""
+    if not isinstance(value, str):
+        raise BadValue(field, value, "a text")
+    if len(value) > longest:
+        raise BadValue(field, value[:40] + "...", f"{longest} characters at most")
+    return value
+
+
+def numbers(values: Any, field: str, low: float = -math.inf, high: float = math.inf) -> list[float]:
+    """A list of finite numbers within [low, high]."""
+    if not isinstance(values, (list, tuple)):
+        raise BadValue(field, values, "a list of numbers")
+    return [number(v, f"{field}[{i}]", low, high) for i, v in enumerate(values)]
+
+
+def per_item(value: Any, count: int, field: str, low: float = -math.inf, high: float = math.inf) -> list[float]:
+    """One number for all of `count` items, or a list with one for each."""
+    if not isinstance(value, (list, tuple)):
+        return [number(value, field, low, high)] * count
+    listed = numbers(value, field, low, high)
+    if len(listed) == 1:
+        return listed * count
+    if len(listed) != count:
+        raise BadValue(field, value, f"one number or {count}, one for each joint")
+    return listed
+
+
+def _range(low: float, high: float) -> str:
+    if high == math.inf:
+        return f"{low:g} or more"
+    return f"{low:g} to {high:g}"

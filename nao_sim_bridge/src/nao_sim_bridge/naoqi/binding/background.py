@@ -1,0 +1,107 @@
+"""Work that takes its time, such as reading a long file: in threads of its own, so that calls behind it get through."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from typing import Any, Callable
+
+from nao_sim_bridge.base.tasks import Task
+
+Wanted = Callable[[], bool]
+Work = Callable[[Wanted], Any]
+
+
+class Background:
+    """Jobs in threads of their own.
+
+    Args:
+        released: Called when `holds` has become False.
+    """
+
+    def __init__(self, released: Callable[[], None] = lambda: None) -> None:
+        self._released = released
+        self._lock = threading.Lock()
+        self._jobs: deque[Callable[[], None]] = deque()
+        self._working = False
+        self._unfinished = 0
+        self._stops = 0
+
+    def holds(self) -> bool:
+        """Whether time that runs faster than the wall clock should wait, as for a robot the work takes next to none."""
+        return self._unfinished > 0
+
+    def stop(self) -> None:
+        """Nobody wants what has been asked for up to now."""
+        self._stops += 1
+
+    def in_turn(self, work: Work, name: str) -> Task:
+        """Do something after what was asked for before; time that runs fast waits for it.
+
+        Args:
+            work: Called with a function that answers whether anybody still wants the result. When it returns a task,
+                time waits for that as well.
+            name: Name of the task.
+
+        Returns:
+            A task that ends with what `work` returns or raises, or when nobody wants it any more.
+        """
+        with self._lock:
+            self._unfinished += 1
+        task, job = self._job(work, name, self._finished)
+        with self._lock:
+            self._jobs.append(job)
+            if self._working:
+                return task
+            self._working = True
+        threading.Thread(target=self._work, name="sound files", daemon=True).start()
+        return task
+
+    def beside(self, work: Work, name: str) -> Task:
+        """As `in_turn`, beside everything else, and time does not wait: for what may take very long."""
+        task, job = self._job(work, name, lambda: None)
+        threading.Thread(target=job, name=name, daemon=True).start()
+        return task
+
+    def _job(self, work: Work, name: str, finished: Callable[[], None]) -> tuple[Task, Callable[[], None]]:
+        stops, cancelled = self._stops, threading.Event()
+
+        def cancel(asked: Task) -> None:
+            cancelled.set()
+            asked.killed = asked.killed or not asked.finished
+            asked.finish()
+
+        def wanted() -> bool:
+            return self._stops == stops and not cancelled.is_set()
+
+        task = Task(name, 0, ask=cancel)
+
+        def job() -> None:
+            try:
+                result = work(wanted)
+            except Exception as error:
+                # What was stopped half way may well have failed; nobody wants to know.
+                task.finish(error=error if wanted() else None)
+                finished()
+                return
+            task.finish(result)
+            if isinstance(result, Task):
+                result.add_done_callback(lambda _: finished())
+            else:
+                finished()
+
+        return task, job
+
+    def _work(self) -> None:
+        while True:
+            with self._lock:
+                if not self._jobs:
+                    self._working = False
+                    return
+                job = self._jobs.popleft()
+            job()
+
+    def _finished(self) -> None:
+        with self._lock:
+            self._unfinished -= 1
+        self._released()

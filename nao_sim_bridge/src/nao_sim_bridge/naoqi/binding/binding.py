@@ -1,0 +1,273 @@
+"""Turns a plain Python class into a libqi service with NAOqi's exact signatures.
+
+libqi resolves overloads by signature, and a Python method has only one. So for every overload in NAOqi's table the
+published object gets a function of its own, all under the same remote name, and all of them end in the one method of
+the implementation. A module may be implemented by several objects, each with a part of its methods. Wrong arguments
+are refused by libqi itself with the list of candidates, as on the robot.
+"""
+
+from __future__ import annotations
+
+import inspect
+import logging
+import threading
+from functools import partial, wraps
+from typing import Any, Callable, Iterable, Mapping, Sequence
+
+import qi
+
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.naoqi.binding.api import Method, Overload, module_methods, qi_type
+from nao_sim_bridge.naoqi.binding.argument_sizes import check_sizes
+from nao_sim_bridge.naoqi.binding.common import CommonModule
+from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to
+
+log = logging.getLogger("nao_sim.services")
+
+# Every libqi object has these by itself.
+NATIVE = frozenset({"isStatsEnabled", "clearStats", "isTraceEnabled"})
+# Characters of an error text; what is between its ends is left out when somebody sent a book as a name.
+LONGEST_ERROR = 1200
+# The answer where something else was raised than what is raised on purpose.
+DEFECT = "a defect of the simulator, whose log tells more"
+PACKAGE = __name__.partition(".")[0]
+
+
+class Service:
+    """A libqi service of one NAOqi module. It stays on the network when other objects take over its work.
+
+    Attributes:
+        object: What to register under the name of the module.
+
+    Args:
+        module: NAOqi name, a key of the API table.
+        parts: Objects whose methods do the work; those with the names of the table are published. One with an attribute
+            `signals` publishes these libqi signals, by name; it has to keep them in `take_over(former)`.
+        broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
+    """
+
+    def __init__(self, module: str, parts: Sequence[Any], broker: Any) -> None:
+        self._module = module
+        self._broker = broker
+        self._parts = parts
+        self._targets = self._bound_to(parts)
+        body: dict[str, Any] = {}
+        for name, method in module_methods(module).items():
+            if name in self._targets.methods:
+                for position, overload in enumerate(method.overloads):
+                    attribute = name if position == 0 else f"{name}_{position}"
+                    body[attribute] = self._published(method, overload)
+        body["pCall"] = self._published_any("pCall")
+        self.object = type(module, (), body)()
+        for part in parts:
+            for name, signal in getattr(part, "signals", {}).items():
+                setattr(self.object, name, signal)
+
+    def rebind(self, parts: Sequence[Any]) -> Callable[[], None]:
+        """Have other objects of the same kinds do the work from now on.
+
+        Returns:
+            To be called when the former ones do nothing any more: ends calls that wait for something of theirs.
+        """
+        for part in parts:
+            if hasattr(part, "take_over"):
+                part.take_over(next(former for former in self._parts if type(former) is type(part)))
+        former, self._targets, self._parts = self._targets, self._bound_to(parts), parts
+        return former.end
+
+    def _bound_to(self, parts: Sequence[Any]) -> _Targets:
+        table = module_methods(self._module)
+        common = CommonModule(self._module, table, self._broker)
+        for name, method in table.items():
+            target = None if name in NATIVE else _find(name, [*parts, common])
+            if target is not None:
+                common.targets[name] = _checked(self._module, method, target)
+        return _Targets({**common.targets, "pCall": common.pCall})
+
+    def _published(self, method: Method, overload: Overload) -> Callable[..., Any]:
+        name = method.name
+
+        def published(_: Any, *args: Any) -> Any:
+            return self._targets.answer(self._module, name, args)
+
+        published.__doc__ = method.summary
+        published.__name__ = name
+        bind = qi.bind(qi_type(method.returns), None, name)
+        bind(published)
+        published.__qi_signature__ = overload.signature
+        return published
+
+    def _published_any(self, name: str) -> Callable[..., Any]:
+        def published(_: Any, *args: Any) -> Any:
+            return self._targets.answer(self._module, name, args)
+
+        published.__doc__ = inspect.getdoc(getattr(CommonModule, name))
+        return qi.bind(qi.Dynamic, qi.AnyArguments, name)(published)
+
+
+class _Targets:
+    """What answers the calls of a service, and the calls that take simulated time and have not ended."""
+
+    def __init__(self, methods: Mapping[str, Callable[..., Any]]) -> None:
+        self.methods = methods
+        self._waiting: set[Task] = set()
+        self._ended = False
+
+    def answer(self, module: str, method: str, args: Iterable[Any]) -> Any:
+        result = answer(module, method, self.methods[method], args, self._note)
+        if self._ended:  # by the time it was noted
+            self.end()
+        return result
+
+    def end(self) -> None:
+        """End what waits, as if it had been killed."""
+        self._ended = True
+        while self._waiting:
+            task = self._waiting.pop()
+            task.killed = task.killed or not task.finished
+            task.finish()
+
+    def _note(self, task: Task) -> None:
+        self._waiting.add(task)
+        task.add_done_callback(self._waiting.discard)
+
+
+def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
+    """The object to register under the name `module`; see `Service`."""
+    return Service(module, parts, broker).object
+
+
+def typed(
+    module: str, returns: Any, types: Sequence[Any], name: str | None = None
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """For methods of a service that is no NAOqi module: as qi.bind, but arguments of other types are refused.
+
+    Args:
+        module: Name of the service.
+        returns: Type of the answer, as for qi.bind.
+        types: Types of the parameters after `self`, as for qi.bind.
+        name: Of the method on the network; None for that of the function.
+    """
+
+    def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
+        names = list(inspect.signature(method).parameters)[1:]
+        called, letters = name or method.__name__, [str(kind) for kind in types]
+
+        def checked(*args: Any) -> Any:
+            return method(args[0], *fitted_to(names, letters, args[1:], module, called))
+
+        @wraps(method)
+        def published(*args: Any) -> Any:
+            return answer(module, called, checked, args)
+
+        return qi.bind(returns, types, name)(published)
+
+    return decorate
+
+
+def offered(module: str, parts: Sequence[Any]) -> tuple[list[str], list[str]]:
+    """Names of the table's methods that a service of these parts answers, and those it does not."""
+    table = module_methods(module)
+    answers = [n for n in table if n in NATIVE or _find(n, [*parts, CommonModule]) is not None]
+    return answers, [n for n in table if n not in answers]
+
+
+def _find(name: str, parts: Iterable[Any]) -> Callable[..., Any] | None:
+    """The method `name` of the first part that has it."""
+    return next((getattr(part, name) for part in parts if hasattr(part, name)), None)
+
+
+def answer(
+    module: str,
+    method: str,
+    call: Callable[..., Any],
+    args: Iterable[Any],
+    note: Callable[[Task], None] = lambda task: None,
+) -> Any:
+    """What libqi sends back for a call: a value, or a future for what takes simulated time.
+
+    Errors go back as failed futures: raised through libqi they would carry a Python traceback in their text.
+
+    Args:
+        module: Of the method.
+        method: Its name.
+        call: What does the work.
+        args: Of the call.
+        note: Called with each task that the client waits for.
+    """
+    args = tuple(args)
+    try:
+        check_sizes(args)
+        result = call(*args)
+    except Exception as error:
+        return _failed(_text(f"{module}::{method}", error))
+    if isinstance(result, Task):
+        return as_future(result, f"{module}::{method}", note)
+    return result
+
+
+def as_future(task: Task, label: str, note: Callable[[Task], None] = lambda task: None) -> Any:
+    """A libqi future that ends with the task; cancelling it kills the task.
+
+    Args:
+        task: A command of the simulation thread, whose value may be a further task that takes simulated time, or such
+            a task itself.
+        label: "Module::method", for error texts.
+        note: Called with each task that is waited for.
+    """
+    cancelled = threading.Event()
+
+    def cancel(_: Any) -> None:
+        cancelled.set()
+        task.request_kill()
+
+    promise = qi.Promise(cancel)
+    note(task)
+    task.add_done_callback(partial(_settle, promise, cancelled, label, note))
+    return promise.future()
+
+
+def _settle(promise: Any, cancelled: threading.Event, label: str, note: Callable[[Task], None], done: Task) -> None:
+    # Not a closure that names itself: such a cycle would keep the promise until the next garbage collection, and a
+    # promise with a value that is still there when the interpreter ends makes libqi abort the process.
+    if done.error is not None:
+        promise.setError(_text(label, done.error))
+    elif isinstance(done.value, Task):
+        note(done.value)
+        done.value.add_done_callback(partial(_settle, promise, cancelled, label, note))
+    elif done.killed and cancelled.is_set():
+        promise.setCanceled()
+    else:
+        promise.setValue(done.value)
+
+
+def _checked(module: str, method: Method, target: Callable[..., Any]) -> Callable[..., Any]:
+    def checked(*args: Any) -> Any:
+        return target(*fitted(method, args, module))
+
+    return checked
+
+
+def _failed(text: str) -> Any:
+    promise = qi.Promise()
+    promise.setError(text)
+    return promise.future()
+
+
+def _text(label: str, error: Exception) -> str:
+    if _on_purpose(error):
+        return _shortened(f"{label} {error}")
+    log.error("%s failed", label, exc_info=error)
+    # What Python says about its own objects is of no use to a client.
+    return f"{label} {DEFECT}"
+
+
+def _on_purpose(error: Exception) -> bool:
+    """Whether an error is one of ours, of libqi or of the system: its text is written for those who read it."""
+    kind = type(error)
+    return kind.__module__.startswith(PACKAGE) or kind is RuntimeError or isinstance(error, OSError)
+
+
+def _shortened(text: str) -> str:
+    half = LONGEST_ERROR // 2
+    return text if len(text) <= LONGEST_ERROR else f"{text[:half]} ... {text[-half:]}"

@@ -1,0 +1,59 @@
+"""Which parameter of which method takes which kind of number: `config/limits.json`."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Sequence
+
+from nao_sim_bridge.base.limits import OTHER, Kind, check, declared, kind, kinds
+
+
+class Row(NamedTuple):
+    """A line of the table of bounds.
+
+    Attributes:
+        kind: Name of the kind.
+        lowest: The least a number of it may be.
+        highest: The most.
+        unit: Of both.
+        smallest: How near to 0 it may be when it is not 0; 0 where that does not matter.
+        where: Names of NAOqi's parameters, "Module.method parameter" where one has another kind than its name says,
+            "field NAME" of ROS services of the simulator, "world NAME" of keys of world files.
+    """
+
+    kind: str
+    lowest: float
+    highest: float
+    unit: str
+    smallest: float
+    where: tuple[str, ...]
+
+
+def kind_of(module: str, method: str, parameter: str) -> Kind:
+    """The kind of number that a parameter takes."""
+    own = declared()["methods"].get(f"{module}.{method}", {})
+    return kind(own.get(parameter) or declared()["parameters"].get(parameter, OTHER))
+
+
+def check_arguments(module: str, method: str, names: Sequence[str], values: Sequence[Any]) -> None:
+    """Look at every number in the arguments of a call.
+
+    Raises:
+        BadValue: One of them is out of the bounds of its kind.
+    """
+    for name, value in zip(names, values):
+        if not isinstance(value, (str, bool)):
+            check(value, name, kind_of(module, method, name))
+
+
+def table() -> list[Row]:
+    """All kinds with their bounds and what is of them, in the order of the file."""
+    where: dict[str, list[str]] = {name: [] for name in kinds()}
+    for parameter, name in declared()["parameters"].items():
+        where[name].append(parameter)
+    for method, own in declared()["methods"].items():
+        for parameter, name in own.items():
+            where[name].append(f"{method} {parameter}")
+    for section, word in (("fields", "field"), ("world", "world")):
+        for key, name in declared()[section].items():
+            where[name].append(f"{word} {key}")
+    return [Row(k.name, k.lowest, k.highest, k.unit, k.smallest, tuple(where[k.name])) for k in kinds().values()]

@@ -1,0 +1,1 @@
+"""NAOqi's modules of the body: LEDs, DCM, sensors, battery, posture, touch, sonar."""

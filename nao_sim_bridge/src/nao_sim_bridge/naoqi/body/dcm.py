@@ -1,0 +1,119 @@
+"""DCM of the simulated robot: timed commands straight to joints, stiffnesses and LEDs. Only NAOqi methods live here."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, Sequence
+
+from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.sizes import require_few
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.timed_commands import MERGE
+from nao_sim_bridge.core.device_commands import DeviceCommands, index_of
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import numbers
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.body.dcm_arguments import alias_command, command, members
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+
+NAME = "DCM"
+SAVE, ADD, LOAD, REMOVE = ACTIONS = ("Save", "Add", "Load", "Remove")
+DONE = 0
+
+
+class DCM:
+    """DCM as the simulated robot offers it.
+
+    Commands go past ALMotion: a task of it that moves one of the joints ends.
+
+    Args:
+        simulation: Whose actuators these are; touched in the simulation thread only.
+        runner: That thread.
+        memory: Where preferences are.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._prefix = read_json(config_file("naoqi_memory_keys.json"))["_meta"]["prefix"]
+        self._commands = DeviceCommands(lambda: simulation.robot, self._milliseconds)
+        self._aliases: dict[str, Sequence[str]] = {}
+        self._memory = memory
+        self._saved: dict[tuple[str, str], Any] = {}
+        self._lock = threading.Lock()
+
+    def getTime(self, offset: int) -> int:
+        return round(1000.0 * self._runner.snapshot.time) + offset
+
+    def getPrefix(self) -> str:
+        return self._prefix
+
+    def createAlias(self, alias: Any) -> list:
+        if not isinstance(alias, (list, tuple)) or len(alias) != 2 or not isinstance(alias[1], (list, tuple)):
+            raise BadValue("alias", alias, "[name, [devices]]")
+        name, devices = str(alias[0]), [self._device(str(device)) for device in alias[1]]
+        if not name or not devices:
+            raise BadValue("alias", alias, "[name, [devices]], with at least one device")
+        require_few("alias[1]", len(devices), "devices")
+        with self._lock:
+            require_few("alias", len({*self._aliases, name}), "aliases")
+            self._aliases[name] = devices
+        return [name, devices]
+
+    def set(self, commands: Any) -> Task:
+        name, update, points = command(commands)
+        devices = self._aliases.get(name) or [self._device(name)]
+        return self._run(dict.fromkeys(devices, points), update)
+
+    def setAlias(self, *arguments: Any) -> Task:
+        if len(arguments) == 1:
+            return self._run(*alias_command(arguments[0], self._aliases))
+        alias, moment, values = arguments
+        devices = members(alias, self._aliases)
+        wanted = numbers(values, "commands")
+        if len(wanted) != len(devices):
+            raise BadValue("commands", values, f"a value for each of {len(devices)} devices")
+        return self._run({device: [(value, moment)] for device, value in zip(devices, wanted)}, MERGE)
+
+    def preferences(self, action: str, target: str, key: str, value: Any) -> int:
+        """Preferences are keys of ALMemory: those of a board are saved there, and can be brought back from it."""
+        if action not in ACTIONS:
+            raise BadValue("action", action, ", ".join(ACTIONS))
+        if not key:
+            raise BadValue("keyName", key, "the name of a key of ALMemory")
+        with self._lock:
+            if action in (LOAD, REMOVE) and (target, key) not in self._saved:
+                raise BadValue("keyName", key, f"one that was saved for {target!r}")
+            if action == REMOVE:
+                del self._saved[target, key]
+                self._memory.release(key, (NAME, target))
+                return DONE
+            new = self._saved[target, key] if action == LOAD else value
+            self._memory.insert(key, new, by_client=True)
+            if action == SAVE:
+                self._memory.hold(key, (NAME, target), target, new)
+                self._saved[target, key] = new
+        return DONE
+
+    def calibration(self, _values: Any) -> None:
+        raise NaoqiError("the joints of a simulated robot are exact: there is nothing to calibrate")
+
+    def special(self, what: str) -> None:
+        raise NaoqiError(f"special command {what!r}: a simulated robot has no boards to be restarted or flashed")
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _run(self, commands: dict, update: str) -> Task:
+        return self._runner.execute(lambda: self._commands.set(commands, update), "set")
+
+    def _device(self, name: str) -> str:
+        """A device without the prefix; there is none of another name."""
+        short = name[len(self._prefix) :] if name.startswith(self._prefix) else name
+        index_of(self._simulation.robot, short)
+        return short
+
+    def _milliseconds(self) -> int:
+        return round(1000.0 * self._simulation.time)

@@ -1,0 +1,103 @@
+"""ALRobotPosture of the simulated robot. Only NAOqi methods live here."""
+
+from __future__ import annotations
+
+from typing import Callable
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.control.balance.posture_recognition import FAMILIES, Recognition, recognise
+from nao_sim_bridge.core.posture_change import PostureChange
+from nao_sim_bridge.core.posture_moves import load_moves
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.model.postures import load_postures
+from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.motion.wake import AWAKE
+
+DEFAULT_TRIES = 3
+
+
+class ALRobotPosture:
+    """ALRobotPosture as the simulated robot offers it.
+
+    Args:
+        simulation: Whose joints these are; touched in the simulation thread only.
+        runner: That thread.
+        memory: Where it says that the robot is awake.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._memory = memory
+        self._tries = DEFAULT_TRIES
+        # The change that runs, touched in the simulation thread only.
+        self._change: Task | None = None
+
+    def goToPosture(self, name: str, speed: float) -> Task:
+        change = self._checked(name, speed)
+
+        def start() -> Task:
+            # It stiffens all joints, which is what being awake means.
+            if not self._memory.get(AWAKE):
+                self._memory.raise_event(AWAKE, True)
+            self._change = change().start("goToPosture")
+            return self._change
+
+        return self._runner.execute(start, "goToPosture")
+
+    def applyPosture(self, name: str, speed: float) -> Task:
+        change = self._checked(name, speed)
+
+        def start() -> Task:
+            self._change = change().start_straight("applyPosture")
+            return self._change
+
+        return self._runner.execute(start, "applyPosture")
+
+    def stopMove(self) -> Task:
+        def stop() -> None:
+            if self._change is not None:
+                self._change.kill()
+
+        return self._runner.execute(stop, "stopMove")
+
+    def setMaxTryNumber(self, tries: int) -> None:
+        if tries < 1:
+            raise BadValue("pMaxTryNumber", tries, "1 or more")
+        self._tries = tries
+
+    def getPosture(self) -> str:
+        return self._recognise().posture
+
+    def getPostureFamily(self) -> str:
+        return self._recognise().family
+
+    def getPostureList(self) -> list[str]:
+        return sorted(load_postures().by_name)
+
+    def getPostureFamilyList(self) -> list[str]:
+        return list(FAMILIES)
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _recognise(self) -> Recognition:
+        return recognise(self._simulation.model, self._runner.snapshot)
+
+    def _checked(self, name: str, speed: float) -> Callable[[], PostureChange]:
+        """Makes the change of posture, once called in the simulation thread: a reset makes a new robot.
+
+        Raises:
+            BadValue: There is no such posture, or the speed is not above 0 to 1.
+        """
+        if name not in load_postures().by_name:
+            raise BadValue("postureName", name, f"one of {', '.join(self.getPostureList())}")
+        fraction = number(speed, "maxSpeedFraction", 0.0, 1.0)
+        if fraction == 0.0:
+            raise BadValue("maxSpeedFraction", speed, "above 0 to 1")
+        tries, moves = self._tries, load_moves()
+        return lambda: PostureChange(
+            self._simulation.robot, lambda: self._simulation.snapshot, name, fraction, tries, moves
+        )

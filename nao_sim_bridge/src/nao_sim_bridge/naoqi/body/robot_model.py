@@ -1,0 +1,42 @@
+"""ALRobotModel of the simulated robot: what it is made of, as XML."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+from nao_sim_bridge.naoqi.memory.live_keys import constants
+
+NAME = "ALRobotModel"
+PREFERENCES = "RobotConfig/"
+
+
+class ALRobotModel:
+    """ALRobotModel as the simulated robot offers it.
+
+    Args:
+        version: Of the robot, V5 or V6.
+    """
+
+    def __init__(self, version: str) -> None:
+        self._version = version
+
+    def getConfig(self) -> str:
+        """Preferences as NAOqi's XML has them: nested by name, each leaf with the key in ALMemory and its value."""
+        root = ElementTree.Element("ModulePreference", name="ALRobotModel", domain="com.aldebaran", version="1.0")
+        nodes = {"": root}
+        for key, value in sorted(constants(self._version).items()):
+            if key.startswith(PREFERENCES):
+                *groups, name = key.split("/")
+                parent = _group(nodes, groups)
+                ElementTree.SubElement(parent, "Preference", name=name, memoryName=key, value=str(value), type="string")
+        return '<?xml version="1.0" encoding="UTF-8" ?>\n' + ElementTree.tostring(root, encoding="unicode")
+
+
+def _group(nodes: dict[str, ElementTree.Element], groups: list[str]) -> ElementTree.Element:
+    """The element of nested groups, made where it is not there yet."""
+    path = ""
+    for group in groups:
+        parent, path = nodes[path], f"{path}/{group}"
+        if path not in nodes:
+            nodes[path] = ElementTree.SubElement(parent, "Preference", name=group, type="array")
+    return nodes[path]

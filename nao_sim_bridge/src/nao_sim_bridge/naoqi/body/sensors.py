@@ -1,0 +1,65 @@
+"""ALSensors of the simulated robot: the event about stiffness, and the methods of an extractor."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.memory.extractor import Extractor
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+
+NAME, EVENT = "ALSensors", "BodyStiffnessChanged"
+LIMP, BETWEEN, STIFF = 0, 1, 2
+LIMP_BELOW, STIFF_ABOVE = 0.05, 0.95
+"""Mean stiffness of the body."""
+
+
+class StiffnessEvents:
+    """Raises `BodyStiffnessChanged`; called after every tick, in the simulation thread.
+
+    Args:
+        memory: Where events go.
+    """
+
+    def __init__(self, memory: MemoryStore) -> None:
+        self._memory = memory
+        self._stiffnesses: Any = None
+        self._level: int | None = None
+
+    def __call__(self, snapshot: Snapshot) -> None:
+        """Look at the robot."""
+        if snapshot.stiffnesses is not self._stiffnesses:
+            self._stiffnesses = snapshot.stiffnesses
+            self.look(snapshot)
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Tell the level of stiffness when it has changed."""
+        mean = sum(snapshot.stiffnesses) / len(snapshot.stiffnesses)
+        level = LIMP if mean < LIMP_BELOW else STIFF if mean > STIFF_ABOVE else BETWEEN
+        if level != self._level:
+            self._level = level
+            self._memory.raise_event(EVENT, level)
+
+
+class ALSensors:
+    """ALSensors as the simulated robot offers it. Only NAOqi methods live here.
+
+    Args:
+        events: What it raises.
+        runner: Whose robot it looks at.
+    """
+
+    def __init__(self, events: StiffnessEvents, runner: SimulationRunner) -> None:
+        self._events = events
+        self._runner = runner
+
+    def run(self) -> Any:
+        # One round of what goes on at every tick anyway.
+        return self._runner.execute(lambda: self._events.look(self._runner.snapshot), "run")
+
+
+def parts(events: StiffnessEvents, runner: SimulationRunner, memory: MemoryStore) -> list[Any]:
+    """The objects that together have the methods of ALSensors; its event is raised without subscribers, too."""
+    nothing = lambda: None  # noqa: E731
+    return [ALSensors(events, runner), Extractor(NAME, memory, nothing, nothing, [EVENT])]

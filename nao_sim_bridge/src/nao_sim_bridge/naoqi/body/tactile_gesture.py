@@ -1,0 +1,119 @@
+"""ALTactileGesture of the simulated robot: gestures on the head."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, Sequence
+
+import qi
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.body.touch_gestures import FREE, LONGEST_TIME, GestureBook, GestureRecogniser, Times
+from nao_sim_bridge.model.touch_names import HEAD
+from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+
+NAME = "ALTactileGesture"
+GESTURE, RELEASE = f"{NAME}/Gesture", f"{NAME}/Release"
+
+
+class TactileGestures:
+    """Raises the events about gestures; called after every tick, in the simulation thread.
+
+    Attributes:
+        book: Gestures that are known.
+        times: How long touches may take.
+        on_gesture: Signal with the name of each gesture.
+        on_release: Signal without a value.
+
+    Args:
+        memory: Where events go.
+    """
+
+    def __init__(self, memory: MemoryStore) -> None:
+        self.book = GestureBook()
+        self.times = Times()
+        self.on_gesture, self.on_release = qi.Signal("(s)"), qi.Signal("()")
+        self._recogniser = GestureRecogniser(self.book, self.times)
+        self._memory = memory
+        for event in (GESTURE, RELEASE):
+            memory.declare_event(event, NAME)
+
+    def __call__(self, snapshot: Snapshot) -> None:
+        """Look at the head."""
+        touched = snapshot.touched
+        pattern = "".join("1" if sensor in touched else "0" for sensor in HEAD) if touched else FREE
+        seen = self._recogniser.feed(pattern, snapshot.time)
+        if seen.gesture:
+            self._memory.raise_event(GESTURE, seen.gesture)
+            self.on_gesture(seen.gesture)
+        if seen.released:
+            self._memory.raise_event(RELEASE, 1)
+            self.on_release()
+
+
+class ALTactileGesture:
+    """ALTactileGesture as the simulated robot offers it. Only NAOqi methods live here, and its signals.
+
+    Args:
+        gestures: What looks at the head.
+    """
+
+    def __init__(self, gestures: TactileGestures) -> None:
+        self._gestures = gestures
+        self._lock = threading.Lock()  # methods come in several threads
+
+    @property
+    def signals(self) -> dict[str, Any]:
+        """Signals of the service by name."""
+        return {"onGesture": self._gestures.on_gesture, "onRelease": self._gestures.on_release}
+
+    def take_over(self, former: ALTactileGesture) -> None:
+        """Go on with the signals that clients are connected to."""
+        gestures = former._gestures
+        self._gestures.on_gesture, self._gestures.on_release = gestures.on_gesture, gestures.on_release
+        gestures.on_gesture = gestures.on_release = lambda *_: None
+
+    def createGesture(self, sequence: Any) -> str:
+        with self._lock:
+            return self._gestures.book.add(_patterns(sequence))
+
+    def getGesture(self, sequence: Any) -> str | None:
+        return self._gestures.book.name_of(_patterns(sequence))
+
+    def getGestures(self) -> dict[str, list[str]]:
+        with self._lock:
+            return self._gestures.book.all()
+
+    def getSequence(self, name: str) -> list[str]:
+        with self._lock:
+            sequence = self._gestures.book.sequence_of(name)
+        return [] if sequence is None else sequence
+
+    def setHoldTime(self, seconds: Any) -> bool:
+        self._gestures.times.hold = _time(seconds, "hold time")
+        return True
+
+    def setSequenceTime(self, seconds: Any) -> bool:
+        self._gestures.times.sequence = _time(seconds, "sequence time")
+        return True
+
+    def setSettleTime(self, seconds: Any) -> bool:
+        self._gestures.times.settle = _time(seconds, "settle time")
+        return True
+
+
+def _patterns(sequence: str | Sequence[str]) -> list[str]:
+    """A list of patterns, which NAOqi also takes as a text with commas."""
+    return [word.strip() for word in sequence.split(",")] if isinstance(sequence, str) else list(sequence)
+
+
+def _time(value: Any, field: str) -> float:
+    """A time in s, which NAOqi also takes as a text."""
+    if isinstance(value, str):
+        try:
+            value = float(value)
+        except ValueError:
+            raise BadValue(field, value[:40], "a number of seconds") from None
+    return number(value, field, 0.0, LONGEST_TIME)

@@ -1,0 +1,1 @@
+"""ALVideoDevice, ALPhotoCapture and ALVideoRecorder."""

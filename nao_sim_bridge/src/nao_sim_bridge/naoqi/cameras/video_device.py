@@ -1,0 +1,228 @@
+"""ALVideoDevice: subscribers and their pictures. Only NAOqi methods live here; `parts` has those of the other files."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Sequence
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.cameras.cameras import Cameras
+from nao_sim_bridge.cameras.frame import Frame
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.cameras.video_device_angles import VideoDeviceAngles
+from nao_sim_bridge.naoqi.cameras.video_device_cameras import VideoDeviceCameras
+from nao_sim_bridge.naoqi.cameras.video_device_inputs import VideoDeviceInputs
+from nao_sim_bridge.naoqi.cameras.video_device_old import VideoDeviceOld
+from nao_sim_bridge.naoqi.cameras.video_device_recordings import RawRecordings
+from nao_sim_bridge.naoqi.cameras.video_device_settings import VideoDeviceSettings
+from nao_sim_bridge.naoqi.cameras.video_device_states import CameraStates
+from nao_sim_bridge.naoqi.cameras.video_device_subscribers import Subscriber, VideoSubscribers, View
+
+NAME = "ALVideoDevice"
+NATIVE = 9
+"""NAOqi's id of what the cameras themselves give: YUV422."""
+LOCAL = "addresses are for modules inside the robot's own process; use {}"
+
+
+class VideoDevice:
+    """ALVideoDevice of one robot.
+
+    Attributes:
+        subscribers: Who looks.
+
+    Args:
+        cameras: Of the robot.
+        files: Where clients may have files written to.
+    """
+
+    def __init__(self, cameras: Cameras, files: ClientFiles) -> None:
+        self.subscribers = VideoSubscribers(cameras)
+        self._states = CameraStates(cameras, self.subscribers.fail)
+        self._recordings = RawRecordings(cameras, files)
+        self._cameras = cameras
+
+    def parts(self) -> list[Any]:
+        """The objects that together have its methods."""
+        settings = VideoDeviceSettings(self._cameras, self.subscribers, self._states)
+        cameras = VideoDeviceCameras(self._cameras, self.subscribers, self._states)
+        angles = VideoDeviceAngles(self._cameras)
+        return [
+            ALVideoDevice(self._cameras, self.subscribers, self._states, self._recordings),
+            settings,
+            cameras,
+            angles,
+            VideoDeviceInputs(self._cameras),
+            VideoDeviceOld(self._cameras, self.subscribers, settings, cameras, angles),
+        ]
+
+    def closing(self) -> list[Callable[[], None]]:
+        """Steps that end recordings and all subscriptions."""
+        return [self._recordings.close, self.subscribers.close]
+
+
+class ALVideoDevice:
+    """Subscriptions and pictures.
+
+    Args:
+        cameras: Of the robot.
+        subscribers: Who looks.
+        states: Which cameras run.
+        recordings: Pictures that go to files.
+    """
+
+    def __init__(
+        self, cameras: Cameras, subscribers: VideoSubscribers, states: CameraStates, recordings: RawRecordings
+    ) -> None:
+        self._cameras = cameras
+        self._subscribers = subscribers
+        self._states = states
+        self._recordings = recordings
+
+    # --- subscriptions --------------------------------------------------------------------------------------------
+
+    def subscribe(self, name: str, resolution: int, color_space: int, fps: int) -> str:
+        return self.subscribeCamera(name, self._cameras.active, resolution, color_space, fps)
+
+    def subscribeCamera(self, name: str, camera: int, resolution: int, color_space: int, fps: int) -> str:
+        return self._subscribe(name, [View(camera, resolution, color_space)], fps, False)
+
+    def subscribeCameras(self, name: str, cameras: Any, resolutions: Any, color_spaces: Any, fps: int) -> str:
+        indexes = whole_numbers(cameras, "cameraIndexes")
+        sizes = whole_numbers(resolutions, "resolutions", len(indexes))
+        spaces = whole_numbers(color_spaces, "colorSpaces", len(indexes))
+        return self._subscribe(name, list(map(View, indexes, sizes, spaces)), fps, True)
+
+    def unsubscribe(self, handle: str) -> bool:
+        self._subscribers.remove(handle)
+        return True
+
+    def unsubscribeAllInstances(self, name: str) -> None:
+        self._subscribers.remove_all(name)
+
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left."""
+        self._subscribers.remove_all(module)
+
+    def onClientDisconnected(self, _event: str, contents: Any, _message: str) -> None:
+        self._subscribers.remove_all(str(contents))
+
+    def getSubscribers(self) -> list:
+        return self._subscribers.handles()
+
+    # --- pictures -------------------------------------------------------------------------------------------------
+
+    def getImageRemote(self, handle: str) -> Task:
+        return self._images(handle, "getImageRemote", _first)
+
+    def getImagesRemote(self, handle: str) -> Task:
+        return self._images(handle, "getImagesRemote", _all)
+
+    def getDirectRawImageRemote(self, handle: str) -> Task:
+        self._check_native(handle)
+        return self._images(handle, "getDirectRawImageRemote", _first)
+
+    def getDirectRawImagesRemote(self, handle: str) -> Task:
+        self._check_native(handle)
+        return self._images(handle, "getDirectRawImagesRemote", _all)
+
+    def releaseImage(self, handle: str) -> bool:
+        self._subscribers.get(handle)
+        return True
+
+    def releaseImages(self, handle: str) -> list:
+        return [True for _ in self._subscribers.get(handle).views]
+
+    def releaseDirectRawImage(self, handle: str) -> bool:
+        return self.releaseImage(handle)
+
+    def releaseDirectRawImages(self, handle: str) -> list:
+        return self.releaseImages(handle)
+
+    def getImageLocal(self, _handle: str) -> int:
+        raise NaoqiError(LOCAL.format("getImageRemote"))
+
+    def getImagesLocal(self, _handle: str) -> int:
+        raise NaoqiError(LOCAL.format("getImagesRemote"))
+
+    def getDirectRawImageLocal(self, _handle: str) -> int:
+        raise NaoqiError(LOCAL.format("getDirectRawImageRemote"))
+
+    def getDirectRawImagesLocal(self, _handle: str) -> int:
+        raise NaoqiError(LOCAL.format("getDirectRawImagesRemote"))
+
+    # --- files ----------------------------------------------------------------------------------------------------
+
+    def recordVideo(self, handle: str, path: str, total: int, period: int) -> bool:
+        self._recordings.start(self._subscribers.get(handle), path, total, period)
+        return True
+
+    def stopVideo(self, handle: str) -> Task:
+        return self._recordings.stop(handle)
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _subscribe(self, name: str, views: Sequence[View], fps: int, several: bool) -> str:
+        handle = self._subscribers.add(name, views, fps, several)
+        for view in views:
+            self._states.use(view.camera)
+        return handle
+
+    def _images(self, handle: str, call: str, answer: Callable[[list[Frame]], Any]) -> Task:
+        subscriber = self._subscribers.get(handle)
+        if subscriber.several and answer is _first:
+            raise NaoqiError(f"{handle!r} looks through several cameras; use {call.replace('Image', 'Images')}")
+        for view in subscriber.views:
+            self._states.check(view.camera)
+        return self._subscribers.ask(handle, call, answer)
+
+    def _check_native(self, handle: str) -> Subscriber:
+        subscriber = self._subscribers.get(handle)
+        wrong = [view.color_space for view in subscriber.views if view.color_space != NATIVE]
+        if wrong:
+            raise NaoqiError(
+                f"{handle!r} asked for colour space {wrong[0]}, raw images are those of {NATIVE} (YUV422) only;"
+                " subscribe with that one, or use getImageRemote"
+            )
+        return subscriber
+
+
+def container(frame: Frame) -> tuple:
+    """A frame as NAOqi hands it over."""
+    seconds, microseconds = frame.stamp
+    left, top = frame.hfov / 2.0, frame.vfov / 2.0
+    return (
+        frame.width,
+        frame.height,
+        frame.layers,
+        frame.color_space,
+        seconds,
+        microseconds,
+        frame.data,
+        frame.camera,
+        left,
+        top,
+        -left,
+        -top,
+    )
+
+
+def _first(frames: list[Frame]) -> tuple:
+    return container(frames[0])
+
+
+def _all(frames: list[Frame]) -> list[tuple]:
+    return list(map(container, frames))
+
+
+def whole_numbers(values: Any, field: str, count: int | None = None) -> list[int]:
+    """A list of whole numbers, `count` of them if that is given.
+
+    Raises:
+        BadValue: It is something else.
+    """
+    right = isinstance(values, (list, tuple)) and all(isinstance(v, int) and not isinstance(v, bool) for v in values)
+    if not right or (count is not None and len(values) != count):
+        allowed = "a list of whole numbers" if count is None else f"a list of {count} whole numbers, one a camera"
+        raise BadValue(field, values, allowed)
+    return list(values)

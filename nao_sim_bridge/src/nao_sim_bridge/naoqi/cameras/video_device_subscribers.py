@@ -1,0 +1,285 @@
+"""The subscribers of ALVideoDevice, by the handles that they were given.
+
+libqi does not say whose call it is, nor when a client has gone that is no module itself. So a handle that nobody has
+used for a minute is taken from the cameras, and its place is free for others of the same name; should its client be
+alive after all, its next call finds everything as it was.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from dataclasses import dataclass, field
+from typing import Any, Callable, Sequence, Tuple
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.cameras.cameras import Cameras, CameraStream
+from nao_sim_bridge.cameras.frame import Frame
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.cameras.video_device_waiting import WaitingCall
+
+log = logging.getLogger("nao_sim.cameras")
+
+IDLE = load_sizes().clients.camera_idle_s
+"""A handle that has not been used for longer, s of wall time, is that of a client which has gone."""
+SOON_IDLE = 5.0
+"""The same where a new subscriber has no place otherwise."""
+REMEMBERED = load_sizes().clients.cameras_remembered
+"""Handles of clients that seem to have gone, and that are found again when they are used."""
+MOST = load_sizes().clients.cameras
+"""Subscribers at the same time."""
+
+
+@dataclass(frozen=True)
+class View:
+    """What a subscriber sees of one camera: NAOqi's numbers."""
+
+    camera: int
+    resolution: int
+    color_space: int
+
+
+@dataclass(eq=False)
+class Subscriber:
+    """One subscription.
+
+    Attributes:
+        name: What the client called itself.
+        handle: What it got.
+        views: What it sees; several if it asked for several cameras.
+        fps: Frames a second that it asked for.
+        several: Whether it asked for several cameras, if only for one of them.
+        streams: Its looks through the cameras, in the order of the views.
+        waiting: Calls that wait for a frame.
+        used: When it was used last, s of wall time.
+    """
+
+    name: str
+    handle: str
+    views: Tuple[View, ...]
+    fps: int
+    several: bool
+    streams: Tuple[CameraStream, ...] = ()
+    waiting: set = field(default_factory=set)
+    used: float = 0.0
+
+
+class VideoSubscribers:
+    """Who looks, and the pictures for them. Any thread.
+
+    Args:
+        cameras: Of the robot.
+        clock: Wall time, s.
+    """
+
+    def __init__(self, cameras: Cameras, clock: Callable[[], float] = time.monotonic) -> None:
+        self._cameras = cameras
+        self._clock = clock
+        self._lock = threading.RLock()
+        self._known: dict[str, Subscriber] = {}
+        self._gone: dict[str, Subscriber] = {}
+
+    # --- who looks ------------------------------------------------------------------------------------------------
+
+    def add(self, name: str, views: Sequence[View], fps: int, several: bool) -> str:
+        """Let somebody look; returns the handle.
+
+        Raises:
+            BadValue: The cameras cannot do that, or too many look already.
+        """
+        if not name:
+            raise BadValue("name", name, "a name, not empty")
+        _check_fps(fps, self._cameras)
+        if len({view.camera for view in views}) < len(views) or not views:
+            raise BadValue("cameraIndexes", [view.camera for view in views], "different cameras, one or more")
+        with self._lock:
+            self.clean_up()
+            handle = self._free_handle(name)
+            subscriber = Subscriber(name, handle, tuple(views), fps, several)
+            self._open(subscriber)
+        return handle
+
+    def remove(self, handle: str) -> None:
+        """Let somebody look no more.
+
+        Raises:
+            NaoqiError: There is no such handle.
+        """
+        with self._lock:
+            if self._gone.pop(handle, None) is None:
+                _close(self._known.pop(self._find(handle).handle))
+
+    def remove_all(self, name: str) -> int:
+        """The same for all who have called themselves `name`; returns how many there were."""
+        with self._lock:
+            for handle in [handle for handle, gone in self._gone.items() if gone.name == name]:
+                del self._gone[handle]
+            of_name = [subscriber for subscriber in self._known.values() if subscriber.name == name]
+            for subscriber in of_name:
+                _close(self._known.pop(subscriber.handle))
+            return len(of_name)
+
+    def get(self, handle: str) -> Subscriber:
+        """The subscriber with a handle; it counts as used.
+
+        Raises:
+            NaoqiError: There is no such handle.
+        """
+        with self._lock:
+            self.clean_up()
+            back = self._gone.pop(handle, None)
+            if back is not None:
+                log.info("camera subscriber %r is back", handle)
+                self._open(back)
+            found = self._find(handle)
+            found.used = self._clock()
+            return found
+
+    def handles(self) -> list[str]:
+        """All handles."""
+        with self._lock:
+            self.clean_up()
+            return list(self._known)
+
+    def of_camera(self, camera: int) -> list[CameraStream]:
+        """The looks through one camera."""
+        with self._lock:
+            self.clean_up()
+            return [s for subscriber in self._known.values() for s in subscriber.streams if s.camera == camera]
+
+    def change(self, handle: str, views: Sequence[View] | None = None, fps: int | None = None) -> None:
+        """Change what somebody sees; with other cameras as many as before.
+
+        Raises:
+            NaoqiError: There is no such handle.
+            BadValue: The cameras cannot do that.
+        """
+        with self._lock:
+            subscriber = self.get(handle)
+            wanted = tuple(views if views is not None else subscriber.views)
+            rate = subscriber.fps if fps is None else fps
+            _check_fps(rate, self._cameras)
+            tables = self._cameras.tables
+            for view in wanted:
+                tables.check_rate(tables.camera(view.camera), tables.resolution(view.resolution), rate)
+                tables.color_space(view.color_space)
+            for stream, view in zip(subscriber.streams, wanted):
+                if (stream.camera, stream.resolution) != (view.camera, view.resolution):
+                    # A size that one camera has and the other has not is never asked of the wrong one.
+                    stream.look(view.camera, view.resolution)
+                stream.color_space = view.color_space
+                if stream.fps != rate:
+                    stream.fps = rate
+            subscriber.views, subscriber.fps = wanted, rate
+
+    def clean_up(self) -> None:
+        """Take those from the cameras who have not been heard of for long."""
+        with self._lock:
+            for subscriber in self._idle_for(IDLE):
+                self._let_go(subscriber)
+
+    def close(self) -> None:
+        """End of everything."""
+        with self._lock:
+            for subscriber in self._known.values():
+                _close(subscriber)
+            self._known.clear()
+            self._gone.clear()
+
+    # --- pictures -------------------------------------------------------------------------------------------------
+
+    def ask(self, handle: str, call: str, change: Callable[[list[Frame]], Any]) -> Task:
+        """The next frame of each camera of a subscriber.
+
+        Args:
+            handle: Of the subscriber.
+            call: Name of the call, for the task.
+            change: Makes what the task ends with.
+
+        Raises:
+            NaoqiError: There is no such handle.
+        """
+        with self._lock:
+            subscriber = self.get(handle)
+            waiting = WaitingCall(call, len(subscriber.streams), change, lambda: self._answered(subscriber, waiting))
+            subscriber.waiting.add(waiting)
+        return waiting.begin(subscriber.streams)
+
+    def fail(self, camera: int, reason: str) -> None:
+        """Calls that wait for a frame of a camera end with an error: there will be none."""
+        with self._lock:
+            waiting = [w for s in self._known.values() for w in s.waiting if camera in [v.camera for v in s.views]]
+        for each in waiting:
+            each.fail(NaoqiError(reason))
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _open(self, subscriber: Subscriber) -> None:
+        opened: list[CameraStream] = []
+        try:
+            for view in subscriber.views:
+                look = (view.camera, view.resolution, view.color_space, subscriber.fps)
+                opened.append(self._cameras.open(subscriber.handle, *look))
+        except Exception:
+            for stream in opened:
+                stream.close()
+            raise
+        subscriber.streams = tuple(opened)
+        subscriber.used = self._clock()
+        self._known[subscriber.handle] = subscriber
+
+    def _free_handle(self, name: str) -> str:
+        most = self._cameras.tables.same_name
+        candidates = [f"{name}_{index}" for index in range(most)]
+        free = [handle for handle in candidates if handle not in self._known]
+        if free:
+            # One whose last client has not gone silently, if there is any.
+            handle = next((handle for handle in free if handle not in self._gone), free[0])
+        else:
+            idle = [s for s in self._idle_for(SOON_IDLE) if s.handle in candidates]
+            if not idle:
+                raise BadValue("name", name, f"another one: {most} subscribers have this one; unsubscribe one of them")
+            oldest = min(idle, key=lambda subscriber: subscriber.used)
+            self._let_go(oldest)
+            handle = oldest.handle
+        self._gone.pop(handle, None)
+        if len(self._known) >= MOST:
+            raise BadValue("subscribers", len(self._known) + 1, f"at most {MOST}; unsubscribe some of them")
+        return handle
+
+    def _idle_for(self, seconds: float) -> list[Subscriber]:
+        now = self._clock()
+        return [s for s in self._known.values() if not s.waiting and now - s.used > seconds]
+
+    def _let_go(self, subscriber: Subscriber) -> None:
+        log.info("camera subscriber %r has not been heard of for long and is taken off", subscriber.handle)
+        del self._known[subscriber.handle]
+        _close(subscriber)
+        self._gone[subscriber.handle] = subscriber
+        while len(self._gone) > REMEMBERED:
+            del self._gone[next(iter(self._gone))]
+
+    def _find(self, handle: str) -> Subscriber:
+        if handle not in self._known:
+            known = ", ".join(map(repr, self._known)) or "nobody"
+            raise NaoqiError(f"{handle!r} is not subscribed; subscribed is {known}")
+        return self._known[handle]
+
+    def _answered(self, subscriber: Subscriber, waiting: WaitingCall) -> None:
+        with self._lock:
+            subscriber.waiting.discard(waiting)
+            subscriber.used = self._clock()
+
+
+def _close(subscriber: Subscriber) -> None:
+    for stream in subscriber.streams:
+        stream.close()
+
+
+def _check_fps(fps: Any, cameras: Cameras) -> None:
+    most = cameras.tables.most_fps
+    if isinstance(fps, bool) or not isinstance(fps, int) or not 1 <= fps <= most:
+        raise BadValue("fps", fps, f"1 to {most} frames a second")

@@ -1,0 +1,189 @@
+"""Records films, from one moment of simulated time to another."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from nao_sim_bridge.base.errors import SimulationError, SimulationStopped
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.whole_file import FileTrouble
+from nao_sim_bridge.cameras.settings import CameraTables
+from nao_sim_bridge.cameras.stream import CameraClosed
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.cameras.video_recorder_file import Film
+
+log = logging.getLogger("nao_sim.films")
+
+LOOK_AGAIN = 1.0
+"""How long a wait for a frame lasts before the next one begins, s of wall time."""
+CLOSING = 10.0
+"""How long the end of the simulator waits for a file, s of wall time."""
+
+
+@dataclass(frozen=True)
+class FilmSettings:
+    """How a film is recorded.
+
+    Attributes:
+        camera: 0 top, 1 bottom.
+        resolution: NAOqi's number of a resolution.
+        color_space: NAOqi's number of a colour space.
+        rate: Frames a second of simulated time.
+        kind: Format of the file, "MJPG" or "IYUV".
+    """
+
+    camera: int
+    resolution: int
+    color_space: int
+    rate: float
+    kind: str
+
+
+class VideoRecorder:
+    """One recording at a time.
+
+    Args:
+        cameras: Of the robot.
+        runner: The simulation's thread.
+        tables: What the cameras can do.
+        name: What its streams are called.
+    """
+
+    def __init__(self, cameras: Any, runner: SimulationRunner, tables: CameraTables, name: str) -> None:
+        self._cameras = cameras
+        self._runner = runner
+        self._tables = tables
+        self._name = name
+        self._lock = threading.Lock()
+        self._recording: _Recording | None = None
+
+    @property
+    def records(self) -> bool:
+        """Whether a recording is under way."""
+        return self._recording is not None
+
+    def start(self, path: Path, settings: FilmSettings) -> Task:
+        """Begin at the present moment of simulated time; the task ends when it has begun.
+
+        Raises:
+            NaoqiError: A recording is under way.
+            FileTrouble: The file cannot be written.
+        """
+        size = self._tables.resolution(settings.resolution)
+        with self._lock:
+            if self._recording is not None:
+                raise NaoqiError(f"a recording to {str(self._recording.path)!r} is under way; stop it first")
+            film = Film(path, settings.kind, size.width, size.height, settings.rate)
+            recording = self._recording = _Recording(path, film, settings.rate)
+        log.info("recording to %s", path)
+
+        def begin() -> None:
+            recording.begin(
+                self._cameras.open(
+                    self._name, settings.camera, settings.resolution, settings.color_space, settings.rate, every=True
+                )
+            )
+
+        return self._runner.execute(begin, "startRecording")
+
+    def stop(self) -> Task:
+        """End at the present moment of simulated time; the task ends with [frames, path] when the file is complete.
+
+        Without a recording it ends at once with [0, ""].
+        """
+        with self._lock:
+            recording, self._recording = self._recording, None
+        if recording is None:
+            nothing = Task("stopRecording", 0)
+            nothing.finish([0, ""])
+            return nothing
+        try:
+            self._runner.execute(recording.finish, "stopRecording")
+        except SimulationStopped:
+            recording.finish()
+        return recording.ended
+
+    def close(self) -> None:
+        """End the recording, if there is one; blocking. What goes wrong is logged."""
+        if self._recording is None:
+            return
+        try:
+            self.stop().result(CLOSING)
+        except (NaoqiError, SimulationError, TimeoutError) as error:
+            log.error("%s", error)
+
+
+class _Recording:
+    """A film that grows with every frame of a camera, in a thread of its own.
+
+    Attributes:
+        path: The file.
+        ended: A task that ends with [frames, path] when the film is complete.
+    """
+
+    def __init__(self, path: Path, film: Film, rate: float) -> None:
+        self.path = path
+        self.ended = Task("stopRecording", 0)
+        self._film = film
+        self._rate = rate
+        self._stream: Any = None
+        self._first: float | None = None
+        self._last: Any = None
+        self._thread = threading.Thread(target=self._run, name="film", daemon=True)
+
+    def begin(self, stream: Any) -> None:
+        """Record the frames of a stream."""
+        self._stream = stream
+        self._thread.start()
+
+    def finish(self) -> None:
+        """No further frame belongs to it; those that were due before do."""
+        if self._stream is None:
+            self._complete()
+        else:
+            self._stream.finish()
+
+    def _run(self) -> None:
+        try:
+            while True:
+                try:
+                    self._add(self._stream.take(LOOK_AGAIN))
+                except TimeoutError:
+                    continue
+        except CameraClosed:
+            self._complete()
+        except Exception as error:
+            log.error("recording to %s ends early: %s", self.path, error, exc_info=not isinstance(error, FileTrouble))
+            self._stream.close()
+            self._complete(error)
+
+    def _add(self, frame: Any) -> None:
+        """Append a frame. Where frames before it were lost, because the machine was too slow, the last one is shown."""
+        if self._first is None:
+            self._first = frame.time
+        place = round((frame.time - self._first) * self._rate)
+        while self._last is not None and self._film.frames < place:
+            self._film.write(self._last)
+        self._last = frame.array()
+        self._film.write(self._last)
+
+    def _complete(self, error: Exception | None = None) -> None:
+        frames = self._film.frames
+        try:
+            self._film.close()
+        except Exception as failure:
+            error = error or failure
+        path = str(self._film.path)
+        if not frames:
+            reason = error or "no picture was taken between start and stop"
+            self.ended.finish(error=NaoqiError(f"{path!r} has not become a file: {reason}"))
+        elif error is not None:
+            text = f"{path!r} is not complete, it ends after {frames} frames: {error}"
+            self.ended.finish(error=NaoqiError(text))
+        else:
+            self.ended.finish([frames, path])

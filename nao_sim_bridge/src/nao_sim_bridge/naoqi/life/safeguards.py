@@ -1,0 +1,89 @@
+"""What sends autonomous life to safeguard, and the chest button that switches it. Events come in any thread."""
+
+from __future__ import annotations
+
+from typing import Any, Callable
+
+from nao_sim_bridge.base.errors import SimulationStopped, UnknownName
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.life.life import ALIVE, DISABLED, SOLITARY, Life
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+
+PUSHED, FELL, DIAGNOSIS, TEMPERATURE = SAFEGUARDS = (
+    "RobotPushed",
+    "RobotFell",
+    "CriticalDiagnosis",
+    "CriticalTemperature",
+)
+FALLEN, PUSH_EVENT, DOUBLE_CLICK = "robotHasFallen", "ALMotion/RobotPushed", "ALChestButton/DoubleClickOccurred"
+DIAGNOSED = {DIAGNOSIS: "PassiveDiagnosisErrorChanged", TEMPERATURE: "TemperatureDiagnosisErrorChanged"}
+# How bad a diagnosis is: from here on it is critical.
+CRITICAL = 2
+
+
+class Safeguards:
+    """Watches over a life.
+
+    Attributes:
+        enabled: Which safeguards are on, by name.
+
+    Args:
+        life: Whose it is.
+        runner: Runs commands in the simulation thread.
+        memory: Where events come from.
+        rest: Has the robot rest; its task may end with a further task.
+    """
+
+    def __init__(self, life: Life, runner: SimulationRunner, memory: MemoryStore, rest: Callable[[], Task]) -> None:
+        self.enabled = dict.fromkeys(SAFEGUARDS, True)
+        self._life = life
+        self._runner = runner
+        self._rest = rest
+        memory.listen(FALLEN, lambda value: self._do(self._fallen) if value else None)
+        memory.listen(PUSH_EVENT, lambda _: self._do(self._pushed))
+        memory.listen(DOUBLE_CLICK, lambda _: self._do(self._toggle))
+        for name, event in DIAGNOSED.items():
+            memory.listen(event, lambda value, what=name: self._do(lambda: self._diagnosed(what, value)))
+
+    def check(self, name: str) -> str:
+        """The name of a safeguard.
+
+        Raises:
+            UnknownName: There is none of this name.
+        """
+        if name not in self.enabled:
+            raise UnknownName("safeguard", name, self.enabled)
+        return name
+
+    def _do(self, command: Callable[[], Any]) -> None:
+        try:
+            self._runner.execute(command, "life")
+        except SimulationStopped:
+            pass
+
+    def _fallen(self) -> None:
+        if self.enabled[FELL]:
+            self._life.alarm("the robot has fallen", self._life.stand_up)
+
+    def _pushed(self) -> None:
+        """Activities end; the robot lives on when it stands again."""
+        if self.enabled[PUSHED] and self._life.state in ALIVE:
+            self._life.alarm("the robot was pushed", self._life.stand_up)
+
+    def _diagnosed(self, what: str, value: Any) -> None:
+        critical = bool(value) and value[0] >= CRITICAL
+        if critical and self.enabled[what]:
+            self._life.alarm(f"{what}: {', '.join(map(str, value[1]))}")
+        elif not critical:
+            self._life.all_clear()
+
+    def _toggle(self) -> None:
+        """Two clicks on the chest button: a robot that lives goes to rest, one that does not begins to live."""
+        if not self._life.upright:
+            return  # it has fallen on the button
+        if self._life.state == DISABLED:
+            self._life.set_state(SOLITARY)
+        else:
+            self._life.set_state(DISABLED)
+            self._rest()

@@ -1,0 +1,1 @@
+"""ALMemory: its store, live keys, and the events that extractors write."""

@@ -1,0 +1,141 @@
+"""ALMemory's device keys of the simulated robot: each reads its value from the last snapshot when it is asked for.
+
+The names come from `config/naoqi_memory_keys.json`; a key of the file that nothing here can read is an error at start.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any, Callable, Mapping
+
+from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.readings import FootForces
+from nao_sim_bridge.body.sensors.heat import heat_status
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.model.leds_layout import LedLayout
+from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.naoqi.memory.battery_keys import READERS as BATTERY
+from nao_sim_bridge.naoqi.memory.battery_keys import battery_reader
+
+FILE = "naoqi_memory_keys.json"
+GRAVITY = 9.81
+Read = Callable[[Snapshot], Any]
+
+JOINT_SUFFIXES: Mapping[str, Callable[[int], Read]] = {
+    "Position/Actuator/Value": lambda i: lambda s: s.commands[i],
+    "Position/Sensor/Value": lambda i: lambda s: s.positions[i],
+    "ElectricCurrent/Sensor/Value": lambda i: lambda s: s.currents[i],
+    "Temperature/Sensor/Value": lambda i: lambda s: s.temperatures[i],
+    "Temperature/Sensor/Status": lambda i: lambda s: heat_status(s.temperatures[i]),
+    "Hardness/Actuator/Value": lambda i: lambda s: s.stiffnesses[i],
+}
+CORNERS = ("FrontLeft", "FrontRight", "RearLeft", "RearRight")
+AXES = {"X": 0, "Y": 1, "Z": 2}
+# A foot touches the ground from this load on, in N.
+CONTACT_LOAD = 3.0
+
+
+def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_values: Callable[[], tuple]) -> dict:
+    """Key -> function without arguments that reads its present value.
+
+    Raises:
+        ConfigError: The file names a key that nothing can read.
+    """
+    readers: dict[str, Callable[[], Any]] = {}
+    for key, read in _snapshot_keys(model).items():
+        readers[key] = lambda read=read: read(runner.snapshot)
+    prefix = read_json(config_file(FILE))["_meta"]["prefix"]
+    for index, device in enumerate(leds.devices):
+        readers[prefix + device] = lambda index=index: led_values()[index]
+    return readers
+
+
+def constants(version: str) -> dict[str, Any]:
+    """Keys whose value never changes: what the robot is made of."""
+    tables = read_json(config_file(FILE))
+    values = {k: v for k, v in tables["robot_config_V6"].items() if k != "note"}
+    if version != "V6":
+        values.update({k: v for k, v in tables[f"robot_config_{version}"].items() if k != "note"})
+    values["Device/DeviceList/ChestBoard/BodyId"] = "SIMULATED-NAO-BODY"
+    values["RobotConfig/Head/FullHeadId"] = "SIMULATED-NAO-HEAD"
+    return values
+
+
+def _snapshot_keys(model: RobotModel) -> dict[str, Read]:
+    tables = read_json(config_file(FILE))
+    prefix = tables["_meta"]["prefix"]
+    keys: dict[str, Read] = {}
+    for joint in tables["joints"]["names"]:
+        for suffix in tables["joints"]["suffixes"]:
+            keys[f"{prefix}{joint}/{suffix}"] = JOINT_SUFFIXES[suffix](model.joint_index[joint])
+    for group, entry in tables["devices"].items():
+        if not group.startswith("led_") and group != "sonar":  # `sonar.py` knows when these are measured
+            for key in entry["keys"]:
+                keys[prefix + key] = _device_reader(key)
+    for key in tables["older_or_extra"]["keys"]:
+        keys[prefix + key] = _device_reader(key)
+    keys[f"{prefix}ChestBoard/Led/State/Actuator/Value"] = lambda s: 0.0
+    keys.update(_MODULE_KEYS)
+    return keys
+
+
+def _device_reader(key: str) -> Read:
+    for pattern, make in _PATTERNS:
+        match = re.fullmatch(pattern, key)
+        if match:
+            return make(*match.groups())
+    raise ConfigError(FILE, f"nothing in the simulation can read {key!r}")
+
+
+def _foot(side: str) -> Callable[[Snapshot], FootForces]:
+    return (lambda s: s.left_foot) if side == "L" else (lambda s: s.right_foot)
+
+
+def _corner(side: str, corner: str) -> Read:
+    foot, index = _foot(side), CORNERS.index(corner)
+    return lambda s: foot(s).forces[index] / GRAVITY
+
+
+def _total(side: str) -> Read:
+    foot = _foot(side)
+    return lambda s: foot(s).total / GRAVITY
+
+
+def _center(side: str, axis: str) -> Read:
+    foot, index = _foot(side), AXES[axis]
+    return lambda s: foot(s).center_of_pressure[index]
+
+
+def _touch(device: str) -> Read:
+    return lambda s: float(device in s.touched)
+
+
+def _vector(field: str, axis: str) -> Read:
+    index = AXES[axis]
+    return lambda s: getattr(s.imu, field)[index]
+
+
+_PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (
+    (r"([LR])Foot/FSR/(FrontLeft|FrontRight|RearLeft|RearRight)/Sensor/Value", _corner),
+    (r"([LR])Foot/FSR/TotalWeight/Sensor/Value", _total),
+    (r"([LR])Foot/FSR/CenterOfPressure/([XY])/Sensor/Value", _center),
+    (r"InertialSensor/Gyroscope([XYZ])/Sensor/Value", lambda a: _vector("gyroscope", a)),
+    (r"InertialSensor/Gyr([XY])/Sensor/Value", lambda a: _vector("gyroscope", a)),
+    (r"InertialSensor/Accelerometer([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
+    (r"InertialSensor/Acc([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
+    (r"InertialSensor/Angle([XYZ])/Sensor/Value", lambda a: _vector("angles", a)),
+    (r"((?:[LR]Foot/Bumper|[LR]Hand/Touch|Head/Touch|ChestBoard/Button).*?)/Sensor/Value", _touch),
+    (rf"Battery/({'|'.join(BATTERY)})", battery_reader),
+    (r"Head/Temperature/Sensor/Value", lambda: lambda s: s.head_temperature),
+)
+
+_MODULE_KEYS: dict[str, Read] = {
+    "footContact": lambda s: float(max(s.left_foot.total, s.right_foot.total) > CONTACT_LOAD),
+    "leftFootContact": lambda s: float(s.left_foot.total > CONTACT_LOAD),
+    "rightFootContact": lambda s: float(s.right_foot.total > CONTACT_LOAD),
+    "leftFootTotalWeight": lambda s: s.left_foot.total / GRAVITY,
+    "rightFootTotalWeight": lambda s: s.right_foot.total / GRAVITY,
+}

@@ -1,0 +1,174 @@
+"""Part of ALMotion: where effectors are, and moving them there."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Sequence
+
+import numpy as np
+
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
+from nao_sim_bridge.control.whole_body.cartesian_move import CartesianMove, EffectorMove, moving_joints
+from nao_sim_bridge.control.whole_body.cartesian_path import PosePath, joint_curves
+from nao_sim_bridge.control.whole_body.inverse_kinematics import solve
+from nao_sim_bridge.control.whole_body.tasks import end_paths, lead_to, led_joints, start_paths
+from nao_sim_bridge.model.frames import Placement, frame_of, sensor_places, space_in_torso
+from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.motion.cartesian_arguments import (
+    as_position,
+    as_transform,
+    effectors,
+    mask_of,
+    one_each,
+    paths_of,
+    pose_of_position,
+    pose_of_transform,
+)
+from nao_sim_bridge.naoqi.motion.part import MotionPart
+from nao_sim_bridge.naoqi.motion.placements import placement, space_of
+
+# Top speeds of an effector under whole body control, m/s and rad/s.
+LEAD_SPEED = (0.5, 3.0)
+PoseReader = Callable[[Any], np.ndarray]
+
+
+class Cartesian(MotionPart):
+    """Positions (x, y, z, wx, wy, wz) and transforms of effectors, joints and sensors."""
+
+    def getSensorNames(self) -> list[str]:
+        return list(sensor_places(self._model))
+
+    def getPosition(self, name: str, space: int, use_sensors: bool) -> list[float]:
+        return as_position(self._pose(name, space, self._placement(use_sensors)))
+
+    def getTransform(self, name: str, space: int, use_sensors: bool) -> list[float]:
+        return as_transform(self._pose(name, space, self._placement(use_sensors)))
+
+    def setPosition(self, name: str, space: int, position: Any, fraction: float, mask: int) -> Task:
+        return self._set("setPosition", [name], space, [pose_of_position(position)], fraction, mask)
+
+    def setPositions(self, names: Any, spaces: Any, positions: Any, fraction: float, mask: Any) -> Task:
+        return self._set_many("setPositions", names, spaces, positions, pose_of_position, fraction, mask)
+
+    def setTransform(self, name: str, space: int, target: Any, fraction: float, mask: int) -> Task:
+        return self._set("setTransform", [name], space, [pose_of_transform(target)], fraction, mask)
+
+    def setTransforms(self, names: Any, spaces: Any, targets: Any, fraction: float, mask: Any) -> Task:
+        return self._set_many("setTransforms", names, spaces, targets, pose_of_transform, fraction, mask)
+
+    def changePosition(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
+        now = self._pose(name, space, self._placement(False))
+        target = _moved(now, pose_of_position(change))
+        return self._set("changePosition", [name], space, [target], fraction, mask)
+
+    def changeTransform(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
+        now = self._pose(name, space, self._placement(False))
+        target = _moved(now, pose_of_transform(change))
+        return self._set("changeTransform", [name], space, [target], fraction, mask)
+
+    def positionInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
+        call = "positionInterpolation"
+        return self._interpolate(call, [name], space, [path], mask, [times], absolute, pose_of_position)
+
+    def positionInterpolations(
+        self, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
+    ) -> Task:
+        call = "positionInterpolations"
+        return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_position)
+
+    def transformInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
+        call = "transformInterpolation"
+        return self._interpolate(call, [name], space, [path], mask, [times], absolute, pose_of_transform)
+
+    def transformInterpolations(
+        self, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
+    ) -> Task:
+        call = "transformInterpolations"
+        return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_transform)
+
+    def _placement(self, use_sensors: bool) -> Placement:
+        return placement(self._model, self._robot, self._runner.snapshot, use_sensors)
+
+    def _pose(self, name: str, space: int, placed: Placement) -> np.ndarray:
+        frame = frame_of(self._model, name)
+        return np.linalg.inv(space_in_torso(self._model, space_of(space), placed)) @ placed.in_torso(frame)
+
+    def _set_many(
+        self, call: str, names: Any, spaces: Any, targets: Any, pose: PoseReader, fraction: float, masks: Any
+    ) -> Task:
+        count = len(effectors(names))
+        poses = [pose(target) for target in one_each(targets, count, "targets", nested=True)]
+        return self._set(call, names, spaces, poses, fraction, masks)
+
+    def _set(
+        self, call: str, names: Any, spaces: Any, poses: Sequence[np.ndarray], fraction: float, masks: Any
+    ) -> Task:
+        names = effectors(names)
+        fraction = number(fraction, "fractionMaxSpeed", 0.01, 1.0)
+        masks, spaces = one_each(masks, len(names), "axisMask"), one_each(spaces, len(names), "spaces")
+        moves = [
+            EffectorMove(name, space_of(space), mask_of(mask), lambda _, pose=pose: pose)
+            for name, space, pose, mask in zip(names, spaces, poses, masks)
+        ]
+        if self._robot.whole_body.active:
+            speed = (fraction * LEAD_SPEED[0], fraction * LEAD_SPEED[1])
+            return self._runner.execute(
+                lambda: lead_to(self._robot.whole_body, moves, speed, self._placement(False)), call
+            )
+        commands = self._robot.joints.commands
+        body = body_kinematics(self._model)
+        move = CartesianMove(body, moves, self._placement(False))
+        found = solve(body, move.indices, move.goals_at(0.0), commands, move.footing_at(0.0))
+        targets = {i: float(found[i]) for i in move.indices}
+        top = {i: fraction * self._model.joints[i].max_velocity for i in targets}
+        # All joints arrive together, so that the effector goes about straight.
+        duration = max(abs(angle - commands[i]) / top[i] for i, angle in targets.items())
+        speeds = {i: abs(angle - commands[i]) / duration if duration else 0.0 for i, angle in targets.items()}
+        speeds = {i: speed or top[i] for i, speed in speeds.items()}
+        return self._runner.execute(lambda: self._robot.motion.set_targets(targets, speeds), call)
+
+    def _interpolate(
+        self, call: str, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool, pose: PoseReader
+    ) -> Task:
+        names = effectors(names)
+        masks = [mask_of(mask) for mask in one_each(masks, len(names), "axisMasks")]
+        spaces = [space_of(space) for space in one_each(spaces, len(names), "spaces")]
+        keys = paths_of(paths, times, len(names), pose)
+        indices = moving_joints(self._model, names)
+        durations = [at[-1] for at, _ in keys]
+
+        def moves_from(placed: Placement) -> list[EffectorMove]:
+            moves = []
+            for name, space, mask, (at, poses) in zip(names, spaces, masks, keys):
+                now = self._pose(name, space, placed)
+                ahead = poses if absolute else [_moved(now, change) for change in poses]
+                moves.append(EffectorMove(name, space, mask, PosePath((0.0, *at), [now, *ahead]).pose))
+            return moves
+
+        def start() -> Task:
+            robot, owner = self._robot, object()
+
+            def curves(commands: Sequence[float]) -> dict:
+                placed = self._placement(False)
+                moves = moves_from(placed)
+                if robot.whole_body.active:
+                    start_paths(robot.whole_body, owner, moves, durations, placed)
+                    return dict(led_joints(robot.joints, indices, max(durations)))
+                body = body_kinematics(self._model)
+                move = CartesianMove(body, moves, placed)
+                moments = sorted({moment for at, _ in keys for moment in at})
+                return joint_curves(body, indices, move.goals_at, moments, commands, move.footing_at)
+
+            task = robot.motion.follow(call, indices, curves)
+            task.add_done_callback(lambda done: end_paths(robot.whole_body, owner, names, done.killed))
+            return task
+
+        return self._runner.execute(start, call)
+
+
+def _moved(pose: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """`pose` shifted and turned by `change`, both along the axes of the space."""
+    moved = pose.copy()
+    moved[:3, :3] = change[:3, :3] @ pose[:3, :3]
+    moved[:3, 3] += change[:3, 3]
+    return moved

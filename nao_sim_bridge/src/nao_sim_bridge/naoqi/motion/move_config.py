@@ -1,0 +1,81 @@
+"""Gait configurations of ALMotion's moves: lists of pairs such as [["MaxStepX", 0.03], ["LeftStepHeight", 0.02]].
+
+NAOqi documents names for one foot ("Left...", "Right...") and "Frequency" for `move` and `moveToward` only; here every
+move takes them.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Mapping
+
+from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, Parameter, feet_gait, parameters
+
+FIELD = "moveConfig"
+# Clients in C++ send numbers of single precision: 0.035 comes as 0.035000001. No parameter means anything by less.
+DECIMALS = 6
+LISTS: Mapping[str, Callable[[Parameter], float]] = {
+    "Default": lambda parameter: parameter.default,
+    "Min": lambda parameter: parameter.minimum,
+    "Max": lambda parameter: parameter.maximum,
+}
+
+
+def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:
+    """The gait of a move.
+
+    Args:
+        config: Pairs of name and value; none for the default gait.
+        frequency: Share 0..1 of the top frequency, when it is an argument of its own.
+
+    Raises:
+        UnknownName: There is no such parameter.
+        BadValue: The list has another shape, or a value is out of its range.
+    """
+    values = _pairs(config, FIELD)
+    if frequency is not None:
+        values[FREQUENCY] = frequency
+    return feet_gait(values)
+
+
+def gait_of_feet(left: Any, right: Any, frequency: float) -> FeetGait:
+    """The gait of a move whose feet have a configuration each, with names that say no foot.
+
+    Raises:
+        UnknownName: There is no such parameter of a foot.
+        BadValue: A list has another shape, or a value is out of its range.
+    """
+    values: dict[str, float] = {FREQUENCY: frequency}
+    for side, config in (("Left", left), ("Right", right)):
+        for name, value in _pairs(config, f"{side.lower()}FootMoveConfig").items():
+            if name not in FIELDS:
+                raise UnknownName("gait parameter of a foot", name, FIELDS)
+            values[side + name] = value
+    return feet_gait(values)
+
+
+def gait_list(which: str) -> list[list[Any]]:
+    """Pairs of all parameters that moves may set, in NAOqi's order.
+
+    Args:
+        which: "Default", "Min" or "Max".
+
+    Raises:
+        BadValue: It is none of them.
+    """
+    if which not in LISTS:
+        raise BadValue("config", which, ", ".join(LISTS))
+    return [[name, LISTS[which](parameter)] for name, parameter in parameters().items() if parameter.settable]
+
+
+def _pairs(config: Any, field: str) -> dict[str, float]:
+    shape = 'pairs such as [["MaxStepX", 0.03], ["StepHeight", 0.02]]'
+    if not isinstance(config, (list, tuple)):
+        raise BadValue(field, config, shape)
+    values: dict[str, float] = {}
+    for pair in config:
+        if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
+            raise BadValue(field, config, shape)
+        name, value = pair
+        values[name] = round(value, DECIMALS) if isinstance(value, float) else value
+    return values

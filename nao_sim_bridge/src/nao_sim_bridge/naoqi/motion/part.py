@@ -1,0 +1,52 @@
+"""What the parts of ALMotion share."""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Sequence
+
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.robot import SimulatedRobot
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import per_item
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.motion.arguments import joint_indices
+
+
+class MotionPart:
+    """A part of ALMotion.
+
+    Names that begin with an underscore are not published.
+
+    Args:
+        simulation: Whose joints these are; touched in the simulation thread only.
+        runner: That thread.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._model = simulation.model
+
+    @property
+    def _robot(self) -> SimulatedRobot:
+        """The robot of now: a reset makes a new one."""
+        return self._simulation.robot
+
+    def _indices(self, names: Any) -> list[int]:
+        return joint_indices(names, self._model)
+
+    def _speeds(self, indices: Sequence[int], fraction: Any) -> dict[int, float]:
+        fractions = per_item(fraction, len(indices), "fractionMaxSpeed", 0.0, 1.0)
+        if 0.0 in fractions:
+            raise NaoqiError("fractionMaxSpeed is 0, allowed is above 0 to 1")
+        return {i: share * self._model.joints[i].max_velocity for i, share in zip(indices, fractions)}
+
+    def _follow(self, name: str, indices: Sequence[int], curves: Callable[[Sequence[float]], dict]) -> Task:
+        return self._runner.execute(lambda: self._robot.motion.follow(name, indices, curves), name)
+
+    def _hold_limp(self, indices: Sequence[int]) -> None:
+        """Take the measured angles of limp joints as commands: stiffening them must not make them jump."""
+        joints = self._robot.joints
+        limp = [i for i in indices if joints.stiffnesses[i] == 0.0 and not self._robot.motion.busy([i])]
+        joints.hold(self._runner.snapshot.positions, limp)

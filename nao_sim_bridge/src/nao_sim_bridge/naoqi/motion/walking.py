@@ -1,0 +1,180 @@
+"""Part of ALMotion: walking at a velocity or to a place, its end, and the arms meanwhile."""
+
+from __future__ import annotations
+
+from typing import Any, Callable
+
+from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.sizes import require_few
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of, gait_of_feet
+from nao_sim_bridge.naoqi.motion.part import MotionPart
+from nao_sim_bridge.naoqi.motion.walk_events import MoveFailures
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.gait import FeetGait
+from nao_sim_bridge.walk.locomotion import Locomotion
+
+ARM_GROUPS = {"LArm": ("LArm",), "RArm": ("RArm",), "Arms": ("LArm", "RArm")}
+# Shares of a speed may be beyond 1 by this: rounding of single precision.
+ROUNDING = 1e-6
+# No place is farther away, and no velocity higher, in m, rad and s: with more, sums would leave what numbers can be.
+MOST = 1e6
+
+
+class WalkPart(MotionPart):
+    """What the parts about walking share.
+
+    Args:
+        simulation: As for every part.
+        runner: As for every part.
+        failures: Who is told of moves that fail.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, failures: MoveFailures) -> None:
+        super().__init__(simulation, runner)
+        self._failures = failures
+
+    def _walk(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
+        """Run a command of the robot's locomotion in the simulation thread."""
+
+        def run() -> Any:
+            locomotion = self._robot.locomotion
+            self._failures.watch(locomotion)
+            return command(locomotion)
+
+        return self._runner.execute(run, call)
+
+
+class Walking(WalkPart):
+    """Moves. Those at a velocity return at once; those to a place return when the robot stands there, or elsewhere."""
+
+    def moveInit(self) -> Task:
+        return self._walk("moveInit", lambda locomotion: locomotion.init())
+
+    def move(self, x: float, y: float, theta: float, config: Any = ()) -> Task:
+        rate, gait = _three(x, y, theta), gait_of(config)
+        return self._walk("move", lambda locomotion: locomotion.move(*rate, gait))
+
+    def moveToward(self, x: float, y: float, theta: float, config: Any = ()) -> Task:
+        return self._toward("moveToward", x, y, theta, gait_of(config))
+
+    def setWalkTargetVelocity(self, x: float, y: float, theta: float, frequency: float, *configs: Any) -> Task:
+        share = _share(frequency, "frequency", 0.0)
+        gait = gait_of_feet(*configs, share) if len(configs) == 2 else gait_of(*configs, frequency=share)
+        return self._toward("setWalkTargetVelocity", x, y, theta, gait)
+
+    def moveTo(self, *arguments: Any) -> Task:
+        """Answers whether the robot got there: False when it was stopped, or sent elsewhere, on the way."""
+        return self._to("moveTo", arguments)
+
+    def stopMove(self) -> Task:
+        """Answers when both feet are on the ground."""
+        return self._walk("stopMove", lambda locomotion: locomotion.stop().then(lambda _: True))
+
+    def killMove(self) -> Task:
+        return self._walk("killMove", lambda locomotion: locomotion.kill())
+
+    def waitUntilMoveIsFinished(self) -> Task:
+        return self._walk("waitUntilMoveIsFinished", lambda locomotion: locomotion.until_finished())
+
+    def moveIsActive(self) -> bool:
+        return self._robot.locomotion.active
+
+    # --- configuration --------------------------------------------------------------------------------------------
+
+    def getMoveConfig(self, which: str) -> list:
+        return gait_list(which)
+
+    def getMoveArmsEnabled(self, chain: str) -> bool:
+        if chain not in ARM_GROUPS:
+            raise UnknownName("arm or group", chain, ARM_GROUPS)
+        enabled = self._robot.locomotion.arms.enabled
+        return all(enabled[arm] for arm in ARM_GROUPS[chain])
+
+    def setMoveArmsEnabled(self, left: bool, right: bool) -> Task:
+        wanted = dict(zip(ARM_GROUPS["Arms"], (bool(left), bool(right))))
+        return self._walk("setMoveArmsEnabled", lambda locomotion: locomotion.arms.enabled.update(wanted))
+
+    # --- older names ----------------------------------------------------------------------------------------------
+
+    def walkInit(self) -> Task:
+        return self.moveInit()
+
+    def walkTo(self, *arguments: Any) -> Task:
+        return self._to("walkTo", arguments)
+
+    def stopWalk(self) -> Task:
+        return self.stopMove()
+
+    def killWalk(self) -> Task:
+        return self.killMove()
+
+    def waitUntilWalkIsFinished(self) -> Task:
+        return self.waitUntilMoveIsFinished()
+
+    def walkIsActive(self) -> bool:
+        return self.moveIsActive()
+
+    def getFootGaitConfig(self, which: str) -> list:
+        return gait_list(which)
+
+    def getWalkArmsEnabled(self) -> list[bool]:
+        enabled = self._robot.locomotion.arms.enabled
+        return [enabled[arm] for arm in ARM_GROUPS["Arms"]]
+
+    def setWalkArmsEnabled(self, left: bool, right: bool) -> Task:
+        return self.setMoveArmsEnabled(left, right)
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _toward(self, call: str, x: float, y: float, theta: float, gait: FeetGait) -> Task:
+        shares = tuple(_share(value, name, -1.0) for name, value in (("x", x), ("y", y), ("theta", theta)))
+        return self._walk(call, lambda locomotion: locomotion.move_toward(*shares, gait))
+
+    def _to(self, call: str, arguments: tuple[Any, ...]) -> Task:
+        points, time, config = _destination(arguments)
+        gait = gait_of(config)
+        return self._walk(call, lambda locomotion: locomotion.move_to(points, gait, time).then(bool))
+
+
+def _destination(arguments: tuple[Any, ...]) -> tuple[list[FootPose], float | None, Any]:
+    """Poses to go through as seen from the robot, time to take (s) and configuration, from the arguments of moveTo.
+
+    These are x, y, theta and then a time, a configuration, both or neither; or control points, with a configuration
+    or without.
+    """
+    if len(arguments) < 3:
+        return _control_points(arguments[0]), None, arguments[1] if len(arguments) == 2 else ()
+    points = [FootPose(*_three(*arguments[:3]))]
+    time, config = None, ()
+    for extra in arguments[3:]:
+        if isinstance(extra, (list, tuple)):
+            config = extra
+        else:
+            time = number(extra, "time", 0.0)
+    return points, time, config
+
+
+def _control_points(points: Any) -> list[FootPose]:
+    allowed = "a list of at least one [x, y, theta], in m, m, rad"
+    if not isinstance(points, (list, tuple)) or not points:
+        raise BadValue("controlPoint", points, allowed)
+    require_few("controlPoint", len(points), "places")
+    if any(not isinstance(point, (list, tuple)) or len(point) != 3 for point in points):
+        raise BadValue("controlPoint", points, allowed)
+    return [FootPose(*_three(*point)) for point in points]
+
+
+def _three(x: Any, y: Any, theta: Any) -> tuple[float, float, float]:
+    x, y, theta = (number(v, name, -MOST, MOST) for v, name in ((x, "x"), (y, "y"), (theta, "theta")))
+    return x, y, theta
+
+
+def _share(value: Any, field: str, least: float) -> float:
+    checked = number(value, field)
+    if not least - ROUNDING <= checked <= 1.0 + ROUNDING:
+        raise BadValue(field, value, f"{least:g} to 1")
+    return min(max(checked, least), 1.0)

@@ -1,0 +1,237 @@
+"""ALAudioDevice of the simulated robot. Only NAOqi methods live here."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, Callable
+
+from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.sound.microphone_clients import MicrophoneClients
+from nao_sim_bridge.naoqi.sound.microphone_energy import MicrophoneEnergy
+from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, HIGH, LOW, MicrophoneFormat, microphone_format
+from nao_sim_bridge.naoqi.sound.output_buffers import RATES, OutputBuffers, samples_of
+from nao_sim_bridge.naoqi.sound.recorder import Recorder, RecordingOrder, kind_of
+from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
+from nao_sim_bridge.naoqi.sound.tones import side, sine
+
+OUTPUT_RATE, INPUT_SIZE = "outputSampleRate", "inputBufferSize"
+# Frames that clients get at once; the first is about a block.
+INPUT_SIZES = (8192, 16384)
+UNKNOWN = -1
+INPUTS, OUTPUTS = ("microphones",), ("loudspeakers",)
+FRONT = 3
+
+
+class ALAudioDevice:
+    """ALAudioDevice as the simulated robot offers it.
+
+    Args:
+        simulation: Whose loudspeakers and microphones these are; touched in the simulation thread only.
+        runner: That thread.
+        sounds: Reads files of clients.
+        clients: Modules that hear the microphones.
+        energy: How loud it is.
+        recorder: Records to files.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        sounds: SoundFiles,
+        clients: MicrophoneClients,
+        energy: MicrophoneEnergy,
+        recorder: Recorder,
+    ) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._sounds = sounds
+        self._clients = clients
+        self._energy = energy
+        self._recorder = recorder
+        self._buffers = OutputBuffers(simulation)
+        self._input_size = INPUT_SIZES[0]
+        self._input_closed = False
+
+    # --- loudspeakers ---------------------------------------------------------------------------------------------
+
+    def setOutputVolume(self, volume: int) -> Task:
+        checked = number(volume, "volume", 0, 100)
+        return self._do(lambda: setattr(self._speakers, "volume", checked), "setOutputVolume")
+
+    def getOutputVolume(self) -> int:
+        return round(self._speakers.volume)
+
+    def muteAudioOut(self, mute: bool) -> Task:
+        return self._do(lambda: setattr(self._speakers, "muted", mute), "muteAudioOut")
+
+    def isAudioOutMuted(self) -> bool:
+        return self._speakers.muted
+
+    def openAudioOutputs(self) -> Task:
+        return self._do(lambda: setattr(self._speakers, "closed", False), "openAudioOutputs")
+
+    def closeAudioOutputs(self) -> Task:
+        return self._do(lambda: setattr(self._speakers, "closed", True), "closeAudioOutputs")
+
+    def isOutputClosed(self) -> bool:
+        return self._speakers.closed
+
+    def playSine(self, frequency: int, gain: int, pan: int, duration: float) -> Task:
+        sound, pan = sine(frequency, gain, duration), side(pan)
+        return self._do(lambda: self._speakers.play(sound, f"{frequency} Hz", pan=pan).task, "playSine")
+
+    def sendRemoteBufferToOutput(self, frames: int, buffer: Any) -> Task:
+        samples = samples_of(frames, buffer)
+        return self._do(lambda: self._buffers.add(samples), "sendRemoteBufferToOutput")
+
+    def sendLocalBufferToOutput(self, frames: int, buffer: int) -> bool:
+        raise NaoqiError("addresses are for modules inside the robot's own process; use sendRemoteBufferToOutput")
+
+    def flushAudioOutputs(self) -> Task:
+        return self._do(self._buffers.drop, "flushAudioOutputs")
+
+    # --- microphones ----------------------------------------------------------------------------------------------
+
+    def setClientPreferences(self, module: str, rate: int, channels: Any, deinterleaved: int, *_time: int) -> None:
+        self._clients.prefer(module, microphone_format(rate, channels, deinterleaved))
+
+    def subscribe(self, module: str) -> Task:
+        # Not in libqi's own thread: the first call of a module may need that to get through.
+        return _in_thread(lambda: self._clients.subscribe(module), "subscribe")
+
+    def unsubscribe(self, module: str) -> Task:
+        return _in_thread(lambda: self._clients.unsubscribe(module), "unsubscribe")
+
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left."""
+        self._clients.gone(module)
+
+    def openAudioInputs(self) -> Task:
+        return self._set_input_closed(False)
+
+    def closeAudioInputs(self) -> Task:
+        return self._set_input_closed(True)
+
+    def isInputClosed(self) -> bool:
+        return self._input_closed
+
+    def enableEnergyComputation(self) -> None:
+        self._energy.enable(True)
+
+    def disableEnergyComputation(self) -> None:
+        self._energy.enable(False)
+
+    def getLeftMicEnergy(self) -> float:
+        return self._energy.of("left")
+
+    def getRightMicEnergy(self) -> float:
+        return self._energy.of("right")
+
+    def getFrontMicEnergy(self) -> float:
+        return self._energy.of("front")
+
+    def getRearMicEnergy(self) -> float:
+        return self._energy.of("rear")
+
+    def setFileAsInput(self, name: str) -> Task:
+        sound = self._sounds.read(name) if name else None
+        if sound is not None and sound.channels == 2:  # of two channels nobody knows which microphones they are for
+            sound = sound.mono()
+        return self._do(lambda: setattr(self._simulation.sound.microphones, "replaced_by", sound), "setFileAsInput")
+
+    def startMicrophonesRecording(self, name: str) -> Task:
+        kind = kind_of(name)
+        heard = MicrophoneFormat(HIGH, ALL) if kind == "wav" else MicrophoneFormat(LOW, FRONT)
+        return self._recorder.start(RecordingOrder(name, kind, heard))
+
+    def stopMicrophonesRecording(self) -> Task:
+        return self._recorder.stop()
+
+    # --- parameters and devices -----------------------------------------------------------------------------------
+
+    def setParameter(self, name: str, value: int) -> Task | None:
+        if name == INPUT_SIZE:
+            self._input_size = _one_of(value, name, INPUT_SIZES)
+            self._clients.set_at_once(self._input_size // INPUT_SIZES[0])
+            return None
+        if name != OUTPUT_RATE:
+            raise UnknownName("parameter", name, (OUTPUT_RATE, INPUT_SIZE))
+        rate = _one_of(value, name, RATES)
+        return self._do(lambda: self._buffers.set_rate(rate), "setParameter")
+
+    def getParameter(self, name: str) -> int:
+        return {OUTPUT_RATE: self._buffers.rate, INPUT_SIZE: self._input_size}.get(name, UNKNOWN)
+
+    def listInputs(self) -> list:
+        return list(INPUTS)
+
+    def listOutputs(self) -> list:
+        return list(OUTPUTS)
+
+    def input(self, index: int) -> list:
+        return [["name", _device(index, INPUTS)], ["channels", 4], ["sampleRate", HIGH]]
+
+    def output(self, index: int) -> list:
+        return [["name", _device(index, OUTPUTS)], ["channels", 2], ["sampleRate", self._buffers.rate]]
+
+    def defaultInput(self) -> int:
+        return 0
+
+    def defaultOutput(self) -> int:
+        return 0
+
+    def setDefaultInput(self, index: int) -> None:
+        _device(index, INPUTS)
+
+    def setDefaultOutput(self, index: int) -> None:
+        _device(index, OUTPUTS)
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    @property
+    def _speakers(self) -> Any:
+        return self._simulation.sound.loudspeakers
+
+    def _do(self, action: Callable[[], Any], name: str) -> Task:
+        return self._runner.execute(action, name)
+
+    def _set_input_closed(self, closed: bool) -> Task:
+        def change() -> None:
+            self._input_closed = closed
+            self._clients.set_closed(closed)
+            self._energy.set_closed(closed)
+
+        return _in_thread(change, "closeAudioInputs")
+
+
+def _in_thread(action: Callable[[], Any], name: str) -> Task:
+    """Do something in a thread of its own; the task ends with it."""
+    task = Task(name, 0)
+
+    def run() -> None:
+        try:
+            result = action()
+        except Exception as error:
+            task.finish(error=error)
+        else:
+            task.finish(result)
+
+    threading.Thread(target=run, name=name, daemon=True).start()
+    return task
+
+
+def _one_of(value: int, name: str, allowed: tuple[int, ...]) -> int:
+    if value not in allowed:
+        raise BadValue(name, value, "one of " + ", ".join(map(str, allowed)))
+    return value
+
+
+def _device(index: int, devices: tuple[str, ...]) -> str:
+    number(index, "index", 0, len(devices) - 1)
+    return devices[index]

@@ -1,0 +1,330 @@
+"""What ALAudioPlayer has loaded and plays. Its sounds are numbered; one number sounds once at a time."""
+
+from __future__ import annotations
+
+import itertools
+import threading
+from dataclasses import dataclass
+from typing import Any, Callable
+
+from nao_sim_bridge.base.samples import Sound
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.background import Background, Wanted
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.sound.pitch import shifted
+
+SHOWN = 5
+"""How many sounds a refusal names."""
+
+
+@dataclass
+class LoadedSound:
+    """A sound that has a number; everything but its name and sound is touched in the simulation thread only.
+
+    Attributes:
+        number: What clients call it by.
+        name: Name of the file as it was given.
+        sound: As it was read.
+        volume: 0 to 1.
+        pan: -1 left to 1 right.
+        begins: Where it begins when it is played next, s.
+        altered: At another pitch; as long as `sound`.
+        temporary: Forgotten when it has been played.
+        run: What plays it now.
+    """
+
+    number: int
+    name: str
+    sound: Sound
+    volume: float = 1.0
+    pan: float = 0.0
+    begins: float = 0.0
+    altered: Sound | None = None
+    temporary: bool = False
+    run: Run | None = None
+
+    @property
+    def size(self) -> int:
+        """Bytes that it takes."""
+        return self.sound.samples.nbytes + (self.altered.samples.nbytes if self.altered else 0)
+
+    @property
+    def heard(self) -> Sound:
+        """What sounds when it is played."""
+        return self.altered or self.sound
+
+
+@dataclass
+class Run:
+    """One time that a sound is played.
+
+    Attributes:
+        task: For who waits for its end; it outlives a change of the sound.
+        playing: What sounds.
+        loop: Whether it begins again at its end.
+        begun: Simulated time of its first sample, s.
+    """
+
+    task: Task
+    playing: Any
+    loop: bool
+    begun: float
+
+
+class Player:
+    """Loaded sounds and how they are played.
+
+    Args:
+        simulation: Whose loudspeakers these are; touched in the simulation thread only.
+        runner: That thread.
+        background: Where sounds are read and changed.
+        on_end: Told the simulated times of first and last sample, s, when a sound has been played.
+        largest: Answers how many bytes all sounds may take together.
+        elsewhere: Names and bytes of other sounds that count with them.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        background: Background,
+        on_end: Callable[[float, float], None],
+        largest: Callable[[], int],
+        elsewhere: Callable[[], list[tuple[str, int]]],
+    ) -> None:
+        self._largest = largest
+        self._elsewhere = elsewhere
+        self._on_end = on_end
+        self._background = background
+        self._simulation = simulation
+        self._runner = runner
+        self._lock = threading.Lock()  # guards the table; the sounds in it belong to the simulation thread
+        self._sounds: dict[int, LoadedSound] = {}
+        self._numbers = itertools.count(1)
+        self._volume = 1.0
+        self._panorama = 0.0
+
+    # --- from any thread ------------------------------------------------------------------------------------------
+
+    def load(self, name: str, sound: Sound, temporary: bool = False) -> LoadedSound:
+        """Give a sound a number.
+
+        Raises:
+            NaoqiError: There is no room for it.
+        """
+        self.check_room(name, sound.samples.nbytes)
+        loaded = LoadedSound(next(self._numbers), name, sound, temporary=temporary)
+        with self._lock:
+            self._sounds[loaded.number] = loaded
+        return loaded
+
+    def check_room(self, name: str, size: int) -> None:
+        """Raise an error unless there is room for a sound of so many bytes.
+
+        Raises:
+            NaoqiError: There is none; it names what takes the most.
+        """
+        largest = self._largest()
+        kept = [(loaded.name, loaded.size) for loaded in self.loaded()] + self._elsewhere()
+        if sum(each for _, each in kept) + size <= largest:
+            return
+        most = sorted(kept, key=lambda entry: -entry[1])[:SHOWN]
+        listed = ", ".join(f"{each!r} {_megabytes(taken)}" for each, taken in most) or "nothing"
+        raise NaoqiError(
+            f"no room for {name!r} ({_megabytes(size)}): {_megabytes(largest)} are allowed for all sounds, "
+            f"{len(kept)} are loaded or play ({listed}{', ...' if len(kept) > SHOWN else ''}); unloadFile, "
+            "unloadAllFiles, unloadSoundSet and stopAll make room"
+        )
+
+    def loaded(self) -> list[LoadedSound]:
+        """All sounds that have a number, in its order."""
+        with self._lock:
+            return list(self._sounds.values())
+
+    def find(self, number: int) -> LoadedSound:
+        """The sound of a number.
+
+        Raises:
+            NaoqiError: There is none.
+        """
+        with self._lock:
+            if number not in self._sounds:
+                known = ", ".join(map(str, self._sounds)) or "none"
+                raise NaoqiError(f"no sound is loaded under the id {number}; ids in use: {known}")
+            return self._sounds[number]
+
+    @property
+    def volume(self) -> float:
+        """Volume of the whole player, 0 to 1."""
+        return self._volume
+
+    def in_simulation(self, action: Callable[[], Any], name: str) -> Task:
+        """Do something in the simulation thread."""
+        return self._runner.execute(action, name)
+
+    def load_when_there(self, fetch: Callable[[], Sound], name: str) -> Task:
+        """Give a number to a sound that takes its time to get; the task ends with the number."""
+        return self._background.in_turn(lambda _: self.load(name, fetch()).number, "loadFile")
+
+    def play_when_there(
+        self, fetch: Callable[[Wanted], Sound], play: Callable[[Sound], Task], name: str, may_take_long: bool = False
+    ) -> Task:
+        """Play what takes its time to get.
+
+        Args:
+            fetch: Gets the sound; it may ask its argument whether anybody still wants it.
+            play: Begins to play it, in the simulation thread.
+            name: Name of the task.
+            may_take_long: It may take so long that simulated time should not wait for it.
+
+        Returns:
+            A task that leads to the task of the playing; it ends when nobody wants it any more.
+        """
+
+        def work(wanted: Wanted) -> Task:
+            sound = fetch(wanted)
+            return self._runner.execute(lambda: play(sound) if wanted() else None, name)
+
+        return (self._background.beside if may_take_long else self._background.in_turn)(work, name)
+
+    def give_up_pending(self) -> None:
+        """Do not play what was asked for up to now and is still on its way."""
+        self._background.stop()
+
+    def change_pitch(self, number: int, factor: float) -> Task:
+        """Give a sound another pitch, 1 for its own; what plays goes on at the place where it is."""
+        loaded = self.find(number)
+        if factor != 1.0 and loaded.altered is None:
+            self.check_room(loaded.name, loaded.sound.samples.nbytes)
+
+        def work(_: Wanted) -> Task:
+            sound = loaded.sound
+            altered = None if factor == 1.0 else Sound(shifted(sound.samples, factor, sound.rate), sound.rate)
+            return self._runner.execute(lambda: self._exchange(loaded, altered), "setPitch")
+
+        return self._background.in_turn(work, "setPitch")
+
+    # --- in the simulation thread ---------------------------------------------------------------------------------
+
+    def play(self, loaded: LoadedSound, name: str, loop: bool = False) -> Task:
+        """Let a sound be heard; one that is paused goes on, one that plays begins anew. Returns its task."""
+        run = loaded.run
+        if run is not None and run.playing.paused and run.loop == loop:
+            run.playing.resume()
+            self._adjust(loaded)
+            return run.task
+        if run is not None:
+            run.task.kill()
+        task = self._simulation.task_ids.make(name, lambda _: self._silence(loaded))
+        loaded.run = Run(task, None, loop, self._simulation.sound.time)
+        self._begin(loaded, loaded.begins)
+        loaded.begins = 0.0
+        return task
+
+    def pause(self, loaded: LoadedSound) -> None:
+        """Let a sound wait where it is."""
+        self._running(loaded).playing.pause()
+
+    def position(self, loaded: LoadedSound) -> float:
+        """Where a sound is, s; where it will begin when it does not play."""
+        return loaded.run.playing.position if loaded.run is not None else loaded.begins
+
+    def go_to(self, loaded: LoadedSound, position: float) -> None:
+        """Jump to a place, s; a sound that does not play begins there next time."""
+        if loaded.run is not None:
+            loaded.run.playing.seek(position)
+        else:
+            loaded.begins = position
+
+    def set_volume(self, loaded: LoadedSound, volume: float, pan: float | None = None) -> None:
+        """Volume 0 to 1 and pan -1 to 1 of a sound."""
+        loaded.volume = volume
+        if pan is not None:
+            loaded.pan = pan
+        self._adjust(loaded)
+
+    def set_all(self, volume: float | None = None, panorama: float | None = None) -> None:
+        """Volume 0 to 1 and panorama -1 to 1 of the whole player, on top of those of each sound."""
+        self._volume = self._volume if volume is None else volume
+        self._panorama = self._panorama if panorama is None else panorama
+        for loaded in self.loaded():
+            self._adjust(loaded)
+
+    def stop(self, loaded: LoadedSound) -> None:
+        """Silence a sound."""
+        if loaded.run is not None:
+            loaded.run.task.kill()
+
+    def stop_all(self) -> None:
+        """Silence all that plays."""
+        for loaded in self.loaded():
+            self.stop(loaded)
+
+    def unload(self, loaded: LoadedSound) -> None:
+        """Forget a sound; it is silent then."""
+        self.stop(loaded)
+        with self._lock:
+            self._sounds.pop(loaded.number, None)
+
+    def unload_all(self) -> None:
+        """Forget all sounds."""
+        for loaded in self.loaded():
+            self.unload(loaded)
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _begin(self, loaded: LoadedSound, position: float) -> None:
+        run = loaded.run
+        pan = max(-1.0, min(1.0, loaded.pan + self._panorama))
+        speakers = self._simulation.sound.loudspeakers
+        playing = speakers.play(loaded.heard, loaded.name, loaded.volume * self._volume, pan, position, run.loop)
+        run.playing = playing
+        playing.task.add_done_callback(lambda done: self._ended(loaded, run, playing, done))
+
+    def _ended(self, loaded: LoadedSound, run: Run, playing: Any, done: Task) -> None:
+        if run.playing is not playing or loaded.run is not run:
+            return  # it was exchanged for another, or silenced
+        self._forget_run(loaded)
+        run.task.killed = done.killed
+        run.task.finish(error=done.error)
+
+    def _silence(self, loaded: LoadedSound) -> None:
+        run = loaded.run
+        self._forget_run(loaded)
+        if run is not None:
+            run.playing.stop()
+
+    def _forget_run(self, loaded: LoadedSound) -> None:
+        if loaded.run is not None:
+            self._on_end(loaded.run.begun, self._simulation.sound.time)
+        loaded.run = None
+        if loaded.temporary:
+            with self._lock:
+                self._sounds.pop(loaded.number, None)
+
+    def _exchange(self, loaded: LoadedSound, altered: Sound | None) -> None:
+        loaded.altered = altered
+        run = loaded.run
+        if run is None:
+            return
+        old, position, paused = run.playing, run.playing.position, run.playing.paused
+        self._begin(loaded, position)
+        old.stop()
+        if paused:
+            run.playing.pause()
+
+    def _adjust(self, loaded: LoadedSound) -> None:
+        if loaded.run is not None:
+            loaded.run.playing.set_volume(loaded.volume * self._volume)
+            loaded.run.playing.set_pan(max(-1.0, min(1.0, loaded.pan + self._panorama)))
+
+    def _running(self, loaded: LoadedSound) -> Run:
+        if loaded.run is None:
+            raise NaoqiError(f"the sound {loaded.number} ({loaded.name}) does not play")
+        return loaded.run
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:.1f} MB"

@@ -1,0 +1,205 @@
+"""Records what the microphones hear to a file, from one moment of simulated time to another."""
+
+from __future__ import annotations
+
+import logging
+import math
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable
+
+from nao_sim_bridge.base.errors import BadValue, SimulationStopped
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.whole_file import FileTrouble
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, MicrophoneFormat
+from nao_sim_bridge.sound.wav_file import OggFile, WavFile
+
+log = logging.getLogger("nao_sim.recorder")
+
+# How long the end of the simulator waits for a file, s of wall time.
+CLOSING = 10.0
+KINDS: dict[str, Callable[[Path, int, int], Any]] = {"wav": WavFile, "ogg": OggFile}
+
+
+@dataclass(frozen=True)
+class RecordingOrder:
+    """What is to be recorded.
+
+    Attributes:
+        name: File name as it was given.
+        kind: "wav" or "ogg".
+        heard: Rate and channels.
+    """
+
+    name: str
+    kind: str
+    heard: MicrophoneFormat
+
+
+class FilesInUse:
+    """Files that are written to, by whichever recorder."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._paths: set[Path] = set()
+
+    def take(self, path: Path, name: str) -> None:
+        """Take a file, called `name` in errors.
+
+        Raises:
+            NaoqiError: It is written to already.
+        """
+        with self._lock:
+            if path in self._paths:
+                raise NaoqiError(f"{name!r} is being written to by another recording")
+            self._paths.add(path)
+
+    def give_back(self, path: Path) -> None:
+        """It is complete."""
+        with self._lock:
+            self._paths.discard(path)
+
+
+class Recorder:
+    """One recording at a time.
+
+    Args:
+        simulation: Whose microphones these are.
+        runner: Its thread.
+        files: Where clients may have files written to.
+        in_use: Shared by all recorders.
+    """
+
+    def __init__(self, simulation: Any, runner: SimulationRunner, files: ClientFiles, in_use: FilesInUse) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._files = files
+        self._in_use = in_use
+        self._lock = threading.Lock()
+        self._recording: _Recording | None = None
+
+    def start(self, order: RecordingOrder) -> Task:
+        """Begin at the present moment of simulated time; the task ends when it has begun.
+
+        Raises:
+            NaoqiError: A recording is under way.
+            FileTrouble: The file cannot be written.
+            ValueError: The file is not inside the folder for recordings.
+        """
+        path = self._files.to_write(order.name)
+        with self._lock:
+            if self._recording is not None:
+                raise NaoqiError(f"a recording to {self._recording.name!r} is under way; stop it first")
+            self._in_use.take(path, order.name)
+            try:
+                recording = self._recording = _Recording(order, path)
+            except Exception:
+                self._in_use.give_back(path)
+                raise
+        log.info("recording to %s", path)
+        return self._runner.execute(lambda: recording.begin(self._simulation.sound.ears), "startMicrophonesRecording")
+
+    def stop(self) -> Task:
+        """End at the present moment of simulated time; the task ends when the file is complete."""
+        with self._lock:
+            recording, self._recording = self._recording, None
+        ended = Task("stopMicrophonesRecording", 0)
+
+        def finish() -> None:
+            try:
+                recording.end()
+            except Exception as error:
+                self._in_use.give_back(recording.path)
+                ended.finish(error=error)
+            else:
+                self._in_use.give_back(recording.path)
+                ended.finish()
+
+        def mark() -> None:
+            recording.until = self._simulation.sound.time
+
+        if recording is None:
+            ended.finish()
+        else:
+            # In a thread of its own: what was heard last has still to be worked out.
+            thread = threading.Thread(target=finish, name="end of a recording", daemon=True)
+            try:
+                marked = self._runner.execute(mark, "stopMicrophonesRecording")
+            except SimulationStopped:
+                thread.start()  # then there is no more to hear than there is in the file
+            else:
+                marked.add_done_callback(lambda _: thread.start())
+        return ended
+
+    def close(self) -> None:
+        """End the recording, if there is one; blocking. What goes wrong is logged."""
+        try:
+            self.stop().result(CLOSING)
+        except (NaoqiError, TimeoutError) as error:
+            log.error("%s", error)
+
+
+class _Recording:
+    """A file that grows with every block that the ears hear.
+
+    Attributes:
+        name: Name of the file as it was given.
+        path: The file.
+        until: Simulated time at which it ends, s; known once it is stopped.
+    """
+
+    def __init__(self, order: RecordingOrder, path: Path) -> None:
+        self.name, self.path = order.name, path
+        self.until = math.inf
+        self._heard = order.heard
+        channels = 4 if order.heard.channel == ALL else 1
+        self._file = KINDS[order.kind](path, order.heard.rate, channels)
+        self._listener: Any = None
+        self._failure: Exception | None = None
+
+    def begin(self, ears: Any) -> None:
+        """Begin to hear."""
+        wants, channel = self._heard.wants, self._heard.channel_name
+        self._listener = ears.listen(f"recording {self.name}", self._on_block, wants, channel, exact=True)
+
+    def end(self) -> None:
+        """Hear what is left, and end the file.
+
+        Raises:
+            NaoqiError: The file could not be written.
+        """
+        if self._listener is not None:
+            self._listener.close()
+        try:
+            self._file.close()
+        except FileTrouble as error:
+            self._failure = self._failure or error
+        if self._failure is not None:
+            raise NaoqiError(f"{self.name!r} is not complete: {self._failure}")
+
+    def _on_block(self, block: Any) -> None:
+        """Append a block; in the thread of the ears."""
+        if self._failure is not None:
+            return
+        try:
+            left = max(0, round(min(self.until - block.time, len(block.samples)) * block.rate))
+            self._file.write(block.samples[:left])
+        except RuntimeError as error:
+            self._failure = error
+            log.error("recording to %r ends early: %s", self.name, error)
+
+
+def kind_of(name: str) -> str:
+    """Wav or ogg, by the ending of a file name.
+
+    Raises:
+        BadValue: It has another ending.
+    """
+    ending = Path(name).suffix.lower().lstrip(".")
+    if ending not in KINDS:
+        raise BadValue("filename", name, "a name that ends in .wav or .ogg")
+    return ending

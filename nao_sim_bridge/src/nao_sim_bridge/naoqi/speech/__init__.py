@@ -1,0 +1,1 @@
+"""NAOqi's modules that speak and understand: ALTextToSpeech, ALAnimatedSpeech, ALSpeechRecognition."""

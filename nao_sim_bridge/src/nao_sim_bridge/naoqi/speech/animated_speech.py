@@ -1,0 +1,158 @@
+"""ALAnimatedSpeech of the simulated robot. Only NAOqi methods live here."""
+
+from __future__ import annotations
+
+import random
+from typing import Any, Mapping
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller
+from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
+from nao_sim_bridge.speech.animations import AnimationLibrary, read_animations
+from nao_sim_bridge.speech.animator import Animator
+from nao_sim_bridge.speech.body_language import CONTEXTUAL, DISABLED, MODES
+from nao_sim_bridge.speech.speaker import Speaker
+from nao_sim_bridge.speech.studio import Studio
+
+END = "ALAnimatedSpeech/EndOfAnimatedSpeech"
+MODE_KEY = "bodyLanguageMode"
+
+
+class ALAnimatedSpeech:
+    """ALAnimatedSpeech as the simulated robot offers it.
+
+    Args:
+        simulation: Whose robot it is; touched in the simulation thread only.
+        runner: That thread.
+        memory: Where the end of a text is told.
+        speaker: The robot's mouth.
+        studio: Who makes sound of text.
+        settings: The voice that clients have chosen.
+        files: Where files of clients are.
+        call: For texts that call methods.
+        animator: Moves arms and head.
+        library: The animations that it knows.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        memory: MemoryStore,
+        speaker: Speaker,
+        studio: Studio,
+        settings: VoiceSettings,
+        files: ClientFiles,
+        call: Caller,
+        animator: Animator,
+        library: AnimationLibrary,
+    ) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._memory = memory
+        self._speaker = speaker
+        self._studio = studio
+        self._settings = settings
+        self._files = files
+        self._call = call
+        self._animator = animator
+        self._library = library
+        self._chance = random.Random(simulation.scene.seed)
+        self._mode = CONTEXTUAL
+        memory.declare_event(END, "ALAnimatedSpeech")
+
+    def say(self, text: str, configuration: Any = None) -> Task:
+        return self.say_with(text, self._mode if configuration is None else self._configured(configuration), self._call)
+
+    def say_without_calls(self, text: str) -> Task:
+        """What a behaviour says: instructions that call methods are left out."""
+        return self.say_with(text, self._mode, None)
+
+    def say_with(self, text: str, mode: str, call: Caller | None) -> Task:
+        """See `AnimatedTalk`."""
+        talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, call)
+
+        def start() -> Task:
+            task = talk.start(self._simulation, self._speaker, self._animator)
+            task.add_done_callback(lambda done: self._memory.raise_event(END, done.task_id))
+            return task
+
+        return self._runner.execute(start, "say")
+
+    # --- body language --------------------------------------------------------------------------------------------
+
+    def getBodyLanguageMode(self) -> int:
+        return MODES.index(self._mode)
+
+    def getBodyLanguageModeToStr(self) -> str:
+        return self._mode
+
+    def setBodyLanguageMode(self, mode: int) -> None:
+        self._mode = _mode(mode)
+
+    def setBodyLanguageModeFromStr(self, mode: str) -> None:
+        self._mode = _mode(mode)
+
+    def isBodyLanguageEnabled(self) -> bool:
+        return self._mode != DISABLED
+
+    def setBodyLanguageEnabled(self, enable: bool) -> None:
+        self._mode = CONTEXTUAL if enable else DISABLED
+
+    def isBodyTalkEnabled(self) -> bool:
+        return self.isBodyLanguageEnabled()
+
+    def setBodyTalkEnabled(self, enable: bool) -> None:
+        self.setBodyLanguageEnabled(enable)
+
+    # --- animations -----------------------------------------------------------------------------------------------
+
+    def declareAnimationsPackage(self, name: str) -> None:
+        """A package is a file of that name with the ending .json in the folder for files of clients."""
+        self._library.add(read_animations(self._files.to_read(f"{name}.json")).values())
+
+    def declareTagForAnimations(self, tags: Any) -> None:
+        for tag, names in _lists(tags, "tagsToAnimations").items():
+            for name in names:
+                if name not in self._library.animations:
+                    raise BadValue("animation", name, f"one of {', '.join(self._library.animations)}")
+            self._library.add_tag(tag, names)
+
+    def addTagsToWords(self, tags: Any) -> None:
+        for tag, words in _lists(tags, "tagsToWords").items():
+            self._library.add_words(tag, words)
+
+    def _configured(self, configuration: Any) -> str:
+        if not isinstance(configuration, Mapping) or set(configuration) - {MODE_KEY}:
+            raise BadValue("configuration", configuration, f'a map like {{"{MODE_KEY}": "{CONTEXTUAL}"}}')
+        return _mode(configuration[MODE_KEY]) if configuration else self._mode
+
+
+def _mode(value: Any) -> str:
+    """A mode by its name or its number.
+
+    Raises:
+        BadValue: There is no such mode.
+    """
+    if value in MODES:
+        return value
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < len(MODES):
+        return MODES[value]
+    names = ", ".join(f"{number} ({name})" for number, name in enumerate(MODES))
+    raise BadValue(MODE_KEY, value, f"one of {names}")
+
+
+def _lists(value: Any, field: str) -> dict[str, list[str]]:
+    """A map of texts to lists of texts."""
+    if not isinstance(value, Mapping):
+        raise BadValue(field, value, "a map of tags to lists")
+    for tag, names in value.items():
+        fits = isinstance(names, (list, tuple)) and all(isinstance(name, str) for name in names)
+        if not isinstance(tag, str) or not fits:
+            raise BadValue(f"{field}[{tag!r}]", names, "a list of texts")
+    return {tag: list(names) for tag, names in value.items()}

@@ -1,0 +1,182 @@
+"""One text that is spoken with gestures. Simulation thread, but for the constructor."""
+
+from __future__ import annotations
+
+import logging
+import random
+from typing import Any, Callable, Sequence
+
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.naoqi.speech.annotated_text import ANIMATION, Instruction, method_call, read
+from nao_sim_bridge.speech import body_language, speaker
+from nao_sim_bridge.speech.animations import Animation, AnimationLibrary
+from nao_sim_bridge.speech.animator import Animator
+from nao_sim_bridge.speech.clips import Clip, SpokenWord, Style
+from nao_sim_bridge.speech.sentences import Item
+from nao_sim_bridge.speech.speaker import Speaker, SpeechEvent
+from nao_sim_bridge.speech.studio import Studio
+from nao_sim_bridge.speech.tags import Cue, Gate, Piece
+
+log = logging.getLogger("nao_sim.speech")
+
+# Calls a method of a module and ends with its answer: module, method, arguments.
+Caller = Callable[[str, str, list], Task]
+
+
+class AnimatedTalk:
+    """Reads an annotated text, has it spoken, and moves the robot along.
+
+    Args:
+        text: With instructions and tags.
+        style: How it is spoken.
+        mode: Body language where no instruction says otherwise.
+        studio: Reads what is spoken.
+        library: The animations.
+        chance: Chooses gestures.
+        call: For the instructions that call methods; None: they are left out.
+
+    Raises:
+        BadValue: The text is too long, or its pauses are together.
+    """
+
+    def __init__(
+        self,
+        text: str,
+        style: Style,
+        mode: str,
+        studio: Studio,
+        library: AnimationLibrary,
+        chance: random.Random,
+        call: Caller | None,
+    ) -> None:
+        studio.check_length(text)
+        self._style = style
+        self._mode = mode
+        self._library = library
+        self._chance = chance
+        self._call = call
+        self._animator: Animator | None = None
+        self._speech: Task | None = None
+        self._began = False
+        # Which animation a tag stands for in this text.
+        self._of_tag: dict[str, Animation] = {}
+        self._told_limp = False
+        pieces: list[Piece] = []
+        for part in read(text):
+            if isinstance(part, Instruction):
+                pieces += self._piece(part)
+            else:
+                pieces += studio.tags.read(part, style.prosody)
+        self._items: list[Item] = studio.sentences_of(text, pieces)
+
+    def start(self, simulation: Any, mouth: Speaker, animator: Animator) -> Task:
+        """Speak; the task ends when the text is said and the joints are back. Killing it is silence at once."""
+        self._animator = animator
+
+        def stop(_: Task) -> None:
+            speech.kill()
+
+        def finish(_: Task) -> None:
+            mouth.listeners.remove(self._hear)
+            if speech.error is not None:  # it cannot be said, or the simulation has ended
+                whole.finish(error=speech.error)
+            moves = animator.stop_all() if self._began else []
+            _after(moves, whole.finish)
+
+        whole = simulation.task_ids.make("say", on_kill=stop)
+        mouth.listeners.append(self._hear)
+        speech = self._speech = mouth.say(self._items, self._style)
+        speech.add_done_callback(finish)
+        return whole
+
+    # --- what happens while it is spoken --------------------------------------------------------------------------
+
+    def _hear(self, event: SpeechEvent) -> None:
+        if self._speech is None or event.task_id != self._speech.task_id:
+            return
+        if event.kind == speaker.STARTED:
+            self._began = True
+        elif event.kind == speaker.SENTENCE:
+            self._plan(event.value)
+
+    def _plan(self, clip: Clip) -> None:
+        """Gestures of a sentence that begins now."""
+        words = [(time, mark.text) for time, mark in clip.marks if isinstance(mark, SpokenWord)]
+        # From the first instruction on there are the gestures that it asks for.
+        until = min((time for time, mark in clip.marks if isinstance(mark, Cue)), default=clip.sound.duration)
+        words = [word for word in words if word[0] < until]
+        gestures = body_language.plan(until, words, self._mode, self._library, self._chance)
+        if gestures and not all(self._animator.can(gesture.animation) for gesture in gestures):
+            self._tell_limp()
+        self._animator.plan([] if self._animator.busy else gestures)
+
+    def _tell_limp(self) -> None:
+        if not self._told_limp:
+            self._told_limp = True
+            log.warning("speaks without gestures: arms or head are limp; wakeUp or a stiffness comes first")
+
+    # --- instructions ---------------------------------------------------------------------------------------------
+
+    def _piece(self, instruction: Instruction) -> list[Piece]:
+        """What an instruction becomes: a cue goes by, at a gate the voice waits."""
+        act, value = instruction.act, instruction.value
+        if act == "mode":
+            if value not in body_language.MODES:
+                log.warning("^mode(%s) is left out, there are %s", value, ", ".join(body_language.MODES))
+                return []
+            return [Gate(lambda: self._set_mode(value))]
+        if act in ("call", "post"):
+            return self._call_piece(instruction)
+        animation = self._animation(instruction)
+        if animation is None:
+            log.warning("there is no animation for %s %r: it is left out", instruction.kind, value)
+            return []
+        if act == "start":
+            return [Cue(lambda: self._begin(animation))]
+        if act == "stop":
+            return [Cue(lambda: self._animator.stop(animation))]
+        if act == "wait":
+            return [Gate(lambda: self._animator.running(animation))]
+        return [Gate(lambda: self._begin(animation))]
+
+    def _call_piece(self, instruction: Instruction) -> list[Piece]:
+        if self._call is None:
+            log.warning("^%s is left out: behaviours call no methods", instruction.act)
+            return []
+        try:
+            module, method, arguments = method_call(instruction.value)
+        except ValueError as error:
+            log.warning("^%s is left out: %s", instruction.act, error)
+            return []
+        if instruction.act == "call":
+            return [Gate(lambda: self._call(module, method, arguments))]
+        return [Cue(lambda: self._call(module, method, arguments))]
+
+    def _animation(self, instruction: Instruction) -> Animation | None:
+        if instruction.kind == ANIMATION:
+            return self._library.find(instruction.value)
+        tagged = self._library.tagged(instruction.value)
+        if tagged and instruction.value not in self._of_tag:
+            self._of_tag[instruction.value] = self._chance.choice(tagged)
+        return self._of_tag.get(instruction.value)
+
+    def _begin(self, animation: Animation) -> Task | None:
+        self._animator.drop_plans()
+        task = self._animator.start(animation)
+        if task is None:
+            self._tell_limp()
+        return task
+
+    def _set_mode(self, mode: str) -> None:
+        self._mode = mode
+        if mode == body_language.DISABLED:
+            self._animator.drop_plans()
+
+
+def _after(tasks: Sequence[Task], then: Callable[[], Any]) -> None:
+    """Call `then()` when all tasks have ended."""
+    left = list(tasks)
+    if not left:
+        then()
+        return
+    left[0].add_done_callback(lambda _: _after(left[1:], then))

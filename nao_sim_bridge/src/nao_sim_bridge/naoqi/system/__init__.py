@@ -1,0 +1,1 @@
+"""ALSystem, and NaoSimulation, the module that a robot has not."""

@@ -1,0 +1,158 @@
+"""What ALTracker can follow: which module tells where it is, and what its events say. Pure but for the table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Callable, Mapping, Sequence, Tuple
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.tracking.geometry import Point, distance_of, seen_place
+
+# What `registerTarget` takes: a length in m, and for some targets ids or a confidence.
+LENGTH = (0.005, 5.0)
+LARGEST_ID = 10000
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """Something that was seen or heard.
+
+    Attributes:
+        place: x, y, z in FRAME_ROBOT at the time, m.
+        distance: From the camera or the head, m.
+        number: Of the landmark, or of the face; 0 for what has none.
+    """
+
+    place: Point
+    distance: float
+    number: int = 0
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """What a client has registered.
+
+    Attributes:
+        length: Diameter, width or distance, m.
+        numbers: Ids that count; none for all.
+        confidence: Sounds have at least, 0..1.
+    """
+
+    length: float
+    numbers: Tuple[int, ...] = ()
+    confidence: float = 0.0
+
+
+Read = Callable[[Any, Parameters], Sequence[Sighting]]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A kind of target.
+
+    Attributes:
+        name: As NAOqi has it.
+        module: Whose events tell where it is.
+        event: Which one.
+        period: Default period of the module, ms.
+        read: Reads its value.
+        parameters: Checks what a client registers.
+    """
+
+    name: str
+    module: str
+    event: str
+    period: int
+    read: Read
+    parameters: Callable[[Any], Parameters]
+
+
+def read_ball(value: Any, parameters: Parameters) -> list[Sighting]:
+    """`redBallDetected`: its sizes are angular radii."""
+    if not value:
+        return []
+    alpha, beta, radius = value[1][:3]
+    distance = distance_of(parameters.length, 2.0 * radius)
+    return [Sighting(seen_place(value[3], alpha, beta, distance), distance)]
+
+
+def read_faces(value: Any, parameters: Parameters) -> list[Sighting]:
+    """`FaceDetected`: the last of its faces is what is new about names."""
+    found = []
+    for face in value[1][:-1] if value else ():
+        (_, alpha, beta, width, _), number_of_face = face[0], int(face[1][0])
+        if parameters.numbers and number_of_face not in parameters.numbers:
+            continue
+        distance = distance_of(parameters.length, width)
+        found.append(Sighting(seen_place(value[3], alpha, beta, distance), distance, number_of_face))
+    return sorted(found, key=lambda sighting: sighting.distance)
+
+
+def read_landmarks(value: Any, parameters: Parameters) -> list[Sighting]:
+    """`LandmarkDetected`: a mark that is seen from the side is as wide as it is high."""
+    found = []
+    for shape, (mark, *_) in value[1] if value else ():
+        _, alpha, beta, width, height = shape[:5]
+        if parameters.numbers and int(mark) not in parameters.numbers:
+            continue
+        distance = distance_of(parameters.length, max(width, height))
+        found.append(Sighting(seen_place(value[3], alpha, beta, distance), distance, int(mark)))
+    return sorted(found, key=lambda sighting: sighting.distance)
+
+
+def read_sound(value: Any, parameters: Parameters) -> list[Sighting]:
+    """`SoundLocated` gives a direction; the distance is what the client supposes."""
+    if not value or value[1][2] < parameters.confidence:
+        return []
+    azimuth, elevation = value[1][:2]
+    return [Sighting(seen_place(value[3], azimuth, -elevation, parameters.length), parameters.length)]
+
+
+def _length(field: str) -> Callable[[Any], Parameters]:
+    return lambda value: Parameters(number(value[0] if _is_list(value) and len(value) == 1 else value, field, *LENGTH))
+
+
+def _length_and_ids(value: Any) -> Parameters:
+    if not _is_list(value) or not value or len(value) > 2:
+        raise BadValue("pParams", value, "[size in m, [mark, ...]]")
+    return Parameters(number(value[0], "size", *LENGTH), _ids(value[1] if len(value) == 2 else []))
+
+
+def _people(value: Any) -> Parameters:
+    return Parameters(FACE_WIDTH, _ids(value if _is_list(value) else [value]))
+
+
+def _sound(value: Any) -> Parameters:
+    if not _is_list(value) or len(value) != 2:
+        raise BadValue("pParams", value, "[distance in m, confidence 0..1]")
+    return Parameters(number(value[0], "distance", 0.1, 20.0), (), number(value[1], "confidence", 0.0, 1.0))
+
+
+def _ids(value: Any) -> Tuple[int, ...]:
+    listed = value if _is_list(value) else [value]
+    for one in listed:
+        if isinstance(one, bool) or not isinstance(one, int) or not 0 <= one <= LARGEST_ID:
+            raise BadValue("ids", one, f"whole numbers, 0 to {LARGEST_ID}")
+    return tuple(listed)
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, (list, tuple))
+
+
+# Width of a face, m, where a client does not say.
+FACE_WIDTH = 0.15
+FACES = ("ALFaceDetection", "FaceDetected", 100)
+MARKS = ("ALLandMarkDetection", "LandmarkDetected", 60)
+TARGETS: Mapping[str, Target] = {
+    target.name: target
+    for target in (
+        Target("RedBall", "ALRedBallDetection", "redBallDetected", 30, read_ball, _length("diameter")),
+        Target("Face", *FACES, read_faces, _length("width")),
+        Target("LandMark", *MARKS, read_landmarks, _length_and_ids),
+        Target("LandMarks", *MARKS, read_landmarks, _length_and_ids),
+        Target("People", *FACES, read_faces, _people),
+        Target("Sound", "ALSoundLocalization", "ALSoundLocalization/SoundLocated", 170, read_sound, _sound),
+    )
+}

@@ -1,0 +1,157 @@
+"""ALFaceDetection of the simulated robot."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.cameras.frame import Frame
+from nao_sim_bridge.cameras.settings import CameraTables
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import number, text
+from nao_sim_bridge.naoqi.memory.extractor import Extractor
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.vision.face_detection_learning import FaceLearner
+from nao_sim_bridge.naoqi.vision.face_detection_people import KnownPeople
+from nao_sim_bridge.naoqi.vision.face_detection_value import NamedFace, NamesOnce, faces_value
+from nao_sim_bridge.naoqi.vision.sight import Sight
+from nao_sim_bridge.naoqi.vision.vision_extractor import VisionExtractor
+from nao_sim_bridge.naoqi.vision.watching import Watching
+from nao_sim_bridge.vision.client import VisionProcess
+from nao_sim_bridge.vision.face_memory import POLICIES
+from nao_sim_bridge.vision.faces import FaceSettings, SeenFace
+
+NAME, EVENT = "ALFaceDetection", "FaceDetected"
+FPS, VGA = 10, 2
+"""In VGA: in QVGA a face two metres away is no larger than the smallest that can be found."""
+DEFAULT_THRESHOLD = 0.4
+LONGEST_NAME = 200
+
+
+class ALFaceDetection:
+    """Tells which faces are where, and whose they are. Only NAOqi methods are public, `watching` and `learner`.
+
+    The event `FaceDetected` is raised with each picture in which there is a face, as `faces_value` says, and once with
+    an empty list when the last one has gone. Learning takes five pictures in a row; each has to show exactly one face.
+
+    Attributes:
+        watching: The eyes of the module.
+        learner: Learns faces.
+
+    Args:
+        simulation: Whose cameras these are.
+        memory: Where events go.
+        vision: Where pictures are looked at.
+        files: Where known faces are kept.
+    """
+
+    def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess, files: ClientFiles) -> None:
+        self._sight = Sight(memory, EVENT, tell_end=True)
+        self._people = KnownPeople(files)
+        self._names = NamesOnce()
+        self._recognition = self._tracking = True
+        self._threshold = DEFAULT_THRESHOLD
+        self.watching = Watching(
+            simulation.cameras,
+            NAME,
+            vision.detector("faces"),
+            self._on_result,
+            settings=self._settings,
+            on_stop=self._nothing,
+            resolution=VGA,
+            fps=FPS,
+        )
+        self.learner = FaceLearner(simulation.cameras, vision.detector("faces"), lambda: self.watching.camera)
+
+    def learnFace(self, name: str) -> Task:
+        """Learn the face in view; False when there is none or more than one, or ten pictures of the person."""
+        known_as = _checked(name)
+        return self.learner.look(lambda description: self._people.learn(known_as, description))
+
+    def reLearnFace(self, name: str) -> Task:
+        """Learn one more picture of somebody who is known; False also when nobody of the name is."""
+        if _checked(name) not in self._people.names:
+            return _answered(False)
+        return self.learnFace(name)
+
+    def forgetPerson(self, name: str) -> bool:
+        return self._people.forget(name)
+
+    def clearDatabase(self) -> bool:
+        self._people.clear()
+        return True
+
+    def getLearnedFacesList(self) -> list[str]:
+        return self._people.names
+
+    def importOldDatabase(self, policy: str) -> bool:
+        """Take people in from the file of another robot; False when there is none. See `KnownPeople.take_over`."""
+        if policy not in POLICIES:
+            raise BadValue("policy", policy, " or ".join(POLICIES))
+        return self._people.take_over(policy)
+
+    def setRecognitionConfidenceThreshold(self, threshold: float) -> None:
+        self._threshold = number(threshold, "threshold", 0.0, 1.0)
+
+    def getRecognitionConfidenceThreshold(self) -> float:
+        return self._threshold
+
+    def setRecognitionEnabled(self, enable: bool) -> None:
+        self._recognition = bool(enable)
+
+    def isRecognitionEnabled(self) -> bool:
+        return self._recognition
+
+    def enableRecognition(self, enable: bool) -> None:
+        self.setRecognitionEnabled(enable)
+
+    def setTrackingEnabled(self, enable: bool) -> None:
+        self._tracking = bool(enable)
+
+    def isTrackingEnabled(self) -> bool:
+        return self._tracking
+
+    def enableTracking(self, enable: bool) -> None:
+        self.setTrackingEnabled(enable)
+
+    def _settings(self, frame: Frame) -> FaceSettings:
+        return FaceSettings(frame.time, frame.camera, self._tracking, self._recognition)
+
+    def _on_result(self, frame: Frame, found: list[SeenFace]) -> None:
+        faces = [self._named(face) for face in found]
+        news = self._names.news(faces, frame.time)
+        if faces:
+            self._sight.show(faces_value(frame, faces, news))
+        else:
+            self._sight.nothing()
+
+    def _named(self, face: SeenFace) -> NamedFace:
+        name, score = "", 0.0
+        if face.description is not None:
+            name, score = self._people.recognise(face.description)
+        return NamedFace(face, name if score >= self._threshold else "", score)
+
+    def _nothing(self) -> None:
+        self._names = NamesOnce()
+        self._sight.nothing()
+
+
+def parts(service: ALFaceDetection, memory: MemoryStore, tables: CameraTables) -> list[Any]:
+    """The objects that together have the methods of ALFaceDetection."""
+    watching = service.watching
+    extractor = Extractor(NAME, memory, watching.start, watching.stop, [EVENT], changed=watching.changed)
+    return [service, VisionExtractor(watching, tables), extractor]
+
+
+def _checked(name: str) -> str:
+    if not text(name, "name", LONGEST_NAME).strip():
+        raise BadValue("name", name, "the name of somebody, not empty")
+    return name
+
+
+def _answered(answer: Any) -> Task:
+    task = Task("learnFace", 0)
+    task.finish(answer)
+    return task

@@ -1,0 +1,97 @@
+"""The people that the robot knows, kept in a file of the folder for recordings."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from typing import Callable
+
+import numpy as np
+
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.vision.face_memory import FaceFileError, FaceMemory
+
+log = logging.getLogger("nao_sim.faces")
+
+FILE, OLD_FILE = "faces.npz", "faces_old.npz"
+
+
+class KnownPeople:
+    """Known people; what changes is on the disk before it counts. Any thread.
+
+    Args:
+        files: Where the file is. One that cannot be read is put aside, as "faces.npz.broken".
+    """
+
+    def __init__(self, files: ClientFiles) -> None:
+        self._files = files
+        self._lock = threading.Lock()
+        self._memory: FaceMemory | None = None
+
+    @property
+    def names(self) -> list[str]:
+        """Who is known."""
+        with self._lock:
+            return self._known().names
+
+    def recognise(self, description: np.ndarray) -> tuple[str, float]:
+        """Who it is most likely, and how sure that is, 0..1."""
+        with self._lock:
+            return self._known().recognise(description)
+
+    def learn(self, name: str, description: np.ndarray) -> bool:
+        """Add a picture of somebody; False when there are as many as there can be."""
+        return self._change(lambda memory: memory.learn(name, description))
+
+    def forget(self, name: str) -> bool:
+        """Forget somebody; False when nobody of the name is known."""
+        return self._change(lambda memory: memory.forget(name))
+
+    def clear(self) -> None:
+        """Forget everybody."""
+
+        def clear(memory: FaceMemory) -> bool:
+            memory.clear()
+            return True
+
+        self._change(clear)
+
+    def take_over(self, policy: str) -> bool:
+        """Take in the people of the file `faces_old.npz`, a `faces.npz` of another robot; False when there is none.
+
+        Raises:
+            FaceFileError: It is not such a file.
+        """
+        path = self._files.to_write(OLD_FILE)
+        if not path.is_file():
+            return False
+        other = FaceMemory.load(path)
+
+        def take_over(memory: FaceMemory) -> bool:
+            memory.take_over(other, policy)
+            return True
+
+        return self._change(take_over)
+
+    def _change(self, change: Callable[[FaceMemory], bool]) -> bool:
+        with self._lock:
+            changed = self._known().copy()
+            done = change(changed)
+            if done:
+                changed.save(self._files.to_write(FILE))
+                self._memory = changed
+            return done
+
+    def _known(self) -> FaceMemory:
+        """The people, read from the file when they are wanted first; with the lock held."""
+        if self._memory is None:
+            path = self._files.to_write(FILE)
+            self._memory = FaceMemory()
+            if path.is_file():
+                try:
+                    self._memory = FaceMemory.load(path)
+                except FaceFileError as error:
+                    aside = path.with_name(path.name + ".broken")
+                    path.replace(aside)
+                    log.error("%s; nobody is known, and it is kept as %s", error, aside)
+        return self._memory

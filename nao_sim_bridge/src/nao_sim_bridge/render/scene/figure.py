@@ -1,0 +1,158 @@
+"""The robot as bodies of a PyBullet world that are only there to be seen.
+
+Each link is one body a colour, each lamp a body of its own. The engine knows no joints between them: poses
+come from forward kinematics, so a picture needs no physics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pybullet
+
+from nao_sim_bridge.model.appearance import OFF, Appearance
+from nao_sim_bridge.model.kinematics import (
+    finger_transforms,
+    link_transforms,
+    matrix_quaternion,
+    quaternion_matrix,
+    transform,
+)
+from nao_sim_bridge.model.meshes import Mesh, merged, tessellate
+from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.model.shapes import Shape
+from nao_sim_bridge.world.render_state import RobotLook
+from nao_sim_bridge.world.visuals import visual_shape
+
+HEAD = ("HeadYaw", "HeadPitch")
+"""Links that are in the way of the cameras in the head."""
+FAR_AWAY = (-713.0, 1291.0, -977.0)
+"""Where hidden things are, m. In no straight direction: the engine takes seconds for what a camera has exactly beside
+it."""
+UNTURNED = (0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A body and the frame it is fixed to: a link name, or side and phalanx as `LFinger11`."""
+
+    body: int
+    frame: str
+
+
+class Figure:
+    """The robot in one PyBullet world.
+
+    Attributes:
+        lamp_bodies: PyBullet body of each lamp, in the order of the LED layout.
+        lamp_light: (51, 3) light that each lamp gives, (r, g, b) in 0..1.
+
+    Args:
+        client: PyBullet's physics client.
+        model: The robot.
+        appearance: Its looks.
+        paint_lamps: Change the colour of lamp bodies in the engine. A window needs it; pictures light them up
+            later.
+    """
+
+    def __init__(self, client: int, model: RobotModel, appearance: Appearance, paint_lamps: bool) -> None:
+        self._client = client
+        self._model = model
+        self._appearance = appearance
+        self._paint_lamps = paint_lamps
+        self._hands = [(joint.parent_link, joint.name[0], i) for i, joint in enumerate(model.joints) if joint.is_hand]
+        self._parts = self._build_links()
+        self.lamp_bodies = tuple(self._build_lamps())
+        self.lamp_light = np.zeros((len(self.lamp_bodies), 3))
+        self._shown: RobotLook | None = None
+        self._headless = False
+
+    def hide(self) -> None:
+        """Put all bodies out of sight."""
+        for part in self._parts:
+            self._put(part, FAR_AWAY, UNTURNED)
+        self.lamp_light = np.zeros_like(self.lamp_light)
+        self._shown = None
+
+    def show(self, state: RobotLook, headless: bool = False) -> None:
+        """Put all bodies where the state says; what has not changed is left alone.
+
+        Args:
+            state: The robot.
+            headless: Leave the head out.
+        """
+        shown = self._shown
+        if headless != self._headless:
+            shown, self._headless = None, headless
+        same_joints = shown is not None and shown.joint_positions == state.joint_positions
+        same_base = shown is not None and (shown.base_position, shown.base_orientation) == (
+            state.base_position,
+            state.base_orientation,
+        )
+        if not (same_joints and same_base):
+            self._place(state)
+        if shown is None or shown.led_values != state.led_values:
+            self._light(state.led_values)
+        self._shown = state
+
+    def _place(self, state: RobotLook) -> None:
+        base = transform(quaternion_matrix(state.base_orientation), state.base_position)
+        poses = {name: base @ pose for name, pose in link_transforms(self._model, state.joint_positions).items()}
+        for wrist, side, index in self._hands:
+            for phalanx, pose in finger_transforms(self._model, state.joint_positions[index]).items():
+                poses[side + phalanx] = poses[wrist] @ pose
+        placed = {name: (pose[:3, 3].tolist(), matrix_quaternion(pose[:3, :3])) for name, pose in poses.items()}
+        for part in self._parts:
+            hidden = self._headless and part.frame in HEAD
+            self._put(part, *((FAR_AWAY, UNTURNED) if hidden else placed[part.frame]))
+
+    def _put(self, part: _Part, position: Sequence[float], orientation: Sequence[float]) -> None:
+        pybullet.resetBasePositionAndOrientation(part.body, position, orientation, physicsClientId=self._client)
+
+    def _light(self, values: Sequence[float]) -> None:
+        lamps = self._appearance.lamps
+        light = np.array([figure.lamp.rgb(values) for figure in lamps])
+        if self._paint_lamps:
+            off = np.array(self._appearance.materials[OFF])
+            for index in np.flatnonzero(np.any(light != self.lamp_light, axis=1)):
+                level = light[index].max()
+                color = off * (1.0 - level) + light[index]
+                pybullet.changeVisualShape(
+                    self.lamp_bodies[index],
+                    -1,
+                    rgbaColor=[*np.clip(color, 0.0, 1.0), 1.0],
+                    physicsClientId=self._client,
+                )
+        self.lamp_light = light
+
+    def _build_links(self) -> list[_Part]:
+        parts = []
+        for name, shapes in self._appearance.shapes.items():
+            parts += self._build_frame(name, shapes)
+        for _, side, _ in self._hands:
+            for finger in self._model.fingers:
+                for phalanx in finger.phalanges:
+                    parts += self._build_frame(side + phalanx, self._appearance.phalanx)
+        return parts
+
+    def _build_frame(self, frame: str, shapes: Sequence[Shape]) -> list[_Part]:
+        parts = []
+        for material in dict.fromkeys(shape.material for shape in shapes):
+            meshes = [tessellate(shape).placed(shape) for shape in shapes if shape.material == material]
+            color = self._appearance.materials[material]
+            parts.append(_Part(self._build_body(merged(meshes), color), frame))
+        return parts
+
+    def _build_lamps(self) -> list[int]:
+        bodies = []
+        for figure in self._appearance.lamps:
+            mesh = tessellate(figure.shape).placed(figure.shape)
+            bodies.append(self._build_body(mesh, self._appearance.materials[OFF]))
+            self._parts.append(_Part(bodies[-1], figure.link))
+        return bodies
+
+    def _build_body(self, mesh: Mesh, color: Sequence[float]) -> int:
+        seen = visual_shape(mesh, color, self._client)
+        return pybullet.createMultiBody(0.0, -1, seen, physicsClientId=self._client)

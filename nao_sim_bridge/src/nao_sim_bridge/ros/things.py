@@ -1,0 +1,108 @@
+"""Things of the simulated world as ROS services. Thin over `things_control.py`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from geometry_msgs.msg import Pose
+
+from nao_library_msgs.srv import (
+    MoveObject,
+    MoveObjectRequest,
+    MoveObjectResponse,
+    PlaceObject,
+    PlaceObjectRequest,
+    PlaceObjectResponse,
+    RemoveObject,
+    RemoveObjectRequest,
+    RemoveObjectResponse,
+)
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.rotations import roll_pitch_yaw
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.ros.success import success_service
+from nao_sim_bridge.server.simulator_server import SimulatorServer
+from nao_sim_bridge.world.objects import THINGS
+
+SHAPES = ("box", "sphere", "ball", "cylinder", "capsule")
+SINGLE = ("sphere", "ball")
+"""Shapes that a world file describes by one number."""
+BALL_RADIUS = 0.03
+"""m, of NAO's red ball: what a ball has that is given no size."""
+SIZE_KEY = {"person": "height"}
+COLOR_KEY = {"person": "clothes"}
+KILLED = "it was stopped on its way"
+
+
+class RosThings:
+    """Places, moves and removes things.
+
+    ROS API: services `~place_object`, `~move_object`, `~remove_object` (nao_library_msgs).
+
+    Args:
+        server: The running simulator.
+    """
+
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
+        self._services = [
+            success_service("~place_object", PlaceObject, PlaceObjectResponse, self._place, KILLED),
+            success_service("~move_object", MoveObject, MoveObjectResponse, self._move, KILLED),
+            success_service("~remove_object", RemoveObject, RemoveObjectResponse, self._remove, KILLED),
+        ]
+
+    def _place(self, request: PlaceObjectRequest) -> Task:
+        if not request.description:
+            return self._server.things.place(entry_of(request))
+        if request.kind or request.name:
+            raise BadValue("description", request.description[:40], "empty when there is a name or a kind")
+        return self._server.things.place_described(request.description)
+
+    def _move(self, request: MoveObjectRequest) -> Task:
+        position, turn = _position(request.pose), _turn(request.pose)
+        return self._server.things.move(request.name, position, turn, request.time.to_sec(), request.wait)
+
+    def _remove(self, request: RemoveObjectRequest) -> Task:
+        return self._server.things.remove(request.name)
+
+
+def entry_of(request: PlaceObjectRequest) -> dict[str, Any]:
+    """The entry of a world file that the fields of a request stand for."""
+    kinds = [*SHAPES, *(kind for kind in THINGS if kind not in (*SHAPES, "parts"))]  # parts have no content in a text
+    if request.kind not in kinds:
+        raise BadValue("kind", request.kind, f"one of {', '.join(kinds)}", kinds)
+    entry: dict[str, Any] = {"name": request.name, "position": _position(request.pose)}
+    turn = _turn(request.pose)
+    if turn:
+        entry["rpy"] = turn
+    size, color = list(request.size), list(request.color)
+    if request.kind == "ball":
+        size = size or [BALL_RADIUS]
+    if request.kind in SHAPES:
+        entry[request.kind] = size[0] if request.kind in SINGLE and len(size) == 1 else size
+    else:
+        entry[request.kind] = request.content
+        if len(size) > 1:
+            raise BadValue("size", size, f"one number for a {request.kind[:40]}")
+        if size:
+            entry[SIZE_KEY.get(request.kind, "size")] = size[0]
+    if color:
+        entry[COLOR_KEY.get(request.kind, "color")] = color
+    if request.stand:
+        entry["stand"] = True
+    if request.mass:
+        entry["mass"] = request.mass
+    return entry
+
+
+def _position(pose: Pose) -> list[float]:
+    return [pose.position.x, pose.position.y, pose.position.z]
+
+
+def _turn(pose: Pose) -> list[float]:
+    """Roll, pitch and yaw of a pose, rad; [] when it has none."""
+    turn = pose.orientation
+    length = (turn.x**2 + turn.y**2 + turn.z**2 + turn.w**2) ** 0.5
+    if length == 0.0:
+        return []
+    return list(roll_pitch_yaw([value / length for value in (turn.x, turn.y, turn.z, turn.w)]))

@@ -1,0 +1,275 @@
+"""The simulator's side of libqi: listens as a robot does, registers services, calls modules of clients."""
+
+from __future__ import annotations
+
+import logging
+import socket
+import threading
+import time
+from collections import deque
+from typing import Any, Callable
+
+import qi
+
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.naoqi.binding.client_calls import NoAnswer, answer, worth_telling
+from nao_sim_bridge.server.own_sockets import StuckClients, free_port_on_exit, has_clients
+
+log = logging.getLogger("nao_sim.broker")
+
+# A port may still be held by connections of a simulator that has just ended: how long to keep trying, s.
+BIND_PATIENCE = 65.0
+BIND_PAUSE = 0.5
+# The thread that calls a client's module ends after this time without a call, s.
+CALLER_IDLE = 20.0
+# Calls that wait for a client's module; with more it loses the oldest.
+WAITING = load_sizes().clients.calls
+# How long a module may take to be found, s: one of a program that has stopped is never connected to.
+PATIENCE = 10.0
+# libqi reports each service it registers, and warns that it deduces paths it has no use for here.
+QUIET_LIBQI = "qi.path.sdklayout=silent:qimessaging.servicedirectory=warning"
+
+
+class Broker:
+    """A libqi session that listens on one address and serves modules.
+
+    Attributes:
+        name: Name that modules report as their broker.
+        port: Port it listens on, known after `listen`.
+
+    Args:
+        name: See above.
+    """
+
+    def __init__(self, name: str = "nao_sim") -> None:
+        qi.logging.setFilters(QUIET_LIBQI)
+        self.name = name
+        self.port = 0
+        self._session = qi.Session()
+        self._services: dict[str, tuple[int, Any]] = {}
+        self._callers: dict[str, _Caller] = {}
+        self._gone: Callable[[str], None] = lambda module: None
+        self._watch: StuckClients | None = None
+        self._closed = False
+        self._lock = threading.Lock()
+
+    def listen(self, address: str, port: int, still_wanted: Callable[[], bool] = lambda: True) -> None:
+        """Listen on `address`:`port`; port 0 takes a free one. Waits for a port that is just being freed.
+
+        Raises:
+            RuntimeError: The address cannot be had.
+        """
+        give_up = time.monotonic() + BIND_PATIENCE
+        warned = False
+        while True:
+            try:
+                self._session.listenStandalone(f"tcp://{address}:{port}")
+                break
+            except RuntimeError as error:
+                in_use = "Address already in use" in str(error)
+                if not in_use or _somebody_listens(address, port) or time.monotonic() > give_up:
+                    hint = "another program listens there" if in_use else str(error).strip()
+                    raise RuntimeError(f"cannot listen on {address}:{port}: {hint}") from error
+                if not warned:
+                    log.warning("port %d is still held by closed connections, waiting for it", port)
+                    warned = True
+                if not still_wanted():
+                    raise
+                time.sleep(BIND_PAUSE)
+                self._session = qi.Session()
+        self.port = int(self._session.endpoints()[0].rsplit(":", 1)[1])
+        free_port_on_exit(self.port)
+        self._watch = StuckClients(self.port)
+
+    def register(self, module: str, service: Any) -> None:
+        """Serve an object under a name."""
+        with self._lock:
+            self._services[module] = (self._session.registerService(module, service), service)
+
+    def serves(self, module: str) -> bool:
+        """Whether an object is served under a name."""
+        with self._lock:
+            return module in self._services
+
+    def drop_calls(self) -> None:
+        """Make no call any more that waits for its turn; the one that is under way goes on."""
+        with self._lock:
+            for caller in self._callers.values():
+                caller.drop()
+
+    def unregister(self, module: str) -> None:
+        """Serve it no more."""
+        with self._lock:
+            entry = self._services.pop(module, None)
+        if entry is not None:
+            self._session.unregisterService(entry[0])
+
+    def when_gone(self, callback: Callable[[str], None]) -> None:
+        """Have `callback(module)` called, in a thread of ours, when a client's module has left or is given up.
+
+        Only after `listen`. Not when one of that name is there again, whose subscriptions may be new.
+        """
+        self._gone = callback
+        self._session.serviceUnregistered.connect(lambda _, module: self._left(module))
+
+    def has_clients(self) -> bool:
+        """Whether somebody is connected; true where the system does not tell."""
+        return has_clients(self.port)
+
+    def service(self, module: str) -> Any:
+        """The service of that name, of the simulator or of a client.
+
+        Raises:
+            RuntimeError: There is none, or its program does not answer.
+        """
+        found = self._session.service(module, _async=True)
+        return answer(found, threading.Condition(), lambda: True, PATIENCE)
+
+    def call(self, module: str, method: str, arguments: list) -> None:
+        """Call a module of a client without waiting, in the order of the calls; failures are logged."""
+        with self._lock:
+            if self._closed:
+                return
+            caller = self._callers.get(module)
+            if caller is None:
+                caller = self._callers[module] = _Caller(module, self.service, self._end_if_idle, self._give_up)
+            caller.add(method, arguments)
+
+    def _end_if_idle(self, caller: _Caller) -> bool:
+        """Forget a caller that has nothing to do; under the lock, so that no call is handed to a thread that ends."""
+        with self._lock:
+            if caller.waits:
+                return False
+            self._forget(caller)
+            return True
+
+    def _give_up(self, caller: _Caller) -> None:
+        with self._lock:
+            self._forget(caller)
+        self._gone(caller.module)
+
+    def _forget(self, caller: _Caller) -> None:
+        if self._callers.get(caller.module) is caller:
+            del self._callers[caller.module]
+
+    def _left(self, module: str) -> None:
+        with self._lock:
+            ours = module in self._services
+            caller = self._callers.pop(module, None)
+        if caller is not None:
+            caller.end()
+        if not ours:  # in a thread of its own: libqi's must not wait for an answer of libqi
+            threading.Thread(target=self._tell_of, args=(module,), name=f"{module} has left", daemon=True).start()
+
+    def _tell_of(self, module: str) -> None:
+        try:
+            back = any(served["name"] == module for served in self._session.services())
+        except RuntimeError:
+            return  # the session has closed
+        if not back:
+            self._gone(module)
+
+    def close(self) -> None:
+        """Stop listening and drop all connections; calls that wait for their turn are not made any more."""
+        with self._lock:
+            self._closed = True
+            callers = list(self._callers.values())
+        for caller in callers:
+            caller.end()
+        if self._watch is not None:
+            self._watch.close()
+        self._session.close()
+
+
+class _Caller:
+    """Calls one module in a thread of its own: a client that hangs must not keep others from their events.
+
+    Not in libqi's callbacks: a call made in one needs the very thread that runs it, now and then.
+    """
+
+    def __init__(
+        self,
+        module: str,
+        service: Callable[[str], Any],
+        ends: Callable[[_Caller], bool],
+        gives_up: Callable[[_Caller], None],
+    ) -> None:
+        self.module = module
+        self._service = service
+        self._ends = ends
+        self._gives_up = gives_up
+        self._news = threading.Condition()
+        self._calls: deque[tuple[str, list]] = deque()
+        self._ended = False
+        self._lost = self._failed = 0
+        threading.Thread(target=self._run, name=f"calls of {module}", daemon=True).start()
+
+    @property
+    def waits(self) -> bool:
+        """Whether calls wait for their turn."""
+        return bool(self._calls)
+
+    def add(self, method: str, arguments: list) -> None:
+        """Make a call when those before it are over; of too many the oldest is lost."""
+        with self._news:
+            if len(self._calls) >= WAITING:
+                self._calls.popleft()
+                self._lost += 1
+                if worth_telling(self._lost):
+                    log.warning("%s does not keep up: %d calls lost so far", self.module, self._lost)
+            self._calls.append((method, arguments))
+            self._news.notify_all()
+
+    def end(self) -> None:
+        """End the thread; a call that is under way is not waited for, those behind it are dropped."""
+        with self._news:
+            self._ended = True
+            self._news.notify_all()
+        self.drop()
+
+    def drop(self) -> None:
+        """Forget the calls that wait for their turn."""
+        with self._news:
+            self._calls.clear()
+
+    def _run(self) -> None:
+        while True:
+            with self._news:
+                self._news.wait_for(lambda: self._calls or self._ended, CALLER_IDLE)
+                if self._ended:
+                    return
+                call = self._calls.popleft() if self._calls else None
+            if call is not None:
+                if not self._make(*call):
+                    return
+            elif self._ends(self):
+                return
+
+    def _make(self, method: str, arguments: list) -> bool:
+        """Make a call and wait for its end; whether to go on."""
+        try:
+            service = self._service(self.module)
+        except RuntimeError as error:
+            self._tell(method, f"lost: {error}")
+            return True
+        try:
+            answer(service.call(method, *arguments, _async=True), self._news, lambda: not self._ended)
+        except NoAnswer as error:
+            if not self._ended:
+                log.warning("%s.%s: %s; %s is called no more", self.module, method, error, self.module)
+                self._gives_up(self)
+            return False
+        except (RuntimeError, AttributeError) as error:
+            self._tell(method, f"failed: {error}")
+        return True
+
+    def _tell(self, method: str, what: str) -> None:
+        self._failed += 1
+        if worth_telling(self._failed):
+            log.warning("callback %s.%s %s (%d so far)", self.module, method, what, self._failed)
+
+
+def _somebody_listens(address: str, port: int) -> bool:
+    with socket.socket() as probe:
+        probe.settimeout(0.5)
+        return probe.connect_ex((address if address != "0.0.0.0" else "127.0.0.1", port)) == 0

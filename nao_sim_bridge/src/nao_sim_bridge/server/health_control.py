@@ -1,0 +1,78 @@
+"""The robot's health in the hands of the simulator: charger, charge, temperatures, broken devices. For any thread."""
+
+from __future__ import annotations
+
+from typing import Callable
+
+from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.body.temperatures import BATTERY, HEAD
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import number
+
+COLDEST, HOTTEST = -40.0, 200.0
+
+
+class HealthControl:
+    """Changes what a user of a robot cannot: each task ends when it is done.
+
+    Args:
+        simulation: Whose robot it is; touched in the simulation thread only.
+        runner: That thread.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
+        self._simulation = simulation
+        self._runner = runner
+
+    def plug_charger(self, plugged: bool) -> Task:
+        """Plug the charger in, or pull it."""
+        return self._run(lambda: self._simulation.robot.power.battery.plug(bool(plugged)), "plugCharger")
+
+    def set_battery_charge(self, charge: float) -> Task:
+        """Have the battery this full, 0..1; it goes on from there.
+
+        Raises:
+            BadValue: `charge` is not within 0..1.
+        """
+        wanted = number(charge, "charge", 0.0, 1.0)
+        return self._run(lambda: self._simulation.robot.power.battery.put(wanted), "setBatteryCharge")
+
+    def set_temperature(self, device: str, celsius: float) -> Task:
+        """Have the motor of a joint, the computer in the `Head` or the `Battery` this warm, degC.
+
+        Raises:
+            BadValue: The temperature makes no sense.
+            UnknownName: There is no such device.
+        """
+        wanted = number(celsius, "temperature", COLDEST, HOTTEST)
+        joints = self._simulation.model.joint_index
+        if device not in (*joints, HEAD, BATTERY):
+            raise UnknownName("device", device, (*joints, HEAD, BATTERY))
+
+        def warm_up() -> None:
+            power = self._simulation.robot.power
+            if device == HEAD:
+                power.head = wanted
+            elif device == BATTERY:
+                power.battery.warm_up(wanted)
+            else:
+                power.warm_up(joints[device], wanted)
+
+        return self._run(warm_up, "setTemperature")
+
+    def break_device(self, name: str) -> Task:
+        """Let the motor of a joint or a sensor fail, see `Faults`; the task fails where there is no such device."""
+        return self._run(lambda: self._simulation.robot.faults.break_device(name), "breakDevice")
+
+    def repair_device(self, name: str) -> Task:
+        """Have a device work again; the task fails where there is no such device."""
+        return self._run(lambda: self._simulation.robot.faults.repair(name), "repairDevice")
+
+    def devices(self) -> list[str]:
+        """Names of all devices that can break."""
+        return list(self._simulation.robot.faults.known)
+
+    def _run(self, change: Callable[[], None], name: str) -> Task:
+        return self._runner.execute(change, name)

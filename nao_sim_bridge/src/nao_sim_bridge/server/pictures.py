@@ -1,0 +1,115 @@
+"""Pictures of a running simulation, and the window of `--gui`: snapshots in, drawings out, physics never waits."""
+
+from __future__ import annotations
+
+import io
+import logging
+import threading
+
+from PIL import Image
+
+from nao_sim_bridge.base.errors import BadValue, SimulationStopped
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.render.client import RenderError, Viewer
+from nao_sim_bridge.render.pointer import Ray
+from nao_sim_bridge.world.render_state import RenderState, preset_camera
+
+log = logging.getLogger("nao_sim.pictures")
+
+MAX_PIXELS = 4096
+TIMEOUT = 30.0
+WINDOW_PERIOD = 1.0 / 30.0
+
+
+class Pictures:
+    """Draws the simulated robot from outside.
+
+    Args:
+        simulation: What to draw; only its published values are read.
+        runner: Its thread.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._viewer: Viewer | None = None
+        self._closing = threading.Event()
+
+    def follow(self, simulation: Simulation) -> None:
+        """Draw another simulation from now on; the window, if there is one, shows its world."""
+        before, self._simulation = self._simulation.renderer, simulation
+        if self._viewer is not None and simulation.renderer is not before:
+            viewer, self._viewer = self._viewer, None
+            viewer.close()
+            self.open_window()
+
+    def state(self, simulation: Simulation | None = None) -> RenderState:
+        """What is to be seen now."""
+        simulation = simulation or self._simulation
+        snapshot = simulation.snapshot
+        return RenderState(
+            snapshot.torso.position,
+            snapshot.torso.orientation,
+            snapshot.positions,
+            simulation.robot.leds.values,
+            snapshot.objects,
+            snapshot.placed,
+            snapshot.gone,
+            simulation.shared.looks_beside(simulation),
+        )
+
+    def png(self, view: str, width: int, height: int) -> bytes:
+        """A PNG picture of the robot from a named view.
+
+        Raises:
+            UnknownName: There is no such view.
+            BadValue: The size is out of range.
+            RenderError: The picture process failed.
+        """
+        whole = isinstance(width, int) and isinstance(height, int)
+        if not whole or not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
+            raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
+        simulation = self._simulation
+        state = self.state(simulation)
+        camera = preset_camera(view, simulation.model, state, width, height)
+        buffer = io.BytesIO()
+        Image.fromarray(simulation.renderer.render(state, camera, TIMEOUT), "RGB").save(buffer, "PNG")
+        return buffer.getvalue()
+
+    def open_window(self) -> None:
+        """Show the simulation in a window from now on; a click on a robot touches the sensor that is there.
+
+        Raises:
+            RenderError: There is no display.
+        """
+        self._viewer = Viewer(self._simulation.scene.world, self._simulation.scene.version).start()
+        self._viewer.on_pointer = self._on_pointer
+        threading.Thread(target=self._mirror, args=(self._viewer,), name="window", daemon=True).start()
+
+    def close(self) -> None:
+        """Close the window."""
+        self._closing.set()
+        if self._viewer is not None:
+            self._viewer.close()
+
+    def _on_pointer(self, ray: Ray | None) -> None:
+        """The mouse touches what it points at as long as its button is pressed."""
+
+        def point() -> None:
+            for robot in self._simulation.shared.robots:
+                robot.robot.point_at(ray)
+
+        try:
+            self._runner.execute(point, "point")
+        except SimulationStopped:
+            pass  # and with it all touches
+
+    def _mirror(self, viewer: Viewer) -> None:
+        while not self._closing.wait(WINDOW_PERIOD):
+            try:
+                viewer.show(self.state())
+            except RenderError as error:
+                if not self._closing.is_set() and viewer is self._viewer:
+                    log.warning("the window is gone: %s", error)
+                return

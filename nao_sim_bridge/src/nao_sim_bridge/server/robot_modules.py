@@ -1,0 +1,203 @@
+"""All that one simulated robot is made of behind its network: built at the start, and anew by a factory reset."""
+
+from __future__ import annotations
+
+import logging
+from functools import partial
+from typing import TYPE_CHECKING, Any, Callable
+
+from nao_sim_bridge.base.closing import Step
+from nao_sim_bridge.base.paths import sounds_directory
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.core.robot_runner import RobotRunner
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.hearing.recogniser import SpareProcess
+from nao_sim_bridge.naoqi import motion
+from nao_sim_bridge.naoqi.behaviors.wiring import BehaviorModules
+from nao_sim_bridge.naoqi.body.body_modules import BodyModules
+from nao_sim_bridge.naoqi.body.diagnosis_events import DiagnosisEvents
+from nao_sim_bridge.naoqi.body.fall_events import FallEvents
+from nao_sim_bridge.naoqi.body.leds import ALLeds
+from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
+from nao_sim_bridge.naoqi.body.posture_events import PostureEvents
+from nao_sim_bridge.naoqi.body.senses_wiring import SenseModules
+from nao_sim_bridge.naoqi.cameras import video_device
+from nao_sim_bridge.naoqi.cameras.photo_capture_wiring import PictureModules
+from nao_sim_bridge.naoqi.life.wiring import LifeModules
+from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
+from nao_sim_bridge.naoqi.memory.memory import ALMemory
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.motion.wake import AWAKE
+from nao_sim_bridge.naoqi.sound import sound_detection, sound_localization
+from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
+from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
+from nao_sim_bridge.naoqi.sound.wiring import AudioModules
+from nao_sim_bridge.naoqi.speech.speech_recognition import RecognitionModule
+from nao_sim_bridge.naoqi.system.system import ALSystem
+from nao_sim_bridge.naoqi.system.time_zone import TimeZone
+from nao_sim_bridge.naoqi.vision.wiring import VisionModules
+from nao_sim_bridge.server.film import END_LIMIT
+from nao_sim_bridge.server.film_control import FilmControl
+from nao_sim_bridge.server.hands_control import HandsControl
+from nao_sim_bridge.server.health_control import HealthControl
+from nao_sim_bridge.server.things_control import ThingsControl
+from nao_sim_bridge.server.world_sounds_control import WorldSoundsControl
+from nao_sim_bridge.sound.reader import SoundReader
+from nao_sim_bridge.speech.studio import Studio
+from nao_sim_bridge.vision.client import VisionProcess
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.server.broker import Broker
+    from nao_sim_bridge.server.simulator_server import ServerOptions
+
+log = logging.getLogger("nao_sim.robot")
+
+
+class Workers:
+    """Programs and threads that work for a robot and know nothing of it; they take long to start.
+
+    Attributes:
+        voice: Makes the robot's speech.
+        persons: Makes the speech of persons: they may speak while the robot does.
+        vision: Where detectors look at pictures.
+        recogniser: Recognises speech.
+        sounds: Reads sound files.
+    """
+
+    def __init__(self) -> None:
+        self.voice = Studio()
+        self.persons = Studio()
+        self.vision = VisionProcess()
+        self.recogniser = SpareProcess()
+        self.sounds = SoundReader()
+
+    def begin(self) -> None:
+        """Have the voice ready for the first text."""
+        self.voice.warm_up()
+
+    def closing(self) -> list[Step]:
+        """Steps that end them."""
+        return [one.close for one in (self.vision, self.persons, self.voice, self.recogniser, self.sounds)]
+
+
+class RobotModules:
+    """The modules of one robot, and what only a simulator can do to it.
+
+    Attributes:
+        simulation: Touched in the simulation thread only.
+        runner: That thread, for this simulation.
+        began: What `SimulatorServer.now` says at time 0 of the simulation, s.
+        memory: What ALMemory keeps.
+        files: Where clients may have files written to and read from.
+        speech, vision, video, film, sounds, things, hands, health: See `SimulatorServer`.
+
+    Args:
+        options: How the robot is started.
+        simulation: The robot and its world, at time 0.
+        runner: The thread that it runs in, or will.
+        broker: Finds modules of clients.
+        workers: See `Workers`.
+        system: What ALSystem makes of the memory and the time zone.
+    """
+
+    def __init__(
+        self,
+        options: ServerOptions,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        broker: Broker,
+        workers: Workers,
+        system: Callable[[MemoryStore, TimeZone], ALSystem],
+    ) -> None:
+        self.simulation = simulation
+        self.runner = runner = RobotRunner(runner, simulation)
+        self.began = 0.0
+        self.memory = memory = MemoryStore(lambda: simulation.snapshot.time, simulation.shared.guard)
+        self.files = files = ClientFiles(options.record_dir, [sounds_directory()])
+        sounds = SoundFiles(files, workers.sounds)
+        self._audio = AudioModules(simulation, runner, sounds, broker, memory, options.allow_private_streams)
+        self.speech = SpeechModules(simulation, runner, memory, files, broker, workers.voice)
+        posture = ALRobotPosture(simulation, runner, memory)
+        behaviors = BehaviorModules(simulation, runner, memory, files, self.speech, posture)
+        zone = TimeZone()
+        self._life = LifeModules(simulation, runner, memory, broker, self.speech, posture, behaviors.running, zone)
+        self.recognition = RecognitionModule(simulation, runner, memory, files, workers.recogniser)
+        self.video = video_device.VideoDevice(simulation.cameras, files)
+        self.vision = VisionModules(simulation, memory, files, workers.vision)
+        self._pictures_taken = PictureModules(simulation, runner, files)
+        self._senses = SenseModules(simulation, runner, memory)
+        self.sounds = WorldSoundsControl(simulation, runner, sounds, workers.persons)
+        self.things = ThingsControl(simulation, runner, files)
+        self.hands = HandsControl(simulation, runner)
+        self.film = FilmControl(simulation, runner, files, options.renderer)
+        self.health = HealthControl(simulation, runner)
+        self._body = BodyModules(simulation, runner, memory)
+        self.modules: dict[str, list[Any]] = {
+            "ALMemory": [ALMemory(memory, broker)],
+            "ALLeds": [ALLeds(simulation, runner)],
+            "ALMotion": motion.parts(simulation, runner, memory),
+            "ALRobotPosture": [posture],
+            **self._audio.modules(),
+            **self.speech.modules(),
+            **behaviors.modules(),
+            **self._life.modules(),
+            **self.recognition.modules(),
+            sound_detection.NAME: sound_detection.parts(simulation, memory),
+            **{name: sound_localization.parts(name, simulation, memory) for name in sound_localization.NAMES},
+            video_device.NAME: self.video.parts(),
+            **self.vision.modules(),
+            **self._pictures_taken.modules(),
+            **self._senses.modules(),
+            **self._body.modules(),
+            "ALSystem": [system(memory, zone)],
+        }
+
+    def begin(self) -> None:
+        """Have a look at every tick; before time passes.
+
+        Raises:
+            SimulationError: A sound of the world cannot be had.
+        """
+        simulation, memory = self.simulation, self.memory
+        if simulation is simulation.shared.robots[0]:
+            self.sounds.begin()
+        robot_leds = lambda: simulation.robot.leds.values  # noqa: E731
+        memory.add_live(live_keys(self.runner, simulation.model, simulation.led_layout, robot_leds))
+        for key, value in constants(simulation.scene.version).items():
+            memory.insert(key, value)
+        simulation.after_reset.append(lambda: memory.raise_event(AWAKE, False))
+        simulation.after_tick.append(PostureEvents(simulation.model, memory))
+        simulation.after_tick.append(FallEvents(simulation, memory))
+        self._senses.begin()
+        simulation.after_tick.append(DiagnosisEvents(simulation, memory))
+        self._body.begin()
+
+    def client_gone(self, module: str) -> None:
+        """A module of a client has left: what is subscribed under its name ends, in every module of the robot."""
+        for name, parts in self.modules.items():
+            for part in parts:
+                if hasattr(part, "client_gone"):
+                    try:
+                        part.client_gone(module)
+                    except Exception:
+                        log.exception("%s does not let go of %s", name, module)
+
+    def leaving(self, film_limit: float = END_LIMIT) -> list[Step]:
+        """First steps of the end, while the simulation runs or has been left behind: complete what is under way.
+
+        Args:
+            film_limit: See `FilmControl.close`.
+        """
+        return [
+            self._life.close,
+            *self._audio.closing(),
+            *self.vision.closing(),  # before what has files to complete, and needs the pictures that are drawn
+            *self._pictures_taken.closing(),
+            *self.video.closing(),
+            partial(self.film.close, film_limit),  # what takes longest
+        ]
+
+    def closing(self) -> list[Step]:
+        """Last steps of the end, when the simulation has ended."""
+        return [self.speech.close, self.recognition.close]

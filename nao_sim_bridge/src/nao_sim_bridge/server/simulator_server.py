@@ -1,0 +1,439 @@
+"""The simulated robot on the network: a simulation in its thread, and NAOqi's modules over libqi."""
+
+from __future__ import annotations
+
+import ctypes
+import logging
+import sys
+import threading
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Callable, Sequence
+
+from nao_sim_bridge.base.closing import Step, close_all
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import DEFAULT_RECORD_DIR, ClientFiles, unused
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.core.robot_runner import RobotRunner
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Scene, Simulation
+from nao_sim_bridge.naoqi.binding.arguments import number, numbers
+from nao_sim_bridge.naoqi.binding.binding import Service
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
+from nao_sim_bridge.naoqi.system.nao_simulation import NAME as NAO_SIMULATION
+from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
+from nao_sim_bridge.naoqi.system.system import ALSystem
+from nao_sim_bridge.naoqi.system.time_zone import TimeZone
+from nao_sim_bridge.naoqi.vision.wiring import VisionModules
+from nao_sim_bridge.render.client import Renderer
+from nao_sim_bridge.server.broker import Broker
+from nao_sim_bridge.server.film_control import FilmControl
+from nao_sim_bridge.server.hands_control import HandsControl
+from nao_sim_bridge.server.health_control import HealthControl
+from nao_sim_bridge.server.pictures import Pictures
+from nao_sim_bridge.server.robot_modules import RobotModules, Workers
+from nao_sim_bridge.server.sound_outlets import SoundCard, SoundFile
+from nao_sim_bridge.server.things_control import ThingsControl
+from nao_sim_bridge.server.world_sounds_control import WorldSoundsControl
+from nao_sim_bridge.sound.reader import SoundReader
+from nao_sim_bridge.world.places import RobotPlace
+from nao_sim_bridge.world.world import world_names
+
+MAX_PUSH = 60.0
+# How long a thread that computes keeps Python's interpreter when another wants it, s. The simulation computes nearly
+# all the time when it runs as fast as possible; Python's own 5 ms would be felt in every call.
+SWITCH_INTERVAL = 0.0005
+# glibc gives threads heaps of their own, up to eight a core, and keeps what they have held: with threads that come and
+# go with clients, memory would grow for hours.
+HEAPS, M_ARENA_MAX = 2, -8
+FILM_LIMIT = 2.0
+"""s of wall time that a film may take to be completed at the end of the program; see `Film.end`."""
+READY = "NAOqiReady"
+"""The event that clients know a robot by that has started, or started again."""
+log = logging.getLogger("nao_sim.server")
+
+
+@dataclass(frozen=True)
+class ServerOptions:
+    """How a simulated robot is started.
+
+    Attributes:
+        scene: World, robot version, posture, seed.
+        address: Network address to listen on.
+        port: Port; 0 takes a free one.
+        speed: Simulated seconds per wall second, infinity for as fast as possible.
+        paused: Start without time passing.
+        gui: Show the robot in a window.
+        record_dir: Folder for files of clients; "~" stands for the home of the user.
+        sound_file: Name in `record_dir` of a WAV for everything that the loudspeakers play; empty for none.
+        sound_card: Let it be heard on this computer, too; only at speed 1.
+        renderer: What draws: "auto", "opengl" or "builtin"; see `Renderer`.
+        name: What the robot is called.
+        robots: How many there are in the world; with more than one the port is that of the first.
+        places: Where they stand; empty for where the world says, or else the usual places.
+        allow_private_streams: Whether playWebStream may fetch from this computer and from private networks.
+    """
+
+    scene: Scene = field(default_factory=Scene)
+    address: str = "127.0.0.1"
+    port: int = 9559
+    speed: float = 1.0
+    paused: bool = False
+    gui: bool = False
+    record_dir: Path = DEFAULT_RECORD_DIR
+    sound_file: str = ""
+    sound_card: bool = False
+    renderer: str = "auto"
+    name: str = "nao"
+    robots: int = 1
+    places: tuple[RobotPlace, ...] = ()
+    allow_private_streams: bool = False
+
+
+class SimulatorServer:
+    """One simulated NAO that answers on libqi.
+
+    What the robot and its modules are is in a `RobotModules`, which a factory reset replaces; the network, the thread
+    and the programs that work for it stay.
+
+    Attributes:
+        broker: The libqi side.
+        pictures: Drawings of the robot.
+        ended: Set when a client shut the robot down or the simulation failed.
+
+    Args:
+        options: How it is started.
+        simulation: A robot in a world that is there already; None for one of its own.
+        runner: The thread of that world.
+        factory_reset: Makes that world, the one of this name, and all its robots anew.
+    """
+
+    def __init__(
+        self,
+        options: ServerOptions,
+        simulation: Simulation | None = None,
+        runner: SimulationRunner | None = None,
+        factory_reset: Callable[[str], None] | None = None,
+    ) -> None:
+        _share_heaps()
+        self.options = options
+        self.ended = threading.Event()
+        simulation = simulation or _alone(options)
+        self._shares_thread = runner is not None
+        self._thread = runner or SimulationRunner(simulation, options.speed, options.paused, self.ended.set)
+        self._make_world_anew = factory_reset or self._begin_anew
+        self.broker = Broker()
+        self._workers = Workers()
+        self.pictures = Pictures(simulation, self._thread)
+        self._robot = self.modules_for(simulation)
+        self._services: dict[str, Service] = {}
+        self._outlets: list[SoundFile | SoundCard] = []
+        self._resetting = threading.Lock()
+
+    # --- the robot as it is now --------------------------------------------------------------------------------------
+
+    @property
+    def runner(self) -> SimulationRunner | RobotRunner:
+        """The thread of the simulation; of several robots in a world each has its own view of it."""
+        return self._robot.runner if self._shares_thread else self._thread
+
+    @property
+    def simulation(self) -> Simulation:
+        """Touched in the simulation thread only; replaced by a factory reset."""
+        return self._robot.simulation
+
+    @property
+    def memory(self) -> MemoryStore:
+        """What ALMemory keeps."""
+        return self._robot.memory
+
+    @property
+    def files(self) -> ClientFiles:
+        """Where clients may have files written to and read from."""
+        return self._robot.files
+
+    @property
+    def sound_reader(self) -> SoundReader:
+        """What reads sound files."""
+        return self._workers.sounds
+
+    @property
+    def speech(self) -> SpeechModules:
+        """The robot's voice."""
+        return self._robot.speech
+
+    @property
+    def vision(self) -> VisionModules:
+        """What it recognises in its pictures."""
+        return self._robot.vision
+
+    @property
+    def sounds(self) -> WorldSoundsControl:
+        """Sounds of the world."""
+        return self._robot.sounds
+
+    @property
+    def things(self) -> ThingsControl:
+        """Things of the world."""
+        return self._robot.things
+
+    @property
+    def hands(self) -> HandsControl:
+        """What touches the robot."""
+        return self._robot.hands
+
+    @property
+    def health(self) -> HealthControl:
+        """Charger, temperatures, broken devices."""
+        return self._robot.health
+
+    @property
+    def film(self) -> FilmControl:
+        """Films of the robot."""
+        return self._robot.film
+
+    @property
+    def began(self) -> float:
+        """What `now` says at time 0 of the robot, s."""
+        return self._robot.began
+
+    @property
+    def now(self) -> tuple[Snapshot, float]:
+        """The last snapshot, and the simulated time since the start of the program, s: no reset takes that back."""
+        robot = self._robot
+        snapshot = robot.simulation.snapshot
+        return snapshot, robot.began + snapshot.time
+
+    def modules(self) -> dict[str, list[Any]]:
+        """NAOqi's modules by name: the objects that together have the methods of each."""
+        return dict(self._robot.modules)
+
+    # --- start and end -----------------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """Listen, register the modules and let time pass.
+
+        Raises:
+            RuntimeError: The address cannot be had.
+            SimulationError: The sound card, the file for sound, or a sound of the world cannot be had.
+        """
+        self.prepare()
+        self.runner.start()
+        self.serve()
+
+    def prepare(self) -> None:
+        """First part of `start`, before time passes: listen, and have a look at every tick."""
+        self._workers.begin()
+        self._robot.begin()
+        self._open_outlets()
+        sys.setswitchinterval(SWITCH_INTERVAL)
+        self.broker.listen(self.options.address, self.options.port, lambda: not self.ended.is_set())
+        self.broker.when_gone(lambda module: self._robot.client_gone(module))
+
+    def serve(self) -> None:
+        """Last part of `start`, when time passes: register the modules."""
+        for name, parts in self._robot.modules.items():
+            service = self._services[name] = Service(name, parts, self.broker)
+            self.broker.register(name, service.object)
+        self.broker.register(NAO_SIMULATION, NaoSimulation(self))
+        self.memory.raise_event(READY, None)
+        if self.options.gui:
+            self.pictures.open_window()
+        log.info("simulated NAO listens on %s:%d", self.options.address, self.broker.port)
+
+    def stop(self) -> None:
+        """Leave the network and end the simulation."""
+        close_all(*self.ending())
+
+    def ending(self) -> list[Step]:
+        """The steps of `stop`."""
+        return [*self.leaving(), self.runner.stop, *self.closing()]
+
+    def leaving(self) -> list[Step]:
+        """First steps of `stop`: leave the network."""
+        return [
+            self.ended.set,
+            self._workers.vision.close,  # first: who waits for an answer gets none
+            *self._robot.leaving(FILM_LIMIT),
+            self._workers.persons.close,
+            self.broker.close,
+        ]
+
+    def closing(self) -> list[Step]:
+        """Last steps of `stop`: end everything else that works for the robot."""
+        return [
+            *self._robot.closing(),
+            *self._workers.closing(),
+            self.pictures.close,
+            *(outlet.close for outlet in self._outlets),
+        ]
+
+    def _open_outlets(self) -> None:
+        if self.options.sound_card and self.options.speed != 1.0:
+            raise BadValue("speed", self.options.speed, "1 with a sound card")
+        if self.options.sound_file:
+            try:
+                path = self.files.to_keep(self.options.sound_file)
+            except ValueError as error:
+                raise BadValue("sound file", self.options.sound_file, f"a name inside {self.files.folder}") from error
+            path = unused(path)  # what was said last time is not lost
+            log.info("what the loudspeakers play goes to %s", path)
+            self._outlets.append(SoundFile(self.simulation, path))
+        if self.options.sound_card:
+            self._outlets.append(SoundCard(self.simulation))
+
+    # --- factory reset -----------------------------------------------------------------------------------------------
+
+    def factory_reset(self, world: str = "") -> None:
+        """Begin anew, at time 0, as a server that has just been started; with other robots, for all of them.
+
+        Nothing is left of what clients have changed, but for modules of their own. Pending calls end as if they were
+        killed, and files that modules of the robot have written are removed. What belongs to whoever runs the simulator
+        stays: speed and pause, films, pictures, the file and the card for sound. Connections stay, and the event
+        `NAOqiReady` says that the robot has started again. Blocking; not in the simulation thread.
+
+        Args:
+            world: Name of a world, or path of its file; empty for that of the start.
+
+        Raises:
+            SimulationError: The world cannot be used; everything stays as it is.
+        """
+        with self._resetting:
+            self._make_world_anew(world)
+
+    def factory_reset_task(self, world: str = "") -> Task:
+        """As `factory_reset`, without waiting."""
+        task = Task("factoryReset", 0)
+
+        def run() -> None:
+            try:
+                self.factory_reset(world)
+            except Exception as error:
+                task.finish(error=error)
+            else:
+                task.finish()
+
+        threading.Thread(target=run, name="factory reset", daemon=True).start()
+        return task
+
+    def modules_for(self, simulation: Simulation) -> RobotModules:
+        """Modules for a robot at its start, which do nothing yet."""
+        return RobotModules(self.options, simulation, self._thread, self.broker, self._workers, self._system)
+
+    def take(self, robot: RobotModules, began: float) -> Callable[[], None]:
+        """Be another robot from now on; simulation thread, which has just taken its simulation.
+
+        Args:
+            robot: Its modules.
+            began: Its `began`.
+
+        Returns:
+            To be called outside the thread: closes what was left behind, but for what draws.
+        """
+        former, robot.began = self._robot, began
+        former.runner.leave_behind()
+        former.memory.close()
+        self._robot = robot
+        ends = [self._services[name].rebind(parts) for name, parts in robot.modules.items() if name in self._services]
+        for outlet in self._outlets:
+            outlet.follow(robot.simulation)
+        former.files.forget()
+        self.broker.drop_calls()
+        robot.memory.raise_event(READY, None)
+
+        def close_former() -> None:
+            guarded = robot.simulation.shared.guard.call
+            for step in former.leaving():
+                guarded(step)
+            former.runner.end()
+            former.simulation.shared.close(keep_renderer=True)
+            for end in ends:
+                end()
+            for step in former.closing():
+                guarded(step)
+            former.files.forget()  # what was completed meanwhile
+            self._serve_again()
+            self.pictures.follow(robot.simulation)
+
+        return close_former
+
+    def _begin_anew(self, world: str) -> None:
+        before = self.simulation.shared
+        renderer = renderer_for(before.renderer, before.scene.world, world or self.options.scene.world)
+        simulation = _alone(replace(self.options, scene=scene_in(self.options.scene, world)), renderer)
+        try:
+            robot = self.modules_for(simulation)
+            robot.begin()
+            close_former = self._thread.execute(lambda: self.take(robot, self._thread.take(simulation))).result()
+        except Exception:
+            simulation.shared.close(keep_renderer=renderer is not None)
+            raise
+        close_former()
+        if renderer is None:
+            before.renderer.close()
+
+    def _serve_again(self) -> None:
+        """Register the modules that a client has taken off the network."""
+        for name, service in self._services.items():
+            if not self.broker.serves(name):
+                self.broker.register(name, service.object)
+
+    # --- what only a simulator can do; for any thread, blocking until it is done -----------------------------------
+
+    def reset(self) -> None:
+        """Put all robots and the world to where they started; tasks are killed, time goes on."""
+        self.reset_task().result()
+
+    def push(self, force: Sequence[float], duration: float, link: str) -> None:
+        """Push a link with `force` (N, in world) for `duration` s of simulated time from now on."""
+        vector = tuple(numbers(force, "force"))
+        if len(vector) != 3:
+            raise BadValue("force", force, "[x, y, z] in N")
+        lasting = number(duration, "duration", 0.0, MAX_PUSH)
+        self.runner.call(lambda: self.simulation.robot.push(vector, lasting, link))
+
+    def press(self, sensors: Sequence[str]) -> None:
+        """Simulated fingers on these touch sensors and on no others."""
+        self.runner.call(lambda: self.simulation.robot.press(sensors))
+
+    def picture(self, view: str, width: int, height: int) -> bytes:
+        """A PNG picture of the robot; see `Pictures.png`."""
+        return self.pictures.png(view, width, height)
+
+    def reset_task(self) -> Task:
+        """As `reset`, without waiting."""
+        self._thread.end_advances("a reset")
+        return self.runner.execute(lambda: self.simulation.reset(), "reset")
+
+    def reboot_task(self) -> Task:
+        """Put this robot to where it started, without waiting; one that is alone in its world resets that, too."""
+        return self.runner.execute(lambda: self.simulation.reboot(), "reboot")
+
+    def _system(self, memory: MemoryStore, zone: TimeZone) -> ALSystem:
+        icon = lambda size: self.pictures.png("face", size, size)  # noqa: E731
+        return ALSystem(memory, self.reboot_task, self.ended.set, icon, self.options.name, zone)
+
+
+def _share_heaps() -> None:
+    """Have all threads of this process share a few heaps, where the C library is glibc."""
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
+    if mallopt is not None:
+        mallopt(M_ARENA_MAX, HEAPS)
+
+
+def scene_in(scene: Scene, world: str) -> Scene:
+    """A scene in another world; an empty name is that of its own."""
+    return replace(scene, world=world) if world else scene
+
+
+def renderer_for(renderer: Renderer, drew: str, world: str) -> Renderer | None:
+    """What has drawn a world if it can draw the other one; files may have changed meanwhile, those we ship have not."""
+    return renderer if drew == world and world in world_names() else None
+
+
+def _alone(options: ServerOptions, renderer: Renderer | None = None) -> Simulation:
+    """A robot in a world of its own."""
+    place = options.places[0] if options.places else None
+    return Simulation(options.scene, renderer=renderer or options.renderer, place=place)

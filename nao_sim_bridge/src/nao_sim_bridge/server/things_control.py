@@ -1,0 +1,93 @@
+"""Things of the world that come, move and go while the simulation runs, for clients. For any thread."""
+
+from __future__ import annotations
+
+from typing import Any, Mapping, Sequence
+
+import yaml
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.yaml_values import load_yaml
+from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import number, numbers
+from nao_sim_bridge.world.objects import read_object
+
+LONGEST_DESCRIPTION = 20000
+WHERE = "object"
+"""What error texts call the entry of a thing that was described."""
+
+
+class ThingsControl:
+    """Places, moves and removes things.
+
+    Args:
+        simulation: Whose world it is.
+        runner: Its thread.
+        files: Where clients may have pictures read from.
+    """
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
+        self._simulation = simulation
+        self._runner = runner
+        self._files = files
+
+    def place_described(self, description: str) -> Task:
+        """Place what a text describes: an entry of a world file in YAML or JSON; see `place`.
+
+        Raises:
+            BadValue: The text is neither.
+        """
+        if not isinstance(description, str) or len(description) > LONGEST_DESCRIPTION:
+            raise BadValue("description", str(description)[:40], f"{LONGEST_DESCRIPTION} characters at most")
+        try:
+            entry = load_yaml(description)
+        except yaml.YAMLError as error:
+            raise BadValue("description", description[:80], f"an entry of a world file: {error}") from error
+        return self.place(entry)
+
+    def place(self, entry: Mapping[str, Any]) -> Task:
+        """Place a thing; the task ends when it is there.
+
+        Args:
+            entry: As in a world file; the file of an `image` is one of the client's.
+
+        Raises:
+            WorldError: The entry is wrong.
+            ValueError: The client may not have that file.
+        """
+        # Outside the simulation thread: figures take a while.
+        thing = read_object(entry, WHERE, lambda name: self._files.to_read(name))
+        return self._runner.execute(lambda: self._simulation.things.place(thing), "placeObject")
+
+    def move(
+        self, name: str, position: Sequence[float], rpy: Sequence[float], duration: float, wait: bool = True
+    ) -> Task:
+        """Put a thing to another place.
+
+        Args:
+            name: Of the thing.
+            position: [x, y, z] in m over the floor; see `Things.move`.
+            rpy: [roll, pitch, yaw] in rad; [] to keep it.
+            duration: How long it is on its way, s of simulated time.
+            wait: Whether the task ends on arrival, else when it begins to move.
+        """
+        place, lasting = numbers(position, "position"), number(duration, "duration", 0.0)
+        turn = numbers(rpy, "rpy") or None
+
+        def move() -> Task | None:
+            task = self._simulation.things.move(name, place, turn, lasting)
+            return task if wait else None
+
+        return self._runner.execute(move, "moveObject")
+
+    def remove(self, name: str) -> Task:
+        """Take a thing away; the task ends when it is gone."""
+        return self._runner.execute(lambda: self._simulation.things.remove(name), "removeObject")
+
+    def places(self) -> Task:
+        """A task that ends with where everything is: [x, y, z, roll, pitch, yaw] by name."""
+        listed = lambda: {name: list(place) for name, place in self._simulation.things.places().items()}  # noqa: E731
+        return self._runner.execute(listed, "objects")

@@ -1,1 +1,0 @@
-"""The simulation core: PyBullet and NumPy only, no ROS and no libqi."""

@@ -1,7 +1,0 @@
-"""Drawing with OpenGL, on a graphics card or, without one, in software."""
-
-from __future__ import annotations
-
-from nao_sim_bridge.sim.render.opengl.engine import OpenGLEngine
-
-__all__ = ["OpenGLEngine"]

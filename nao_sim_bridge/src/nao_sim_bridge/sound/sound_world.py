@@ -1,0 +1,81 @@
+"""All sound of one robot: what it plays and what it hears."""
+
+from __future__ import annotations
+
+from typing import Callable
+
+from nao_sim_bridge.base.samples import RATE
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.sound.air import Air
+from nao_sim_bridge.sound.ears import Ears
+from nao_sim_bridge.sound.loudspeakers import Loudspeakers
+from nao_sim_bridge.sound.microphones import Microphones
+from nao_sim_bridge.sound.robot_voice import RobotVoice
+
+
+class SoundWorld:
+    """What sounds and what is heard. It stays at a reset of the simulation, which ends everything that plays.
+
+    Attributes:
+        settings: Levels.
+        loudspeakers: Of the robot.
+        sources: Sounds in the world, which other robots may hear, too.
+        microphones: Of the robot.
+        ears: Listeners.
+        timeline: The clock of sound.
+        numbers: For the names of sounds of the world that nobody named.
+
+    Args:
+        model: The robot.
+        air: Around it.
+        seed: Of the background noise.
+        released: Called when time that waited for ears need not wait any more.
+    """
+
+    def __init__(self, model: RobotModel, air: Air, seed: int, released: Callable[[], None] = lambda: None) -> None:
+        self.settings = air.settings
+        self.timeline = air.timeline
+        self.loudspeakers = Loudspeakers(self.timeline, air.ids)
+        self.sources = air.sources
+        self.numbers = air.numbers
+        self.microphones = Microphones(
+            model,
+            self.settings,
+            self.timeline,
+            self.loudspeakers,
+            self.sources,
+            air.frames_per_tick,
+            seed,
+            lambda: [voice for voice in air.voices if voice is not self._voice],
+        )
+        self.ears = Ears(self.timeline, self.microphones, released, air.ids.guard)
+        self._poses = self.microphones.poses
+        self._voice = RobotVoice(
+            model, self.settings, self.timeline, self.loudspeakers, self._poses, air.frames_per_tick
+        )
+        air.voices += (self._voice,)
+
+    @property
+    def time(self) -> float:
+        """The time of now, s; any thread."""
+        return self.timeline.now / RATE
+
+    def begin(self, snapshot: Snapshot) -> None:
+        """The robot has been put into the world; at the start and at each reset."""
+        if not self._poses.knows(snapshot.tick):  # else a reset, from the next tick on: what is past stays
+            self._poses.record(snapshot.tick, snapshot)
+
+    def record(self, snapshot: Snapshot) -> None:
+        """A tick has passed: where the head is at its end. `Air.tick` follows when all robots have done that."""
+        self._poses.record(snapshot.tick, snapshot)
+
+    def hear(self) -> None:
+        """After `Air.tick`: let those who listen hear what can be heard now."""
+        if self.timeline.now >= self.ears.due:
+            self.ears.wake()
+
+    def close(self) -> None:
+        """End everything that the robot plays, and all listeners."""
+        self.loudspeakers.stop_all()
+        self.ears.close()

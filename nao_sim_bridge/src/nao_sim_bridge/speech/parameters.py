@@ -1,0 +1,106 @@
+"""How a voice sounds: NAOqi's parameters of ALTextToSpeech and their ranges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Mapping, Tuple
+
+from nao_sim_bridge.base.errors import BadValue
+
+SPEED, DEFAULT_SPEED = "speed", "defaultVoiceSpeed"
+# Name -> (lowest, highest, default). Of PITCH_SHIFT and DOUBLE_VOICE 0 is allowed too: switched off.
+RANGES: Mapping[str, Tuple[float, float, float]] = {
+    "pitchShift": (1.0, 4.0, 1.0),
+    "doubleVoice": (1.0, 4.0, 0.0),
+    "doubleVoiceLevel": (0.0, 4.0, 0.0),
+    "doubleVoiceTimeShift": (0.0, 0.5, 0.0),
+    SPEED: (50.0, 400.0, 100.0),
+    DEFAULT_SPEED: (50.0, 400.0, 100.0),
+    "volume": (0.0, 100.0, 80.0),
+    "pitch": (50.0, 200.0, 100.0),
+}
+SWITCHED_OFF_BY_ZERO = ("pitchShift", "doubleVoice")
+
+
+@dataclass(frozen=True)
+class Prosody:
+    """How a piece of text is spoken, by parameters and tags.
+
+    Attributes:
+        speed: 1 is as fast as the voice speaks by itself, 0.5 to 4.
+        pitch: Factor of all frequencies, 0.5 to 4.
+        gain: Factor of the amplitude.
+    """
+
+    speed: float = 1.0
+    pitch: float = 1.0
+    gain: float = 1.0
+
+
+@dataclass(frozen=True)
+class DoubleVoice:
+    """A second voice that speaks along.
+
+    Attributes:
+        pitch: Factor of its frequencies to those of the engine's voice; 0 for no second voice.
+        level: Its amplitude as part of the first one's.
+        delay: How much later it speaks, s.
+    """
+
+    pitch: float = 0.0
+    level: float = 0.0
+    delay: float = 0.0
+
+    @property
+    def sounds(self) -> bool:
+        """Whether it can be heard."""
+        return self.pitch > 0.0 and self.level > 0.0
+
+
+def checked(name: str, value: float) -> float:
+    """A value that a parameter may have.
+
+    Raises:
+        BadValue: There is no such parameter, or the value is out of its range; the text has what is allowed.
+    """
+    known(name)
+    low, high, _ = RANGES[name]
+    if name in SWITCHED_OFF_BY_ZERO and value == 0.0:
+        return 0.0
+    if not low <= value <= high:
+        off = "0 (off) or " if name in SWITCHED_OFF_BY_ZERO else ""
+        raise BadValue(name, value, f"{off}{low:g} to {high:g}")
+    return float(value)
+
+
+def known(name: str) -> str:
+    """`name` if there is such a parameter.
+
+    Raises:
+        BadValue: There is not.
+    """
+    if name not in RANGES:
+        raise BadValue("parameter", name, f"one of {', '.join(RANGES)}", RANGES)
+    return name
+
+
+def defaults() -> dict[str, float]:
+    """Values of all parameters at the start."""
+    return {name: default for name, (_, _, default) in RANGES.items()}
+
+
+def prosody_of(values: Mapping[str, float]) -> Prosody:
+    """How a voice speaks with these parameters."""
+    pitch = (values["pitchShift"] or 1.0) * values["pitch"] / 100.0
+    gain = values["volume"] / RANGES["volume"][2]
+    return limited(Prosody(values[SPEED] / 100.0, pitch, gain))
+
+
+def double_voice_of(values: Mapping[str, float]) -> DoubleVoice:
+    """The second voice with these parameters."""
+    return DoubleVoice(values["doubleVoice"], values["doubleVoiceLevel"], values["doubleVoiceTimeShift"])
+
+
+def limited(prosody: Prosody) -> Prosody:
+    """A prosody that engines and effects can do: tags and parameters together may ask for more."""
+    return replace(prosody, speed=min(max(prosody.speed, 0.5), 4.0), pitch=min(max(prosody.pitch, 0.5), 4.0))

@@ -1,0 +1,170 @@
+"""Threads in which speech is made, so that nobody who asks for it waits."""
+
+from __future__ import annotations
+
+import logging
+import queue
+import threading
+from typing import Any, Callable, Iterable
+
+import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue, SimulationError
+from nao_sim_bridge.base.samples import RATE, Sound
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.speech.clips import Clip, ClipMaker, Style
+from nao_sim_bridge.speech.engines import Engines
+from nao_sim_bridge.speech.sentences import Item, Sentence, sentences
+from nao_sim_bridge.speech.speech import SpeechError, silence
+from nao_sim_bridge.speech.tags import Pause, Piece, TagReader
+
+log = logging.getLogger("nao_sim.speech")
+
+
+class Pending:
+    """A sentence that is being made.
+
+    Attributes:
+        ready: True when it is there, or cannot be made.
+        clip: The sentence; None when it cannot be made.
+        error: Why not.
+        wanted: False when nobody waits for it any more; it is left out then.
+    """
+
+    def __init__(self) -> None:
+        self.ready = False
+        self.clip: Clip | None = None
+        self.error: SpeechError | None = None
+        self.wanted = True
+
+
+class Studio:
+    """Reads texts and makes sentences of them, one after the other, in a thread of its own.
+
+    Attributes:
+        engines: Who speaks.
+        tags: Reads texts.
+        released: Called when a sentence is there that may have been waited for.
+
+    Args:
+        engines: See above; those of this machine when None.
+    """
+
+    def __init__(self, engines: Any = None) -> None:
+        self.engines = engines or Engines()
+        self.tags = TagReader()
+        self.released: Callable[[], None] = lambda: None
+        self._maker = ClipMaker(self.engines)
+        self._orders: queue.SimpleQueue = queue.SimpleQueue()
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
+
+    def warm_up(self) -> None:
+        """Have everything ready for the first text, without waiting for it; a missing engine is told when asked for."""
+        self.in_background(self.engines.warm_up, "warm up")
+
+    def read(self, text: str, style: Style) -> list[Item]:
+        """The sentences of a text with tags.
+
+        Raises:
+            BadValue: It is too long, or its pauses are together.
+        """
+        self.check_length(text)
+        return self.sentences_of(text, self.tags.read(text, style.prosody))
+
+    def check_length(self, text: str) -> None:
+        """Before a text is read.
+
+        Raises:
+            BadValue: It is too long.
+        """
+        longest = load_sizes().speech.text_characters
+        if len(text) > longest:
+            raise BadValue("text", f"{text[:40]}... of {len(text)} characters", f"{longest} characters at most")
+
+    def sentences_of(self, text: str, pieces: list[Piece]) -> list[Item]:
+        """The sentences of what has been read of a text.
+
+        Raises:
+            BadValue: Its pauses are too long together.
+        """
+        longest = load_sizes().speech.pauses_s
+        pauses = sum(piece.seconds for piece in pieces if isinstance(piece, Pause))
+        if pauses > longest:
+            raise BadValue("text", f"{text[:40]}... with {pauses:.0f} s of pauses", f"{longest:g} s at most")
+        return sentences(pieces)
+
+    def order(self, sentence: Sentence, style: Style) -> Pending:
+        """Have a sentence made; at once back."""
+        pending = Pending()
+        with self._lock:
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._run, name="speech", daemon=True)
+                self._thread.start()
+        self._orders.put((pending, sentence, style))
+        return pending
+
+    def sound(self, text: str, style: Style) -> Sound:
+        """A whole text as sound, as it would be heard from the loudspeakers; blocks, one channel.
+
+        Raises:
+            SpeechError: It cannot be said.
+        """
+        return self._joined(self.read(text, style), style)
+
+    def _joined(self, items: Iterable[Item], style: Style) -> Sound:
+        longest, seconds = load_sizes().speech.file_s, 0.0
+        samples = []
+        for item in items:
+            if isinstance(item, Sentence):
+                sound = self._maker.make(item, style).sound
+                seconds += sound.duration
+                if seconds > longest:
+                    raise SpeechError(f"the text takes more than {longest:g} s to say, which are allowed at once")
+                samples.append(sound.samples[:, 0])
+        samples = samples or [silence(0.0, RATE)]
+        return Sound(np.clip(np.concatenate(samples)[:, None] * np.float32(style.volume), -1.0, 1.0), RATE)
+
+    def in_background(self, work: Callable[[], Any], name: str) -> Task:
+        """Do something that may take a while in a thread of its own; the task ends with what it returns or raises."""
+        task = Task(name, 0)
+
+        def run() -> None:
+            try:
+                result = work()
+            except Exception as error:
+                task.finish(error=error)
+            else:
+                task.finish(result)
+
+        threading.Thread(target=run, name=f"speech: {name}", daemon=True).start()
+        return task
+
+    def close(self) -> None:
+        """End the threads and the engines."""
+        with self._lock:
+            if self._thread is not None:
+                self._orders.put(None)
+                self._thread = None
+        self.engines.close()
+
+    def _run(self) -> None:
+        while True:
+            order = self._orders.get()
+            if order is None:
+                return
+            pending, sentence, style = order
+            if pending.wanted:
+                self._make(pending, sentence, style)
+
+    def _make(self, pending: Pending, sentence: Sentence, style: Style) -> None:
+        try:
+            pending.clip = self._maker.make(sentence, style)
+        except SimulationError as error:
+            pending.error = error if isinstance(error, SpeechError) else SpeechError(str(error))
+        except Exception as error:
+            log.exception("%r cannot be spoken", sentence.text)
+            pending.error = SpeechError(f"{sentence.text!r} cannot be spoken: {error}")
+        pending.ready = True  # from here on the other thread reads it
+        self.released()

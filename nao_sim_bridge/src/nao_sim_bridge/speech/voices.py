@@ -1,0 +1,133 @@
+"""Languages and voices of the robot, from `config/voices.json`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Mapping, Tuple
+
+from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.errors import BadValue, ConfigError
+from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.model.robot_model import frozen_mapping
+from nao_sim_bridge.speech.speech import Engine, SpeechError, listed
+
+FILE = "voices.json"
+
+
+@dataclass(frozen=True)
+class Voice:
+    """A voice of the robot.
+
+    Attributes:
+        name: NAOqi's name, for example "naoenu".
+        language: For example "English".
+        engine: Who speaks it.
+        engine_voice: The engine's name of it.
+    """
+
+    name: str
+    language: str
+    engine: str
+    engine_voice: str
+
+
+@dataclass(frozen=True)
+class Language:
+    """A language of the robot.
+
+    Attributes:
+        name: For example "English".
+        locale: For example "en_US".
+        encoding: Of texts in it.
+        voices: Names, the default first.
+    """
+
+    name: str
+    locale: str
+    encoding: str
+    voices: Tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Voices:
+    """All languages and voices that the robot knows, installed or not.
+
+    Attributes:
+        languages: By name.
+        voices: By name.
+        default_language: What the robot speaks at the start.
+    """
+
+    languages: Mapping[str, Language]
+    voices: Mapping[str, Voice]
+    default_language: str
+
+    def voice(self, name: str, engine: Engine) -> Voice:
+        """A voice that can speak.
+
+        Raises:
+            BadValue: There is no such voice.
+            SpeechError: Its engine is missing.
+        """
+        if name not in self.voices:
+            raise BadValue("voice", name, f"one of {listed(self.available_voices(engine))}", self.voices)
+        voice = self.voices[name]
+        problem = engine.missing(voice.engine, voice.engine_voice)
+        if problem is not None:
+            raise SpeechError(f"voice {name!r} cannot speak: {problem}")
+        return voice
+
+    def language(self, name: str, engine: Engine) -> Language:
+        """A language that can be spoken.
+
+        Raises:
+            BadValue: There is no such language.
+            SpeechError: The engines of all its voices are missing.
+        """
+        if name not in self.languages:
+            raise BadValue("language", name, f"one of {listed(self.available_languages(engine))}", self.languages)
+        language = self.languages[name]
+        problems = [self._problem(voice, engine) for voice in language.voices]
+        if all(problems):
+            raise SpeechError(f"{name} cannot be spoken: {problems[0]}")
+        return language
+
+    def available_languages(self, engine: Engine) -> list[str]:
+        """Languages with a voice whose engine is there."""
+        spoken = {self.voices[name].language for name in self.available_voices(engine)}
+        return [name for name in self.languages if name in spoken]
+
+    def available_voices(self, engine: Engine) -> list[str]:
+        """Voices whose engine is there."""
+        return [name for name in self.voices if self._problem(name, engine) is None]
+
+    def _problem(self, voice: str, engine: Engine) -> str | None:
+        return engine.missing(self.voices[voice].engine, self.voices[voice].engine_voice)
+
+
+@lru_cache(maxsize=None)
+def load_voices() -> Voices:
+    """The languages and voices, read once.
+
+    Raises:
+        ConfigError: If the file has a wrong, unknown or missing entry.
+    """
+    tables = check_keys(read_json(config_file(FILE)), FILE, ("default_language", "languages", "voices"), ("_meta",))
+    languages: dict[str, Language] = {}
+    voices: dict[str, Voice] = {}
+    for name, entry in tables["languages"].items():
+        where = f"{FILE}: languages.{name}"
+        check_keys(entry, where, ("locale", "encoding", "voices"))
+        if not entry["voices"]:
+            raise ConfigError(where, "has no voices")
+        languages[name] = Language(name, entry["locale"], entry["encoding"], tuple(entry["voices"]))
+        for voice in entry["voices"]:
+            spoken = check_keys(tables["voices"].get(voice), f"{FILE}: voices.{voice}", ("engine", "voice"))
+            voices[voice] = Voice(voice, name, spoken["engine"], spoken["voice"])
+    unused = [name for name in tables["voices"] if name not in voices]
+    if unused:
+        raise ConfigError(f"{FILE}: voices", f"{listed(unused)} of no language")
+    if tables["default_language"] not in languages:
+        raise ConfigError(f"{FILE}: default_language", f"{tables['default_language']!r} is none of the languages")
+    return Voices(frozen_mapping(languages), frozen_mapping(voices), tables["default_language"])

@@ -1,0 +1,65 @@
+"""The vision process: `python -m nao_sim_bridge.vision.worker FD`.
+
+It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", None). Then it answers
+("open", (key, name, arguments)), which makes a detector, and ("close", key), which drops it, with None, and
+("call", (key, method, arguments)) with what the method returns; or ("error", text). It ends when the pipe is closed.
+"""
+
+from __future__ import annotations
+
+import sys
+from multiprocessing.connection import Connection
+from typing import Any, Iterable
+
+import cv2
+
+from nao_sim_bridge.base.child_process import error_text, pipe_to_parent
+from nao_sim_bridge.vision.detector import Detector, make_detector
+
+
+class Detectors:
+    """The detectors of the process, by the keys of their users."""
+
+    def __init__(self) -> None:
+        self._detectors: dict[int, Detector] = {}
+
+    def open(self, key: int, name: str, arguments: tuple) -> None:
+        """Make a detector."""
+        self._detectors[key] = make_detector(name, arguments)
+
+    def close(self, key: int) -> None:
+        """Drop one, if there is one."""
+        self._detectors.pop(key, None)
+
+    def call(self, key: int, method: str, arguments: tuple) -> Any:
+        """Have one work."""
+        return getattr(self._detectors[key], method)(*arguments)
+
+
+def main(arguments: Iterable[str]) -> int:
+    """Serve one pipe until it is closed."""
+    (descriptor,) = arguments
+    pipe = pipe_to_parent(descriptor)
+    cv2.setNumThreads(1)  # the other cores are for physics and drawing
+    pipe.send(("ready", None))
+    try:
+        _serve(pipe, Detectors())
+    except (EOFError, BrokenPipeError, ConnectionResetError):
+        pass  # the parent is gone or wants no more
+    return 0
+
+
+def _serve(pipe: Connection, detectors: Detectors) -> None:
+    requests = {"open": detectors.open, "close": detectors.close, "call": detectors.call}
+    while True:
+        kind, content = pipe.recv()
+        try:
+            answer = requests[kind](*content)
+        except Exception as error:
+            pipe.send(("error", error_text(error)))
+            continue
+        pipe.send((kind, answer))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

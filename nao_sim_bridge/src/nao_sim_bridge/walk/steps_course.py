@@ -1,0 +1,92 @@
+"""A walk of steps that somebody else has planned."""
+
+from __future__ import annotations
+
+from typing import Mapping, NamedTuple, Sequence
+
+from nao_sim_bridge.base.sizes import require_few
+from nao_sim_bridge.walk.clipping import clip_step, step_limits
+from nao_sim_bridge.walk.courses import STANDSTILL, Course, Rate, Step
+from nao_sim_bridge.walk.footsteps import FootPose, middle, side_by_side
+from nao_sim_bridge.walk.gait import FeetGait
+from nao_sim_bridge.walk.settings import WalkSettings
+
+
+class Placement(NamedTuple):
+    """A step that somebody else has planned.
+
+    Attributes:
+        side: Of the foot that moves, 1 left, -1 right.
+        beside: Where it lands, in the frame of the other foot.
+        period: Time of the step, s.
+    """
+
+    side: int
+    beside: FootPose
+    period: float
+
+
+class StepsCourse(Course):
+    """Makes steps that somebody else has planned; more can be added.
+
+    Args:
+        settings: Of the walk.
+        gait: Their height.
+        placements: Where they go; clipped to what the legs can step.
+    """
+
+    def __init__(self, settings: WalkSettings, gait: FeetGait, placements: Sequence[Placement]) -> None:
+        self._gait = gait
+        self._queue = list(placements)  # steps that are not begun; states count from its begin
+        self._robot: FootPose | None = None
+        super().__init__(settings)
+
+    @property
+    def rate(self) -> Rate:  # noqa: D102
+        return STANDSTILL
+
+    @property
+    def left(self) -> Sequence[Placement]:
+        """Steps that are not begun."""
+        return tuple(self._queue)
+
+    def add(self, placements: Sequence[Placement], clear: bool) -> None:
+        """More steps, after those that are not begun or instead of them.
+
+        Raises:
+            BadValue: Together they are too many.
+        """
+        kept = [] if clear else self._queue
+        require_few("footSteps", len(kept) + len(placements), "steps")
+        self._queue = [*kept, *placements]
+
+    def first_side(self, feet: Mapping[int, FootPose]) -> int:
+        """The foot of the first step; the other one before it, if that stands in no way from which steps count."""
+        side = self._queue[0].side if self._queue else 1
+        if side_by_side(feet[1], feet[-1], self._settings.foot_separation):
+            return side
+        self._robot = middle(feet[1], feet[-1])
+        return -side
+
+    def take(self, support: FootPose, side: int) -> None:  # noqa: D102
+        super().take(support, side)
+        self._robot = None
+        del self._queue[: self._state]
+        self._state = 0
+        self.reached = not self._queue
+
+    def _first_state(self, rate: Rate) -> int:
+        return 0
+
+    def _next(self, state: int, support: FootPose, side: int) -> tuple[Step, int] | None:
+        if state >= len(self._queue):
+            return None
+        placement = self._queue[state]
+        if placement.side != side:  # the other foot is due: it stays where it is, beside this one
+            landing = self._landing(support, side, STANDSTILL, self._gait)
+            if self._robot is not None:
+                landing = self._robot.moved(0.0, side * self._half)
+            return Step(side, landing, self._gait.period(side), self._gait.of(side)), state
+        beside = clip_step(placement.beside, side, step_limits())
+        period = max(placement.period, self._gait.period(side))
+        return Step(side, support.moved(*beside), period, self._gait.of(side)), state + 1

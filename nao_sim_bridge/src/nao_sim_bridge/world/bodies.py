@@ -1,0 +1,127 @@
+"""The things of a world as bodies of the physics: those of the world file, and those that come and go."""
+
+from __future__ import annotations
+
+from typing import Mapping, Sequence
+
+import pybullet
+
+from nao_sim_bridge.base.finite import check_finite
+from nao_sim_bridge.base.readings import Pose
+from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.world.builder import build_object, build_world, place_of
+from nao_sim_bridge.world.world import World, WorldObject
+
+UNMOVED: Vector3 = (0.0, 0.0, 0.0)
+NEARLY = 0.02
+"""What is nearer is woken by a change, m."""
+DISTANCE = 8
+"""Column of PyBullet's closest points."""
+
+
+class WorldBodies:
+    """Bodies by name. Simulation thread only, but for the attributes, which are replaced and never changed.
+
+    Attributes:
+        ids: PyBullet's body ids by name; `floor` is among them.
+        placed: Things that were added to those of the world.
+        gone: Names of things of the world that were taken away.
+
+    Args:
+        world: What is there to begin with.
+        client: PyBullet's physics client.
+    """
+
+    def __init__(self, world: World, client: int) -> None:
+        self._floor = world.floor
+        self._client = client
+        self.ids = build_world(world, client, visual=False)
+        self._things = {thing.name: thing for thing in world.objects}
+        self._of_world = frozenset(self._things)
+        self.placed: tuple[WorldObject, ...] = ()
+        self.gone: frozenset[str] = frozenset()
+        self._loose = {thing.name: self.ids[thing.name] for thing in world.objects if thing.mass > 0.0}
+        # What cannot be moved by the physics is where it was put last: no need to ask the engine.
+        self._fixed: dict[str, Pose] = {}
+
+    @property
+    def things(self) -> Mapping[str, WorldObject]:
+        """Everything that is there now, by name."""
+        return self._things
+
+    def read(self) -> Mapping[str, Pose]:
+        """Poses of what can be moved, was placed, or was put elsewhere.
+
+        Raises:
+            NotFinite: The engine has lost one of them.
+        """
+        poses = {}
+        for name, body in self._loose.items():
+            poses[name] = pose = Pose(*pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client))
+            check_finite(name, (*pose.position, *pose.orientation))
+        poses.update(self._fixed)
+        return poses
+
+    def pose(self, name: str) -> Pose:
+        """Where a thing is now."""
+        return Pose(*pybullet.getBasePositionAndOrientation(self.ids[name], physicsClientId=self._client))
+
+    def add(self, thing: WorldObject) -> None:
+        """Add a thing, whose name nothing has."""
+        self.ids[thing.name] = build_object(thing, self._floor, self._client, visual=False)
+        self._things[thing.name] = thing
+        self.placed += (thing,)
+        if thing.mass > 0.0:
+            self._loose[thing.name] = self.ids[thing.name]
+        else:
+            self._fixed[thing.name] = Pose(*place_of(thing, self._floor))
+        self._wake(self._around(self.ids[thing.name]))
+
+    def remove(self, name: str) -> None:
+        """Take a thing away."""
+        around = self._around(self.ids[name])
+        pybullet.removeBody(self.ids.pop(name), physicsClientId=self._client)
+        removed = self._things.pop(name)
+        self._loose.pop(name, None)
+        self._fixed.pop(name, None)
+        self._wake(around)
+        if removed in self.placed:
+            self.placed = tuple(thing for thing in self.placed if thing is not removed)
+        elif name in self._of_world:
+            self.gone |= {name}
+
+    def put(self, name: str, pose: Pose, velocity: Vector3 = UNMOVED) -> None:
+        """Put a thing somewhere; it has that velocity (m/s, in world) until something changes it.
+
+        Raises:
+            NotFinite: One of the numbers is not.
+        """
+        check_finite(f"place of {name}", (*pose.position, *pose.orientation, *velocity))
+        body = self.ids[name]
+        self._wake(self._around(body))
+        pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation, physicsClientId=self._client)
+        if name in self._loose:
+            pybullet.resetBaseVelocity(body, velocity, UNMOVED, physicsClientId=self._client)
+        else:
+            self._fixed[name] = pose
+        self._wake(self._around(body))
+
+    def depth_in(self, name: str, other: int) -> float:
+        """How far a thing is inside another body, m; 0 when it is not."""
+        points: Sequence = pybullet.getClosestPoints(self.ids[name], other, 0.0, physicsClientId=self._client)
+        return max((-point[DISTANCE] for point in points), default=0.0)
+
+    def _around(self, body: int) -> set[int]:
+        """Bodies that touch another one, or nearly."""
+        low, high = pybullet.getAABB(body, physicsClientId=self._client)
+        low, high = [value - NEARLY for value in low], [value + NEARLY for value in high]
+        found = pybullet.getOverlappingObjects(low, high, physicsClientId=self._client) or ()
+        return {entry[0] for entry in found}
+
+    def _wake(self, bodies: set[int]) -> None:
+        """Let those of the bodies that sleep look whether what they lie on is still there."""
+        for body in self._loose.values():
+            if body in bodies:
+                pybullet.changeDynamics(
+                    body, -1, activationState=pybullet.ACTIVATION_STATE_WAKE_UP, physicsClientId=self._client
+                )
