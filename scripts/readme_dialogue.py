@@ -16,7 +16,8 @@ import qi
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "nao_library_modules" / "examples"))
 from example_parts.dialogue_record import DOES, PERSON, ROBOT, SAYS, Notes, Turn
 from nao_sim_bridge.core.simulation import Scene
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 CALL, QUESTION, REPLY, THANKS = "Hello, robot!", "Shall we play?", "Yes!", "Great!"
 WORDS, EXPECTED = ["yes", "no", "maybe", "later"], "yes"

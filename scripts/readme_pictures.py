@@ -23,7 +23,8 @@ from readme_sight import draw_sight
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "nao_library_modules" / "examples"))
 from example_parts import dialogue_record
 from nao_sim_bridge.core.simulation import Scene
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "images"

@@ -10,7 +10,8 @@ import qi
 from PIL import Image, ImageDraw, ImageFont
 
 from nao_sim_bridge.core.simulation import Scene
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 TOP, VGA, RGB, RATE = 0, 2, 11, 15
 NAME = "readme"

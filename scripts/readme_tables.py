@@ -30,7 +30,8 @@ from nao_sim_bridge.base.sizes import size_rows as sizes_of_simulator
 from nao_sim_bridge.naoqi.binding.binding import offered
 from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
 from nao_sim_bridge.server.cli import parser as simulator_parser
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 try:
     from nao_sim_bridge.naoqi.binding.limits import table as limits_of_simulator

@@ -13,8 +13,8 @@ from nao_sim_bridge.cameras.photograph import read_photograph
 from nao_sim_bridge.cameras.shot import Shot
 from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.world.objects import read_object
 from nao_sim_bridge.world.render_state import RenderState

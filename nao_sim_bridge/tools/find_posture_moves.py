@@ -29,8 +29,8 @@ from symmetric_frames import mirrored, to_frames, to_vector
 
 from nao_sim_bridge.control.balance.posture_recognition import STANDING
 from nao_sim_bridge.core.posture_moves import Move, load_moves
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures
-from nao_sim_bridge.model.robot_model import load_model
 
 # Seeds of checks begin here: no search has seen them.
 CHECK_SEEDS = 1_000_000

@@ -17,7 +17,7 @@ from motion_tables import bow_deep, bow_small, look_around, offer, point_to_self
 
 from nao_library_modules.motion.recorded_motion import recorded
 from nao_library_modules.motion.store import MotionStore
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 FOLDER = Path(__file__).resolve().parents[2] / "nao_library_modules" / "config" / "motions"
 MOTIONS = (wave, bow_small, bow_deep, point_to_self, offer, look_around, tai_chi, dance)

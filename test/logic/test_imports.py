@@ -158,7 +158,7 @@ def test_a_room_imports_only_what_stands_below_it(package):
     assert not wrong, "\n".join(wrong)
 
 
-@pytest.mark.parametrize("package", ["nao_library_modules"])
+@pytest.mark.parametrize("package", SOURCES)
 def test_no_module_imports_itself_by_way_of_others(package):
     assert tuple(TopologicalSorter(imports_of(package)).static_order())  # raises CycleError, with the circle
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from nao_sim_bridge.cameras.shot import Shot
 from nao_sim_bridge.model.kinematics import matrix_quaternion, rpy_matrix
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 from nao_sim_bridge.render import RenderState
 from nao_sim_bridge.world.reader import read_world
 from nao_sim_bridge.world.world import World

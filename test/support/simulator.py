@@ -14,7 +14,8 @@ import naoqi
 import naoqi.calls
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.core.simulation import Scene
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer
 from naoqi.errors import NaoError
 
 PATIENCE = 15.0

@@ -19,7 +19,7 @@ from nao_library_modules.functions.joint_trajectory import (
 from nao_library_modules.motion.store import MotionStore
 from nao_library_modules.nao.xap import BadPoseFile, read_poses
 from nao_sim_bridge.control.joints.curves import SmoothCurve
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 CHAINS = {"Body": ("HeadYaw", "HeadPitch", "LHand"), "Head": ("HeadYaw", "HeadPitch"), "LArm": ("LHand",)}
 

@@ -9,7 +9,7 @@ import pytest
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.model.leds_layout import load_leds
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.body.led_names import LedNames
 from nao_sim_bridge.naoqi.memory import live_keys

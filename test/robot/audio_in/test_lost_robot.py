@@ -15,7 +15,8 @@ from nao_library_actions.msg import NaoAudioInGoal
 from nao_library_modules.audio_in.server import NaoAudioInput
 from nao_library_msgs.msg import AudioInFunction as In
 from nao_sim_bridge.core.simulation import Scene
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 
 @pytest.fixture

@@ -13,8 +13,8 @@ from nao_sim_bridge.control.balance.push_detection import PushDetector
 from nao_sim_bridge.control.balance.stance import StanceReader
 from nao_sim_bridge.core import sequences
 from nao_sim_bridge.core.sequences import posture_task
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 READER, STAND = StanceReader(MODEL), posture(MODEL, "Stand")

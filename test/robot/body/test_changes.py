@@ -9,8 +9,8 @@ from nao_sim_bridge.core.diagnosis import SAFE_TIME, DiagnosisEffect
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import KeyFrame, Move, load_moves, play
 from nao_sim_bridge.core.sequences import posture_task, stiffness_task
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 LONGEST = 60.0

@@ -11,7 +11,7 @@ from nao_sim_bridge.control.whole_body.footholds import FootState
 from nao_sim_bridge.control.whole_body.tasks import go_to_balance
 from nao_sim_bridge.model.frames import FEET, frame_of
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, transform
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.tracking.follower import Follower
 from nao_sim_bridge.tracking.follower import Mode as Tracking
 

@@ -12,7 +12,7 @@ from nao_sim_bridge.body.hand_path import AWAY
 from nao_sim_bridge.body.sensors.sonar import NO_ECHO
 from nao_sim_bridge.core.hands import COME_TIME, LEAVE_TIME
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.touch_names import CHEST_BUTTON, HEAD, SENSORS
 from nao_sim_bridge.world.objects import read_object
 

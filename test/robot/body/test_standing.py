@@ -7,8 +7,8 @@ import pytest
 from nao_sim_bridge.control.balance.fall_manager import FallState
 from nao_sim_bridge.control.balance.posture_recognition import recognise
 from nao_sim_bridge.core import sequences
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures
-from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 FAMILY = {name: entry.family for name, entry in load_postures().by_name.items()}

@@ -14,8 +14,8 @@ from nao_sim_bridge.model.appearance import load_appearance
 from nao_sim_bridge.model.collision import LOAD_FLAGS
 from nao_sim_bridge.model.kinematics import center_of_mass, link_transforms, quaternion_matrix
 from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 from nao_sim_bridge.model.urdf.document import full_urdf, mesh_files, physics_urdf
 
 MODEL = load_model()

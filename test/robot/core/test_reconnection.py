@@ -16,7 +16,8 @@ from nao_library_modules.motion.server import NaoMotion
 from nao_library_modules.tactile.server import NaoTactile
 from nao_library_msgs.msg import LedFunction, MotionFunction, TactileFunction
 from nao_sim_bridge.core.simulation import Scene
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from nao_sim_bridge.control.joints.curves import Ramp
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.walk.steps_course import Placement

@@ -14,8 +14,7 @@ from nao_sim_bridge.base.samples import sine
 from nao_sim_bridge.core.world_sounds_playing import WorldSounds
 from nao_sim_bridge.world.builder import build_world
 from nao_sim_bridge.world.objects import read_object
-from nao_sim_bridge.world.reader import read_world
-from nao_sim_bridge.world.world import load_world, world_names
+from nao_sim_bridge.world.reader import load_world, read_world, world_names
 
 CUBE = {"name": "ball", "sphere": 0.04, "position": [0.5, 0.0, 0.2], "mass": 0.1, "color": [1, 0, 0]}
 TABLE = {"name": "table", "box": [0.4, 0.6, 0.3], "position": [1.0, 0.0, 0.15], "friction": 0.9}

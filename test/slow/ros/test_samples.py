@@ -20,7 +20,7 @@ from samples import PAGES, ROOT, samples
 
 from nao_library_modules.processes.own_stack import free_port
 from nao_sim_bridge.testing import wait_until
-from nao_sim_bridge.world.world import load_world
+from nao_sim_bridge.world.reader import load_world
 
 LIMIT, END_LIMIT = 240.0, 60.0
 """s of wall time for a program, and for its end after Ctrl-C."""

@@ -46,8 +46,8 @@ from nao_sim_bridge.behaviors.steps import (
 from nao_sim_bridge.body.led_animations import COLOR_NAMES, color_of_int
 from nao_sim_bridge.control.joints.bezier import KeyPoint
 from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures
-from nao_sim_bridge.model.robot_model import load_model
 
 NATURES = ("solitary", "interactive", NO_NATURE)
 # A file larger than this, in bytes, is no behaviour; nor is what nests deeper, has longer steps or more of them.

@@ -21,8 +21,8 @@ from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.behaviors.steps import GoToPosture, InTurn, Joints, JointWay, Say, Step, Together, Wait
 from nao_sim_bridge.control.joints.bezier import Handle, Interpolation, KeyPoint
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures
-from nao_sim_bridge.model.robot_model import load_model
 
 LARGEST_FILE = 20_000_000
 # Boxes in each other and branches behind each other, together. Boxes, elements and keys count each time they are read:

@@ -15,7 +15,7 @@ from typing import Tuple
 
 import numpy as np
 
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 Pair = Tuple[float, float]
 

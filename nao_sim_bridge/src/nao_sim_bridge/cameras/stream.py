@@ -7,7 +7,7 @@ import threading
 import time
 from collections import deque
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Callable
+from typing import Any, Callable, Protocol
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
@@ -15,10 +15,7 @@ from nao_sim_bridge.cameras.asks import Answer, Ask, CameraClosed
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.moment import Moment
 from nao_sim_bridge.cameras.rate import Share, exact_rate
-from nao_sim_bridge.cameras.settings import ColorSpace, Resolution
-
-if TYPE_CHECKING:
-    from nao_sim_bridge.cameras.cameras import Cameras
+from nao_sim_bridge.cameras.settings import CameraTables, ColorSpace, Resolution
 
 log = logging.getLogger("nao_sim.cameras")
 
@@ -26,6 +23,27 @@ PATIENCE = 10.0
 """Wall time, s: time that runs fast waits no longer than this for somebody who has got a frame to ask for the next."""
 MOST_ASKS = load_sizes().clients.frames
 """How many frames may be asked for before the first of them is there."""
+
+
+class StreamOwner(Protocol):
+    """What a stream asks of the cameras, with their lock held but for `released`."""
+
+    tables: CameraTables
+    ticks_per_second: Fraction
+    lock: threading.RLock
+    released: Callable[[], None]
+
+    def changed(self) -> None:
+        """The stream is for another camera, or has another rate."""
+
+    def forget(self, stream: CameraStream) -> None:
+        """The stream has been closed."""
+
+    def draw(self, stream: CameraStream, ask: Ask, moment: Moment) -> None:
+        """Have a frame drawn for somebody who asked."""
+
+    def answer(self, ask: Ask, answer: Answer) -> None:
+        """Tell somebody who asked, in the cameras' thread."""
 
 
 class CameraStream:
@@ -43,7 +61,7 @@ class CameraStream:
         keep: How many frames wait at most.
     """
 
-    def __init__(self, cameras: Cameras, name: str, every: bool, keep: int) -> None:
+    def __init__(self, cameras: StreamOwner, name: str, every: bool, keep: int) -> None:
         self.name = name
         self.every = every
         self.dropped = 0

@@ -17,8 +17,9 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.balance.posture_recognition import BACK, BELLY, CROUCHING, FAMILIES, SITTING, STANDING
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.core.robot import SimulatedRobot
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures, posture
-from nao_sim_bridge.model.robot_model import RobotModel, load_model
+from nao_sim_bridge.model.robot_model import RobotModel
 
 FILE = "posture_moves.json"
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.limits import world_kind
-from nao_sim_bridge.world.world import World, load_world
+from nao_sim_bridge.world.reader import load_world
+from nao_sim_bridge.world.world import World
 
 MAX_DELAY = 1.0
 

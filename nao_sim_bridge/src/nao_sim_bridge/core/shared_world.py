@@ -5,12 +5,14 @@ No thread and no wall clock: whoever calls `tick` minds both.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Callable
+from typing import Callable, Iterable, Protocol, Sequence
 
 from nao_sim_bridge.base.finite import NotFinite
 from nao_sim_bridge.base.settings import Settings, load_settings
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.body.physics_world import PhysicsWorld
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.core.hands import Hands
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.things import Things
 from nao_sim_bridge.render.client import Renderer
@@ -18,8 +20,38 @@ from nao_sim_bridge.sound.air import Air
 from nao_sim_bridge.world.places import ORIGIN, RobotPlace
 from nao_sim_bridge.world.render_state import RobotLook
 
-if TYPE_CHECKING:
-    from nao_sim_bridge.core.simulation import Simulation
+
+class WorldRobot(Protocol):
+    """What the world asks of a robot that is in it."""
+
+    snapshot: Snapshot
+    hands: Hands
+    holds: Iterable[Callable[[], bool]]
+    after_tick: Iterable[Callable[[Snapshot], None]]
+
+    def begin(self, physics: PhysicsWorld) -> None:
+        """Be put into a world that has just been made."""
+
+    def act(self) -> Sequence[Callable[[], None]]:
+        """First part of a tick, up to the step of physics; what is to be called before each step of the engine."""
+
+    def sense(self) -> None:
+        """Second part of a tick: read every sensor."""
+
+    def perceive(self) -> None:
+        """Third part of a tick: hear and see."""
+
+    def look(self) -> RobotLook:
+        """What the robot looks like at the last tick. Any thread."""
+
+    def look_again(self) -> None:
+        """Let the last snapshot have the things that there are now."""
+
+    def end_tasks(self) -> None:
+        """Kill what moves and lights up."""
+
+    def close_senses(self) -> None:
+        """Hear and see nothing any more."""
 
 
 class SharedWorld:
@@ -51,7 +83,7 @@ class SharedWorld:
         self.scene = scene
         self.settings = settings or load_settings()
         self.world = scene.load_world(self.settings.contact.sole_friction)
-        self.robots: list[Simulation] = []
+        self.robots: list[WorldRobot] = []
         self.physics: PhysicsWorld | None = None
         self.ticks = 0
         self.after_reset: list[Callable[[], None]] = []
@@ -84,7 +116,7 @@ class SharedWorld:
                     self.guard.caught(waits, error)
         return False
 
-    def join(self, robot: Simulation) -> None:
+    def join(self, robot: WorldRobot) -> None:
         """Take a robot in, before time passes, and let it begin."""
         self.robots.append(robot)
         if self.physics is None:
@@ -144,7 +176,7 @@ class SharedWorld:
             self.guard.caught("physics, which begins anew,", lost)
             self.reset()
 
-    def looks_beside(self, robot: Simulation) -> tuple[RobotLook, ...]:
+    def looks_beside(self, robot: WorldRobot) -> tuple[RobotLook, ...]:
         """What all robots but one look like at the last tick. Any thread."""
         return tuple(other.look() for other in self.robots if other is not robot)
 

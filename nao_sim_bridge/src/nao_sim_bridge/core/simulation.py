@@ -15,8 +15,8 @@ from nao_sim_bridge.core.robot import SimulatedRobot
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.model.leds_layout import load_leds
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 from nao_sim_bridge.model.start_lean import start_pitch
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.sound.sound_world import SoundWorld
@@ -158,44 +158,37 @@ class Simulation:
         """Free the engine, for all robots of the world."""
         self.shared.close()
 
-    # --- for the world that it is in -------------------------------------------------------------------------------
+    # --- for the world that it is in, see `WorldRobot` --------------------------------------------------------------
 
     def begin(self, physics: PhysicsWorld) -> None:
-        """Be put into a world that has just been made."""
         angles = posture(self.model, self.scene.posture)
         pitch = start_pitch(self.scene.posture)
         self._physics = Physics(self.model, physics, self.settings, angles, pitch, self.scene.payload, self._place)
         self._start(angles)
 
     def act(self) -> Sequence[Callable[[], None]]:
-        """First part of a tick, up to the step of physics; what is to be called before each step of the engine."""
         self.shared.guard.call(self.hands.tick)
         self.robot.command()
         pushes = self.robot.take_pushes()
         return self._physics.pushing(pushes) if pushes else ()
 
     def sense(self) -> None:
-        """Second part of a tick: read every sensor."""
         self.snapshot = self.robot.sense(self.shared.ticks, self.shared.time)
         self.sound.record(self.snapshot)
 
     def perceive(self) -> None:
-        """Third part of a tick: hear and see."""
         self.shared.guard.call(self.sound.hear)
         self.cameras.tick(self.snapshot)
 
     def end_tasks(self) -> None:
-        """Kill what moves and lights up."""
         self.robot.motion.kill_all()
         self.robot.leds.kill_all()
 
     def look_again(self) -> None:
-        """Let the last snapshot have the things that there are now."""
         bodies = self._physics.bodies
         self.snapshot = replace(self.snapshot, objects=bodies.read(), placed=bodies.placed, gone=bodies.gone)
 
     def close_senses(self) -> None:
-        """Hear and see nothing any more."""
         self.sound.close()
         self.cameras.close()
 

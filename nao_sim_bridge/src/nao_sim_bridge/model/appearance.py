@@ -18,7 +18,8 @@ from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.kinematics import matrix_rpy, rpy_matrix
 from nao_sim_bridge.model.leds_layout import Lamp, load_leds
-from nao_sim_bridge.model.robot_model import frozen_mapping, load_model
+from nao_sim_bridge.model.model_reader import load_model
+from nao_sim_bridge.model.robot_model import frozen_mapping
 from nao_sim_bridge.model.shapes import SEEN_KINDS, Shape, read_shape
 
 FILE = "appearance.json"

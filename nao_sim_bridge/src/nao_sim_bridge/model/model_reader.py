@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from nao_sim_bridge.base.config import array, check_keys, vector
+from nao_sim_bridge.base.config import array, check_keys, read_json, vector
 from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import (
     FILE,
+    VERSIONS,
     Camera,
     CollisionShape,
     CoupledLimit,
@@ -317,3 +320,18 @@ class ModelReader:
                 )
             )
         return tuple(motors)
+
+
+@lru_cache(maxsize=None)
+def load_model(version: str = "V6") -> RobotModel:
+    """The model of one robot version, read once.
+
+    Args:
+        version: `V6` (NAOqi 2.8) or `V5` (NAOqi 2.1), which differ in head, cameras and left-eye numbering.
+
+    Raises:
+        ConfigError: If the version is unknown or the file has a wrong, unknown or missing entry.
+    """
+    if version not in VERSIONS:
+        raise ConfigError(FILE, f"no robot version {version!r} (allowed: {', '.join(VERSIONS)})")
+    return ModelReader(read_json(config_file(FILE)), version).read()

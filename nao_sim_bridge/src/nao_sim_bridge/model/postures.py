@@ -11,7 +11,8 @@ import numpy as np
 from nao_sim_bridge.base.config import check_keys, read_json, vector
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.paths import config_file
-from nao_sim_bridge.model.robot_model import RobotModel, frozen_mapping, load_model
+from nao_sim_bridge.model.model_reader import load_model
+from nao_sim_bridge.model.robot_model import RobotModel, frozen_mapping
 
 FILE = "nao_postures.json"
 SECTIONS = ("_meta", "posture_families", "family_of", "description", "postures")

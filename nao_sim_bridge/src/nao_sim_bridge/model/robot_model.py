@@ -7,15 +7,10 @@ joints are zero, so joint origins are translations. All values are SI units; arr
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from types import MappingProxyType
 from typing import Mapping
 
 import numpy as np
-
-from nao_sim_bridge.base.config import read_json
-from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 
 FILE = "nao_h25.json"
 VERSIONS = ("V6", "V5")
@@ -284,23 +279,6 @@ class RobotModel:
         polygon = (self.sole_contour * (1.0, -1.0))[::-1]
         polygon.flags.writeable = False
         return polygon
-
-
-@lru_cache(maxsize=None)
-def load_model(version: str = "V6") -> RobotModel:
-    """The model of one robot version, read once.
-
-    Args:
-        version: `V6` (NAOqi 2.8) or `V5` (NAOqi 2.1), which differ in head, cameras and left-eye numbering.
-
-    Raises:
-        ConfigError: If the version is unknown or the file has a wrong, unknown or missing entry.
-    """
-    from nao_sim_bridge.model.model_reader import ModelReader  # the reader builds the classes of this module
-
-    if version not in VERSIONS:
-        raise ConfigError(FILE, f"no robot version {version!r} (allowed: {', '.join(VERSIONS)})")
-    return ModelReader(read_json(config_file(FILE)), version).read()
 
 
 def frozen_mapping(entries: Mapping) -> Mapping:

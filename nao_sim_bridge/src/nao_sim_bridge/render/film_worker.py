@@ -78,11 +78,11 @@ def _open(
 ) -> tuple[_Film, str]:
     quiet_import()
     from nao_sim_bridge.base.samples import RATE
-    from nao_sim_bridge.model.robot_model import load_model
+    from nao_sim_bridge.model.model_reader import load_model
     from nao_sim_bridge.render.engines import open_engine
     from nao_sim_bridge.render.film_camera import FilmCamera
     from nao_sim_bridge.render.film_file import FilmFile
-    from nao_sim_bridge.world.world import load_world
+    from nao_sim_bridge.world.reader import load_world
 
     drawing, _ = open_engine(engine, load_world(world_name), version)
     camera = FilmCamera(view, load_model(version), *size, SHARPNESS)

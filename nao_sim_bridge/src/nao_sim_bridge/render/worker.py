@@ -58,7 +58,7 @@ def _open_pictures(pipe: Connection, engine: str, world_name: str, version: str)
 
     from nao_sim_bridge.render.engines import open_engine
     from nao_sim_bridge.render.wire import StateReceiver
-    from nao_sim_bridge.world.world import load_world
+    from nao_sim_bridge.world.reader import load_world
 
     cv2.setNumThreads(1)  # the other cores are for physics
     drawing, complaint = open_engine(engine, load_world(world_name), version)
@@ -100,7 +100,7 @@ def _open_window(pipe: Connection, world_name: str, version: str) -> Any:
     """Open the window; returns what serves the pipe."""
     quiet_import()
     from nao_sim_bridge.render.window import Window
-    from nao_sim_bridge.world.world import load_world
+    from nao_sim_bridge.world.reader import load_world
 
     return Window(pipe, load_world(world_name), version).serve
 

@@ -14,9 +14,9 @@ from nao_sim_bridge.core.simulation import Scene
 from nao_sim_bridge.model.postures import load_postures
 from nao_sim_bridge.model.robot_model import VERSIONS
 from nao_sim_bridge.render.client import ENGINES
-from nao_sim_bridge.server.simulator_server import ServerOptions
+from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.world.places import MOST_ROBOTS, RobotPlace, parse_places
-from nao_sim_bridge.world.world import world_names
+from nao_sim_bridge.world.reader import world_names
 
 
 def parser(prog: str) -> argparse.ArgumentParser:

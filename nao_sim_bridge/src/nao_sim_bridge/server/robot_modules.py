@@ -49,7 +49,7 @@ from nao_sim_bridge.vision.client import VisionProcess
 
 if TYPE_CHECKING:
     from nao_sim_bridge.server.broker import Broker
-    from nao_sim_bridge.server.simulator_server import ServerOptions
+    from nao_sim_bridge.server.options import ServerOptions
 
 log = logging.getLogger("nao_sim.robot")
 

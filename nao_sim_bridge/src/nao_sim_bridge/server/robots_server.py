@@ -14,7 +14,8 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import Renderer
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer, renderer_for, scene_in
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer, renderer_for, scene_in
 from nao_sim_bridge.world.places import RobotPlace, checked_places, on_circle
 
 SEED_STEP = 7919

@@ -6,13 +6,12 @@ import ctypes
 import logging
 import sys
 import threading
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.base.closing import Step, close_all
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.record_dir import DEFAULT_RECORD_DIR, ClientFiles, unused
+from nao_sim_bridge.base.record_dir import ClientFiles, unused
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.robot_runner import RobotRunner
@@ -32,14 +31,14 @@ from nao_sim_bridge.server.broker import Broker
 from nao_sim_bridge.server.film_control import FilmControl
 from nao_sim_bridge.server.hands_control import HandsControl
 from nao_sim_bridge.server.health_control import HealthControl
+from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.server.pictures import Pictures
 from nao_sim_bridge.server.robot_modules import RobotModules, Workers
 from nao_sim_bridge.server.sound_outlets import SoundCard, SoundFile
 from nao_sim_bridge.server.things_control import ThingsControl
 from nao_sim_bridge.server.world_sounds_control import WorldSoundsControl
 from nao_sim_bridge.sound.reader import SoundReader
-from nao_sim_bridge.world.places import RobotPlace
-from nao_sim_bridge.world.world import world_names
+from nao_sim_bridge.world.reader import world_names
 
 MAX_PUSH = 60.0
 # How long a thread that computes keeps Python's interpreter when another wants it, s. The simulation computes nearly
@@ -53,43 +52,6 @@ FILM_LIMIT = 2.0
 READY = "NAOqiReady"
 """The event that clients know a robot by that has started, or started again."""
 log = logging.getLogger("nao_sim.server")
-
-
-@dataclass(frozen=True)
-class ServerOptions:
-    """How a simulated robot is started.
-
-    Attributes:
-        scene: World, robot version, posture, seed.
-        address: Network address to listen on.
-        port: Port; 0 takes a free one.
-        speed: Simulated seconds per wall second, infinity for as fast as possible.
-        paused: Start without time passing.
-        gui: Show the robot in a window.
-        record_dir: Folder for files of clients; "~" stands for the home of the user.
-        sound_file: Name in `record_dir` of a WAV for everything that the loudspeakers play; empty for none.
-        sound_card: Let it be heard on this computer, too; only at speed 1.
-        renderer: What draws: "auto", "opengl" or "builtin"; see `Renderer`.
-        name: What the robot is called.
-        robots: How many there are in the world; with more than one the port is that of the first.
-        places: Where they stand; empty for where the world says, or else the usual places.
-        allow_private_streams: Whether playWebStream may fetch from this computer and from private networks.
-    """
-
-    scene: Scene = field(default_factory=Scene)
-    address: str = "127.0.0.1"
-    port: int = 9559
-    speed: float = 1.0
-    paused: bool = False
-    gui: bool = False
-    record_dir: Path = DEFAULT_RECORD_DIR
-    sound_file: str = ""
-    sound_card: bool = False
-    renderer: str = "auto"
-    name: str = "nao"
-    robots: int = 1
-    places: tuple[RobotPlace, ...] = ()
-    allow_private_streams: bool = False
 
 
 class SimulatorServer:

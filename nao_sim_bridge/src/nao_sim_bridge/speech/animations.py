@@ -11,7 +11,7 @@ from nao_sim_bridge.base.config import array, check_keys, read_json
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.control.joints.curves import SmoothCurve
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 FILE = "animations.json"
 # What NAOqi writes for the posture that the robot is in.

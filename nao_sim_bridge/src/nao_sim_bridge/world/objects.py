@@ -6,7 +6,7 @@ A thing has `name` and `position`, may have `rpy` or `heading` (rad), `mass` (0,
 - a shape: `box: [x, y, z]`, `sphere: radius`, `cylinder: [radius, length]` or `capsule: [radius, length]`, maybe with
   a `picture`: `poster:hills`, `pattern:oak`, `landmark:64`... on its +X side;
 - `parts`: a list of such shapes with `xyz` and maybe `rpy`, `color` and `picture`, in a frame that is at `position`;
-- one of the kinds of `world_cards.py`, `world_people.py` and `world_robots.py`, or `ball: radius`.
+- one of the kinds of `cards.py`, `people.py` and `robots.py`, or `ball: radius`.
 """
 
 from __future__ import annotations

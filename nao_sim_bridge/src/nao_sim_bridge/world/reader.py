@@ -2,11 +2,11 @@
 
 `floor` has `friction` (the engine multiplies the coefficients of the two that touch) and may have `color`,
 `tile_color`, `tile_size`, `slope_deg: [along x, along y]` (rising), `rugs` (a list of `center`, `size`, `color` and
-maybe `yaw`) and `bumps` (see `world_bumps.py`). `light` may have `direction`, `color` and `ambient`; `background` may
+maybe `yaw`) and `bumps` (see `bumps.py`). `light` may have `direction`, `color` and `ambient`; `background` may
 have `top`, `horizon` and `haze`.
 
-Objects are read by `world_objects.py`; on a slope all places count from the floor: z is along its normal.
-`sounds` are read by `world_sounds.py`. `robots` says where the first, the second... robot starts: a list of `position`,
+Objects are read by `objects.py`; on a slope all places count from the floor: z is along its normal.
+`sounds` are read by `sounds.py`. `robots` says where the first, the second... robot starts: a list of `position`,
 [x, y] of its torso, and maybe `yaw`.
 """
 
@@ -17,9 +17,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml
 
-from nao_sim_bridge.base.config import check_keys, vector
-from nao_sim_bridge.base.errors import BadValue, ConfigError
+from nao_sim_bridge.base.bounded_files import read_bounded
+from nao_sim_bridge.base.config import LARGEST_FILE, check_keys, vector
+from nao_sim_bridge.base.errors import BadValue, ConfigError, did_you_mean
+from nao_sim_bridge.base.paths import world_directory
+from nao_sim_bridge.base.yaml_values import load_yaml
 from nao_sim_bridge.world.bumps import read_bumps
 from nao_sim_bridge.world.entries import GREY, check_bounds, color, entries, number
 from nao_sim_bridge.world.objects import read_object
@@ -132,3 +136,31 @@ def _read_background(entry: Any, where: str) -> Background:
         horizon=color(entry, "horizon", where, (0.88, 0.90, 0.92)),
         haze=number(entry, "haze", where, 5.0, lowest=0.1),
     )
+
+
+def world_names() -> tuple[str, ...]:
+    """Worlds that come with the package."""
+    return tuple(sorted(path.stem for path in world_directory().glob("*.yaml")))
+
+
+def load_world(name_or_path: str) -> World:
+    """Read a world.
+
+    Args:
+        name_or_path: Name of a world of this package (`empty`), or a path that ends in `.yaml`.
+
+    Raises:
+        WorldError: If there is no such world, or an entry of it is wrong, unknown or missing.
+    """
+    path = Path(name_or_path)
+    if path.suffix not in (".yaml", ".yml"):
+        if name_or_path not in world_names():
+            hint = did_you_mean(name_or_path, world_names())
+            there = f"there are: {', '.join(world_names())}; or give a path to a .yaml"
+            raise WorldError("world", f"no world {name_or_path!r}{hint} ({there})")
+        path = world_directory() / f"{name_or_path}.yaml"
+    try:
+        content = load_yaml(read_bounded(path, LARGEST_FILE).decode("utf-8"))
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise WorldError(path.name, f"cannot be read: {error}") from error
+    return read_world(content, path.stem, path.name, path.parent)

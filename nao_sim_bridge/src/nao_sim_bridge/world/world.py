@@ -1,23 +1,16 @@
 """Worlds: what surrounds the robot, the same for the physics and for pictures.
 
 A world file (YAML) has `floor`, and may have `description`, `light`, `background`, `objects`, `sounds` and `robots`;
-the readers (`world_reader.py`, `world_sounds.py`) say what each of them may hold.
+the readers (`reader.py`, `sounds.py`) say what each of them may hold.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 
-import yaml
-
-from nao_sim_bridge.base.bounded_files import read_bounded
-from nao_sim_bridge.base.config import LARGEST_FILE
-from nao_sim_bridge.base.errors import ConfigError, did_you_mean
-from nao_sim_bridge.base.paths import world_directory
+from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw
-from nao_sim_bridge.base.yaml_values import load_yaml
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.pictures import WorldPicture
 from nao_sim_bridge.world.places import RobotPlace
@@ -203,33 +196,3 @@ class World:
     objects: tuple[WorldObject, ...]
     sounds: tuple[WorldSound, ...] = ()
     robots: tuple[RobotPlace, ...] = ()
-
-
-def world_names() -> tuple[str, ...]:
-    """Worlds that come with the package."""
-    return tuple(sorted(path.stem for path in world_directory().glob("*.yaml")))
-
-
-def load_world(name_or_path: str) -> World:
-    """Read a world.
-
-    Args:
-        name_or_path: Name of a world of this package (`empty`), or a path that ends in `.yaml`.
-
-    Raises:
-        WorldError: If there is no such world, or an entry of it is wrong, unknown or missing.
-    """
-    from nao_sim_bridge.world.reader import read_world  # the reader builds the classes of this module
-
-    path = Path(name_or_path)
-    if path.suffix not in (".yaml", ".yml"):
-        if name_or_path not in world_names():
-            hint = did_you_mean(name_or_path, world_names())
-            there = f"there are: {', '.join(world_names())}; or give a path to a .yaml"
-            raise WorldError("world", f"no world {name_or_path!r}{hint} ({there})")
-        path = world_directory() / f"{name_or_path}.yaml"
-    try:
-        content = load_yaml(read_bounded(path, LARGEST_FILE).decode("utf-8"))
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        raise WorldError(path.name, f"cannot be read: {error}") from error
-    return read_world(content, path.stem, path.name, path.parent)

@@ -20,7 +20,7 @@ from nao_sim_bridge.cameras.places import CameraPlaces
 from nao_sim_bridge.core.simulation import Scene, Simulation
 from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.render.scene.stage import Stage
-from nao_sim_bridge.world.world import load_world
+from nao_sim_bridge.world.reader import load_world
 
 WORLD = "lab"
 RESOLUTIONS = {"320x240": 1, "640x480": 2}

@@ -19,8 +19,9 @@ from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.body.physics import Physics
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Scene, Simulation
-from nao_sim_bridge.server.simulator_server import ServerOptions, SimulatorServer
-from nao_sim_bridge.world.world import load_world
+from nao_sim_bridge.server.options import ServerOptions
+from nao_sim_bridge.server.simulator_server import SimulatorServer
+from nao_sim_bridge.world.reader import load_world
 
 SETTLE_S = 2.0
 LIMIT = 60.0

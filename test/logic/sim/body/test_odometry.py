@@ -7,8 +7,8 @@ import pytest
 from nao_sim_bridge.base.readings import Contact
 from nao_sim_bridge.control.balance.odometry import Odometry
 from nao_sim_bridge.model.kinematics import matrix_rpy, quaternion_matrix
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 INIT = posture(MODEL, "StandInit")

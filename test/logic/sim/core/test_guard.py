@@ -13,7 +13,7 @@ from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.body.leds import LedBank, LedKeyframe
 from nao_sim_bridge.control.joints.curves import Ramp
 from nao_sim_bridge.control.joints.engine import MotionEngine
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 TICK = 1.0 / 120.0
 

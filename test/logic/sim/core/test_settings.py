@@ -12,7 +12,7 @@ from nao_sim_bridge.body.sensors import noise_settings
 from nao_sim_bridge.control.balance import balance, fall_manager
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.hearing import settings as hearing
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.world.places import NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
 
 MODEL = load_model()

@@ -29,8 +29,8 @@ from nao_sim_bridge.model.kinematics import (
     quaternion_matrix,
     rpy_matrix,
 )
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 
 CHECKS = read_json(config_file("nao_h25.json"))["fk_check_zero_posture_torso_frame"]["positions_m"]
 MODEL = load_model()

@@ -15,9 +15,8 @@ from nao_sim_bridge.model.appearance import load_appearance
 from nao_sim_bridge.model.body_mass import convex_hull
 from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.meshes import tessellate
-from nao_sim_bridge.model.model_reader import ModelReader
+from nao_sim_bridge.model.model_reader import ModelReader, load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 from nao_sim_bridge.model.shapes import SEEN_KINDS, Shape, read_shape
 from nao_sim_bridge.model.support_polygon import outside
 

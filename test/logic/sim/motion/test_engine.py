@@ -8,7 +8,7 @@ from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.control.joints.engine import MotionEngine
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 MODEL = load_model()
 DT = 0.01

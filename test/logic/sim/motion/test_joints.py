@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nao_sim_bridge.body.joint_commands import STICTION, JointCommands
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 MODEL = load_model()
 DT = 0.01

@@ -12,8 +12,8 @@ from nao_sim_bridge.control.whole_body.inverse_kinematics import Goal, solve
 from nao_sim_bridge.control.whole_body.task_solver import Wish, ranked_step
 from nao_sim_bridge.model.frames import FEET, frame_of
 from nao_sim_bridge.model.kinematics import axis_matrix, transform
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 BODY = body_kinematics(MODEL)

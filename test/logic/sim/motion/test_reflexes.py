@@ -12,8 +12,8 @@ from nao_sim_bridge.control.joints.idle import BREATH, EASE_TIME, FIVE_DEGREES, 
 from nao_sim_bridge.control.joints.self_collision import CONTACT, SelfCollision
 from nao_sim_bridge.control.joints.smart_stiffness import ALL, FACTOR, MOVED, SETTLING, SPARE, SmartStiffness
 from nao_sim_bridge.model.kinematics import link_transforms
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures, posture
-from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 INDEX = MODEL.joint_index

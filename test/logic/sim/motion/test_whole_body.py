@@ -10,8 +10,8 @@ from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
 from nao_sim_bridge.control.whole_body.footholds import Footholds, FootState
 from nao_sim_bridge.control.whole_body.grounded_pose import GroundedPose
 from nao_sim_bridge.model.frames import FEET, frame_of
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 BODY = body_kinematics(MODEL)

@@ -14,7 +14,7 @@ from nao_sim_bridge.body.sensors.feet import FootSensors
 from nao_sim_bridge.body.sensors.inertial import InertialUnit
 from nao_sim_bridge.body.sensors.touch import TouchSensors
 from nao_sim_bridge.body.touch_clicks import LONGEST_CLICK, LONGEST_PAUSE, ClickCounter
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 MODEL = load_model()
 LINKS = {link.name: number for number, link in enumerate(MODEL.links)}

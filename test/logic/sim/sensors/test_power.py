@@ -13,7 +13,7 @@ from nao_sim_bridge.body.sensors.heat import HOT, heat_shares, heat_status
 from nao_sim_bridge.body.sensors.motors import Motors, Work, motor_of
 from nao_sim_bridge.body.sensors.power import PowerSystem
 from nao_sim_bridge.body.temperatures import NOTHING_HOT, hot_devices
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 MODEL, SETTINGS = load_model(), load_settings()
 STILL, STIFF = [0.0] * 26, [1.0] * 26

@@ -9,7 +9,7 @@ import pytest
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.body.sensors import sonar
 from nao_sim_bridge.body.sensors.sonar import FARTHEST, NEAREST, NO_ECHO, Sonars, Surface
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 MODEL = load_model()
 HEIGHT = 0.33

@@ -9,7 +9,7 @@ import pytest
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.samples import RATE, Sound, sine
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.sound.settings import load_sound_settings
 
 

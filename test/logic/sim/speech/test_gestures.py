@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nao_sim_bridge.control.joints.self_collision import SelfCollision
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 from nao_sim_bridge.speech.animations import load_animations
 from nao_sim_bridge.speech.body_language import CONTEXTUAL, QUICKEST, RANDOM, SLOWEST, plan
 

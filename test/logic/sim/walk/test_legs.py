@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nao_sim_bridge.model.kinematics import link_transforms
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.walk.body import WalkingBody
 from nao_sim_bridge.walk.legs import LEFT, RIGHT, SIDES
 

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from nao_sim_bridge.body.joint_commands import JointCommands
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import load_model
 from nao_sim_bridge.walk.arm_swing import ArmSwing
 from nao_sim_bridge.walk.body import WalkingBody
 from nao_sim_bridge.walk.gait import FeetGait

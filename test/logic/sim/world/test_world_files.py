@@ -21,9 +21,9 @@ from nao_sim_bridge.world.objects import read_object
 from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
 from nao_sim_bridge.world.pictures import WorldPicture
 from nao_sim_bridge.world.places import RobotPlace
-from nao_sim_bridge.world.reader import read_world
+from nao_sim_bridge.world.reader import load_world, read_world, world_names
 from nao_sim_bridge.world.sounds_made import make_sound, noise
-from nao_sim_bridge.world.world import MOST_PARTS, WorldError, load_world, world_names
+from nao_sim_bridge.world.world import MOST_PARTS, WorldError
 
 BALL = {"name": "ball", "sphere": 0.04, "position": [0.5, 0.0, 0.2], "mass": 0.1, "color": [1, 0, 0]}
 TABLE = {"name": "table", "box": [0.4, 0.6, 0.3], "position": [1.0, 0.0, 0.15], "friction": 0.9}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 
 MODEL = load_model()
 HEAD = ["HeadYaw", "HeadPitch"]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures
-from nao_sim_bridge.model.robot_model import load_model
 
 MODEL = load_model()
 TORSO, WORLD, ROBOT = 0, 1, 2

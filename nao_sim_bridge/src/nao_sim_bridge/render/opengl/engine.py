@@ -9,7 +9,7 @@ import moderngl
 import numpy as np
 
 from nao_sim_bridge.model.appearance import load_appearance
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.render.opengl.canvas import Canvases
 from nao_sim_bridge.render.opengl.context import describe, open_context
 from nao_sim_bridge.render.opengl.geometry import POSITION_FORMAT, VERTEX_FORMAT, VERTEX_NAMES

@@ -11,7 +11,7 @@ from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Quaternion, Vector3
 from nao_sim_bridge.model.appearance import load_appearance
-from nao_sim_bridge.model.robot_model import load_model
+from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.render.scene.figure import FAR_AWAY, UNTURNED, Figure
 from nao_sim_bridge.world.builder import build_object, build_world, place_of
 from nao_sim_bridge.world.render_state import RenderState
