@@ -41,7 +41,7 @@ except ImportError:
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
 CLIENT = ROOT / "nao_library_modules" / "examples" / "green_eyes.py"
-NAOQI = ROOT / "nao_sim_bridge" / "config" / "naoqi_api.json"
+NAOQI = ROOT / "nao_sim_bridge" / "src" / "nao_sim_bridge" / "config" / "naoqi_api.json"
 NOT_WRAPPED = ROOT / "scripts" / "not_wrapped.yaml"
 OUR_MESSAGES = "nao_library_msgs"
 FEW = 5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
+from pathlib import Path
 
 import actionlib
 import numpy as np
@@ -22,10 +23,9 @@ from nao_library_modules.process_modules.language.trace_picture import COLORS, d
 from nao_library_modules.process_modules.robot.action_client import PlanActionClient
 from nao_library_modules.process_modules.robot.chains import Chain
 from nao_library_modules.ros.goal_tracker import GoalTracker
-from nao_sim_bridge.base.paths import urdf_file
 from naoqi.errors import NaoError
 
-URDF = urdf_file("nao_h25.urdf").read_text(encoding="utf-8")
+URDF = (Path(__file__).parents[3] / "nao_sim_bridge/urdf/nao_h25.urdf").read_text(encoding="utf-8")
 
 
 @pytest.fixture

@@ -4,12 +4,12 @@ import os
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 import numpy as np
 import pybullet
 import pytest
 
-from nao_sim_bridge.base.paths import data_root, urdf_file
 from nao_sim_bridge.model.appearance import load_appearance
 from nao_sim_bridge.model.collision import LOAD_FLAGS
 from nao_sim_bridge.model.kinematics import center_of_mass, link_transforms, quaternion_matrix
@@ -18,6 +18,7 @@ from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
 from nao_sim_bridge.model.urdf.document import full_urdf, mesh_files, physics_urdf
 
+PACKAGE = Path(__file__).resolve().parents[3] / "nao_sim_bridge"
 MODEL = load_model()
 TRAVEL = MODEL.simulated_hand.travel
 FULL = full_urdf(MODEL, load_appearance())
@@ -131,8 +132,8 @@ def test_the_full_urdf_is_one_tree_with_every_frame_that_clients_know_and_a_link
 
 
 def test_files_in_the_package_are_what_the_generator_makes():
-    assert urdf_file("nao_h25.urdf").read_text() == FULL
-    folder, record = urdf_file("meshes"), np.dtype([("vectors", "<f4", (4, 3)), ("pad", "<u2")])
+    assert (PACKAGE / "urdf" / "nao_h25.urdf").read_text() == FULL
+    folder, record = PACKAGE / "urdf" / "meshes", np.dtype([("vectors", "<f4", (4, 3)), ("pad", "<u2")])
     assert {path.name for path in folder.iterdir()} == set(mesh_files(load_appearance()))
     for name, content in mesh_files(load_appearance()).items():
         files = (folder / name).read_bytes(), content
@@ -144,7 +145,7 @@ def test_files_in_the_package_are_what_the_generator_makes():
 def test_the_program_prints_and_writes_the_urdf_and_refuses_an_unknown_version(tmp_path):
     def run(*options):
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        program = [sys.executable, str(data_root() / "nodes" / "nao_urdf"), *options]
+        program = [sys.executable, str(PACKAGE / "nodes" / "nao_urdf"), *options]
         return subprocess.run(program, env=environment, capture_output=True, text=True, timeout=60)
 
     assert run().stdout == FULL and run("--physics", "--version", "V5").stdout == physics_urdf(load_model("V5"))

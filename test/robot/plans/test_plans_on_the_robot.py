@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -34,10 +35,9 @@ from nao_library_modules.process_modules.language.failures import (
 from nao_library_modules.process_modules.language.settings import load_settings
 from nao_library_modules.process_modules.robot.action_client import ActionEnd
 from nao_library_modules.process_modules.robot.chains import Chain
-from nao_sim_bridge.base.paths import urdf_file
 
 FRAME_TORSO, STANDING = 0, 0.28
-URDF = urdf_file("nao_h25.urdf").read_text(encoding="utf-8")
+URDF = (Path(__file__).parents[3] / "nao_sim_bridge/urdf/nao_h25.urdf").read_text(encoding="utf-8")
 
 
 class Link:

@@ -29,7 +29,7 @@ SPEEDS = {"python": 2.0, "shell": 4.0}
 ALL = [sample for page in PAGES for sample in samples(page)]
 REFUSED = re.compile(r"^Traceback|^success: False", re.MULTILINE)
 """In an output: `rosservice` ends with status 0 also when a service has said no."""
-SOUND = ROOT / "nao_sim_bridge" / "sounds" / "nao_library" / "chime.ogg"
+SOUND = ROOT / "nao_sim_bridge" / "src" / "nao_sim_bridge" / "sounds" / "nao_library" / "chime.ogg"
 """A file of music that the reader has."""
 NOT_HERE = {"no", "part of", "run by"}
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
