@@ -7,10 +7,11 @@ import struct
 import pytest
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.model.joint_names import joint_names
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.body.dcm_arguments import timed_points
-from nao_sim_bridge.naoqi.motion.arguments import joint_indices, joint_names, key_frames
+from nao_sim_bridge.naoqi.motion.arguments import joint_indices, key_frames
 from nao_sim_bridge.naoqi.motion.bezier_arguments import bezier_key_points
 from nao_sim_bridge.naoqi.motion.cartesian_arguments import paths_of, pose_of_position
 from nao_sim_bridge.naoqi.motion.footsteps import _placed as placed

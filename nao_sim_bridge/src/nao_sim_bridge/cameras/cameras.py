@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import threading
+from concurrent.futures import Future
 from fractions import Fraction
 from typing import Callable, Mapping
 
@@ -20,6 +21,7 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.cameras.asks import Answer, Ask, CameraClosed
 from nao_sim_bridge.cameras.automatics import NEUTRAL_KELVIN
 from nao_sim_bridge.cameras.darkroom import CapturesPictures, Darkroom
+from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.moment import Moment
 from nao_sim_bridge.cameras.optics import CameraOptics
 from nao_sim_bridge.cameras.parameters import (
@@ -41,6 +43,8 @@ from nao_sim_bridge.world.render_state import RenderState
 
 log = logging.getLogger("nao_sim.cameras")
 
+RGB = 11
+"""NAOqi's id of the colour space."""
 # What automatics choose, by the parameter that says how it was; and the parameter that turns them on.
 CHOSEN_BY = {EXPOSURE: AUTO_EXPOSURE, GAIN: AUTO_EXPOSURE, WHITE_BALANCE: AUTO_WHITE_BALANCE}
 
@@ -149,6 +153,39 @@ class Cameras:
             self._streams = (*self._streams, stream)
             self.changed()
         return stream
+
+    def picture_now(self, camera: int, width: int, height: int) -> np.ndarray:
+        """What a camera sees at the last tick, (height, width, 3) uint8 RGB; waits until it is drawn.
+
+        Raises:
+            BadValue: The cameras have no such resolution.
+            RenderError: It cannot be drawn.
+        """
+        sizes = {(size.width, size.height): size for size in self.tables.resolutions.values()}
+        if (width, height) not in sizes:
+            allowed = ", ".join(f"{w}x{h}" for w, h in sorted(sizes))
+            raise BadValue("picture", f"{width}x{height}", allowed)
+        with self.lock:
+            snapshot = self._snapshot
+            moment = Moment(
+                self.tables.camera(camera),
+                self._numbers[camera],
+                snapshot,
+                self._look(snapshot),
+                self._parameters[camera],
+                self._replaced[camera],
+            )
+        drawn: Future[Frame] = Future()
+        size, pixels = sizes[width, height], self.tables.color_space(RGB)
+
+        def draw() -> None:
+            try:
+                drawn.set_result(self._darkroom.develop(moment, size, pixels)[0])
+            except Exception as error:
+                drawn.set_exception(error)
+
+        self._darkroom.put(draw)
+        return drawn.result().array()
 
     @property
     def streams(self) -> tuple[CameraStream, ...]:

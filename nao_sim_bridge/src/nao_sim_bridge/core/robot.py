@@ -212,10 +212,13 @@ class SimulatedRobot:
         self._physics.drive(self.joints)
 
     def take_pushes(self) -> Mapping[str, Vector3]:
-        """Forces on links in the coming step of physics, N, in world, by link."""
+        """Forces on links in the coming step of physics, N, in world, by link; those on one link add up."""
         if not self._pushes:
             return NO_PUSHES
-        forces = {push.link: push.force for push in self._pushes}
+        forces: dict[str, Vector3] = {}
+        for push in self._pushes:
+            x, y, z = forces.get(push.link, (0.0, 0.0, 0.0))
+            forces[push.link] = (x + push.force[0], y + push.force[1], z + push.force[2])
         self._pushes = [push for push in self._pushes if push.until > self.time + 1e-9]
         return forces
 

@@ -5,7 +5,7 @@ No thread and no wall clock: whoever calls `tick` minds both.
 
 from __future__ import annotations
 
-from typing import Callable, Iterable, Protocol, Sequence
+from typing import TYPE_CHECKING, Callable, Iterable, Protocol, Sequence
 
 from nao_sim_bridge.base.finite import NotFinite
 from nao_sim_bridge.base.settings import Settings, load_settings
@@ -16,9 +16,11 @@ from nao_sim_bridge.core.hands import Hands
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.things import Things
 from nao_sim_bridge.render.client import Renderer
-from nao_sim_bridge.sound.air import Air
 from nao_sim_bridge.world.places import ORIGIN, RobotPlace
 from nao_sim_bridge.world.render_state import RobotLook
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.sound.air import Air
 
 
 class WorldRobot(Protocol):
@@ -66,7 +68,6 @@ class SharedWorld:
         task_ids: Source of the numbers of all tasks.
         guard: Calls what belongs to a tick besides physics and sensors, and knows what of it has failed.
         things: What is in the world and may come, move and go; a reset puts it to where the world file says.
-        air: What sounds, and the clock of sound; it stays at a reset.
         renderer: What draws, for all robots.
         ticks: Since the start; it never goes back.
         after_reset: Called at the end of each reset: world and robots are at the start again.
@@ -90,7 +91,7 @@ class SharedWorld:
         self.task_ids = TaskIds()
         self.guard = self.task_ids.guard
         self.wake: Callable[[], None] = lambda: None
-        self.air = Air(self.task_ids, self.settings.tick_s)
+        self._air: Air | None = None
         self.renderer = renderer if isinstance(renderer, Renderer) else Renderer(scene.world, scene.version, renderer)
         self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
 
@@ -98,6 +99,17 @@ class SharedWorld:
     def time(self) -> float:
         """Simulated time, s."""
         return self.ticks * self.settings.tick_s
+
+    @property
+    def air(self) -> Air:
+        """What sounds, and the clock of sound; made when somebody first asks for it, and it stays at a reset."""
+        if self._air is None:
+            from nao_sim_bridge.sound.air import Air  # a world without sound needs nothing of it
+
+            self._air = Air(self.task_ids, self.settings.tick_s)
+            if self.ticks:
+                self._air.tick(self.ticks)
+        return self._air
 
     @property
     def next_place(self) -> RobotPlace:
@@ -128,7 +140,8 @@ class SharedWorld:
         """Put all robots and the world to where they started; running tasks are killed, time goes on."""
         for robot in self.robots:
             robot.end_tasks()
-        self.air.stop_all()
+        if self._air is not None:
+            self._air.stop_all()
         self.physics.close()
         self.physics = PhysicsWorld(self.world, self.settings)
         self.things.begin(self.physics)
@@ -152,7 +165,8 @@ class SharedWorld:
             pushes += call(robot.act) or ()
         self.physics.step(pushes)
         self._sense()
-        call(self.air.tick, self.ticks)
+        if self._air is not None:
+            call(self._air.tick, self.ticks)
         for robot in robots:
             call(robot.perceive)
         for robot in robots:
@@ -186,7 +200,8 @@ class SharedWorld:
         Args:
             keep_renderer: Leave what draws to another world.
         """
-        self.air.stop_all()
+        if self._air is not None:
+            self._air.stop_all()
         for robot in self.robots:
             robot.close_senses()
         if not keep_renderer:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Callable, Sequence
+from typing import TYPE_CHECKING, Callable, Sequence
 
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.body.physics import Physics
 from nao_sim_bridge.body.physics_world import PhysicsWorld
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.cameras.cameras import Cameras
 from nao_sim_bridge.core.hands import Hands
 from nao_sim_bridge.core.robot import SimulatedRobot
 from nao_sim_bridge.core.scene import Scene
@@ -19,9 +18,12 @@ from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
 from nao_sim_bridge.model.start_lean import start_pitch
 from nao_sim_bridge.render.client import Renderer
-from nao_sim_bridge.sound.sound_world import SoundWorld
 from nao_sim_bridge.world.places import RobotPlace
 from nao_sim_bridge.world.render_state import RenderState, RobotLook
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.cameras.cameras import Cameras
+    from nao_sim_bridge.sound.sound_world import SoundWorld
 
 
 class Simulation:
@@ -37,9 +39,7 @@ class Simulation:
         snapshot: What was sensed at the last tick; any thread may read it.
         after_tick: Called with the snapshot at the end of every tick; they stay at a reset.
         after_reset: Called in the simulation thread when the robot is at its start again, with the world or alone.
-        sound: What sounds and what is heard; it stays at a reset, which ends everything that plays.
         renderer: What draws what the cameras see, and pictures from outside; any thread may ask.
-        cameras: What the robot sees; it stays at a reset.
         things: What is in the world and may come, move and go; a reset puts it to where the world file says.
         holds: As long as one of them answers True, time that runs faster than the wall clock waits: for work in other
             threads without which a fast run would give other results. Asked in the simulation thread.
@@ -70,18 +70,10 @@ class Simulation:
         self.task_ids = self.shared.task_ids
         self.after_tick: list[Callable[[Snapshot], None]] = []
         self.after_reset: list[Callable[[], None]] = []
-        self.sound = SoundWorld(self.model, self.shared.air, self.scene.seed, released=lambda: self.wake())
         self.renderer = self.shared.renderer
-        self.cameras = Cameras(
-            self.model,
-            self.settings.tick_s,
-            self.renderer,
-            self.render_state,
-            self.scene.seed,
-            released=lambda: self.wake(),
-            guard=self.shared.guard,
-        )
-        self.holds: list[Callable[[], bool]] = [self.sound.ears.holds, self.cameras.holds]
+        self._sound: SoundWorld | None = None
+        self._cameras: Cameras | None = None
+        self.holds: list[Callable[[], bool]] = []
         self.things = self.shared.things
         self.hands = Hands(self.model, self.task_ids)
         self.robot: SimulatedRobot
@@ -99,9 +91,46 @@ class Simulation:
         return self.shared.ticks
 
     @property
+    def sound(self) -> SoundWorld:
+        """What sounds and what is heard; made when somebody first asks for it.
+
+        It stays at a reset, which ends everything that plays.
+        """
+        if self._sound is None:
+            from nao_sim_bridge.sound.sound_world import SoundWorld  # who is deaf and mute needs nothing of it
+
+            self._sound = SoundWorld(self.model, self.shared.air, self.scene.seed, released=lambda: self.wake())
+            self._sound.begin(self.snapshot)
+            self.holds.append(self._sound.ears.holds)
+        return self._sound
+
+    @property
+    def cameras(self) -> Cameras:
+        """What the robot sees; made when somebody first asks for it. They stay at a reset."""
+        if self._cameras is None:
+            from nao_sim_bridge.cameras.cameras import Cameras  # who is blind needs nothing of them
+
+            self._cameras = Cameras(
+                self.model,
+                self.settings.tick_s,
+                self.renderer,
+                self.render_state,
+                self.scene.seed,
+                released=lambda: self.wake(),
+                guard=self.shared.guard,
+            )
+            self._cameras.begin(self.snapshot)
+            self.holds.append(self._cameras.holds)
+        return self._cameras
+
+    @property
     def wake(self) -> Callable[[], None]:
         """To be called, from any thread, when one of `holds` may answer differently."""
         return self.shared.wake
+
+    def reseed(self, seed: int) -> None:
+        """Take another seed; it counts from the next reset on."""
+        self.scene = replace(self.scene, seed=seed)
 
     def reset(self) -> None:
         """Put all robots and the world to where they started; running tasks are killed."""
@@ -116,7 +145,8 @@ class Simulation:
             self.reset()
             return
         self.end_tasks()
-        self.sound.loudspeakers.stop_all()
+        if self._sound is not None:
+            self._sound.loudspeakers.stop_all()
         angles = posture(self.model, self.scene.posture)
         self._physics.restart_beside_others(angles, start_pitch(self.scene.posture))
         self._start(angles)
@@ -174,11 +204,14 @@ class Simulation:
 
     def sense(self) -> None:
         self.snapshot = self.robot.sense(self.shared.ticks, self.shared.time)
-        self.sound.record(self.snapshot)
+        if self._sound is not None:
+            self._sound.record(self.snapshot)
 
     def perceive(self) -> None:
-        self.shared.guard.call(self.sound.hear)
-        self.cameras.tick(self.snapshot)
+        if self._sound is not None:
+            self.shared.guard.call(self._sound.hear)
+        if self._cameras is not None:
+            self._cameras.tick(self.snapshot)
 
     def end_tasks(self) -> None:
         self.robot.motion.kill_all()
@@ -189,8 +222,10 @@ class Simulation:
         self.snapshot = replace(self.snapshot, objects=bodies.read(), placed=bodies.placed, gone=bodies.gone)
 
     def close_senses(self) -> None:
-        self.sound.close()
-        self.cameras.close()
+        if self._sound is not None:
+            self._sound.close()
+        if self._cameras is not None:
+            self._cameras.close()
 
     def _start(self, angles: Sequence[float]) -> None:
         """A new robot around its body, which is at its start."""
@@ -205,7 +240,9 @@ class Simulation:
         )
         self.hands.begin(self._physics, self.robot)
         self.snapshot = self.robot.sense(self.shared.ticks, self.time)
-        self.sound.begin(self.snapshot)
-        self.cameras.begin(self.snapshot)
+        if self._sound is not None:
+            self._sound.begin(self.snapshot)
+        if self._cameras is not None:
+            self._cameras.begin(self.snapshot)
         for call in self.after_reset:
             self.shared.guard.call(call)

@@ -93,8 +93,8 @@ class Locomotion:
         self._waits = WalkWaits(task_ids, self._drop_goal)
         self._snapshot = snapshot
         self._settings = load_walk_settings()
-        self._body = WalkingBody(model)
-        self._legs = sorted(i for side in (LEFT, RIGHT) for i in self._body.legs.indices[side])
+        self.body = WalkingBody(model)
+        self._legs = sorted(i for side in (LEFT, RIGHT) for i in self.body.legs.indices[side])
         self._guard = WalkGuard(model, self._gravity, joints, self._legs, stability, reflexes)
         self.arms = ArmSwing(model, joints, self._settings, self._stride)
         self.failures: list[Callable[[str, bool, Vector3 | None], None]] = []
@@ -119,7 +119,7 @@ class Locomotion:
         if self.active:
             return self.until_finished()
         now = self._now()
-        feet = [foot_on_ground(self._body, now.odometry, self._joints.commands, side) for side in (LEFT, RIGHT)]
+        feet = [foot_on_ground(self.body, now.odometry, self._joints.commands, side) for side in (LEFT, RIGHT)]
         course = None
         if not side_by_side(feet[0], feet[1], self._settings.foot_separation):
             course = VelocityCourse(self._settings, FeetGait(), STANDSTILL)
@@ -207,7 +207,7 @@ class Locomotion:
         """The robot in the world of its odometry, by measured angles or by what the joints are told."""
         now = self._now()
         angles = now.positions if use_sensors else self._joints.commands
-        return robot_on_ground(self._body, now.odometry, angles)
+        return robot_on_ground(self.body, now.odometry, angles)
 
     def next_position(self) -> FootPose:
         """Where the robot will be after the steps that can no longer be changed."""
@@ -229,7 +229,7 @@ class Locomotion:
     def steps(self) -> FootstepPlan:
         """Feet in the world, and the steps to come."""
         now = self._now()
-        left, right = (foot_on_ground(self._body, now.odometry, now.positions, side) for side in (LEFT, RIGHT))
+        left, right = (foot_on_ground(self.body, now.odometry, now.positions, side) for side in (LEFT, RIGHT))
         if self._walker is None:
             return FootstepPlan(left, right)
         fixed, clearable = steps_to_come(self._walker.plan, self._course)
@@ -351,13 +351,13 @@ class Locomotion:
             self._fail(cause, started=False)
             self._hindered = True
             return {i: _LegCurve(self, i) for i in self._legs}
-        self._walker = walker = Walker(self._body, self._settings, self._gravity, commands)
+        self._walker = walker = Walker(self.body, self._settings, self._gravity, commands)
         self._stability.walk = lambda: walker.feedback.error
         return {i: _LegCurve(self, i) for i in self._legs}
 
     def _begin_course(self, walker: Walker, course: Course, now: Snapshot) -> None:
         """Make the first step from where both feet stand."""
-        here = robot_on_ground(self._body, now.odometry, now.positions)
+        here = robot_on_ground(self.body, now.odometry, now.positions)
         feet = walker.plan.feet
         course.frame = frame_from(here, middle(feet[LEFT], feet[RIGHT]))
         course.begin_at(here)
@@ -371,7 +371,7 @@ class Locomotion:
             self._measured_step = False
         elif not self._measured_step and self._course is not None:
             self._measured_step = True
-            stands = foot_on_ground(self._body, now.odometry, now.positions, plan.support)
+            stands = foot_on_ground(self.body, now.odometry, now.positions, plan.support)
             self._course.frame = frame_from(stands, plan.feet[plan.support])
 
     def _ended(self, job: Task) -> None:

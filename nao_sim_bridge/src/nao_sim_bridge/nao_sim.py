@@ -1,0 +1,749 @@
+"""A simulated NAO as a library: no ROS and no network, as fast as this computer goes.
+
+    from nao_sim_bridge import NaoSim
+
+    with NaoSim(posture="Stand", seed=1) as nao:
+        nao.walk_to(0.5, 0.0, 0.3)
+        print(nao.angles["HeadYaw"], nao.pose_torso_in_world, nao.imu.angles, nao.feet.center_of_pressure)
+
+Time passes in `step`, and in the calls that wait for what they have begun. Units are SI (m, rad, s, N, kg), hands are 0
+(closed) to 1 (open), frames those of REP 103: x ahead, y to the left, z up. Arrays of joints are in ALMotion's order
+of the body, which is that of `joint_names`. Nothing is built before it is asked for: a simulation in which nobody looks
+or listens has no cameras, no sound and no process beside it.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Sequence, TypeVar
+
+import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue, NotAllowed, TaskKilled, UnknownName
+from nao_sim_bridge.base.readings import FootForces, Pose
+from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
+from nao_sim_bridge.control.joints.curves import SmoothCurve
+from nao_sim_bridge.core import sequences
+from nao_sim_bridge.core.robot import SimulatedRobot
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.shared_world import SharedWorld
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.model.joint_names import joint_names
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.gait import FeetGait
+from nao_sim_bridge.walk.whereabouts import foot_on_ground, robot_on_ground
+from nao_sim_bridge.world.places import RobotPlace, checked_places, on_circle
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.server.simulator_server import SimulatorServer
+
+T = TypeVar("T")
+LONGEST = 600.0
+"""s of simulated time that a call waits for what it has begun, if nobody says otherwise."""
+ENDLESS = float("inf")
+SEED_STEP = 1000
+"""Robots of one world have seeds so far apart."""
+
+
+class JointValues(Mapping[str, float]):
+    """One number for each joint: by name, or all of them with `np.asarray`, in the order of the body."""
+
+    __slots__ = ("_index", "_values")
+
+    def __init__(self, index: Mapping[str, int], values: Sequence[float]) -> None:
+        self._index = index
+        self._values = values
+
+    def __getitem__(self, name: str) -> float:
+        try:
+            return self._values[self._index[name]]
+        except KeyError:
+            raise KeyError(f"no joint {name!r} (there are: {', '.join(self._index)})") from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._index)
+
+    def __len__(self) -> int:
+        return len(self._index)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        return np.array(self._values, dtype=dtype or float)
+
+    def __repr__(self) -> str:
+        return "{" + ", ".join(f"{name}: {value:.4g}" for name, value in self.items()) + "}"
+
+
+@dataclass(frozen=True)
+class Feet:
+    """What presses on the feet.
+
+    Attributes:
+        left: The four sensors of the left foot, their sum and their centre of pressure in the frame of that foot.
+        right: The same of the right foot.
+        center_of_pressure: x and y in m of both feet together, on the floor half way between them, x where the robot
+            looks; (0, 0) without load.
+    """
+
+    left: FootForces
+    right: FootForces
+    center_of_pressure: tuple[float, float]
+
+
+class Motion:
+    """Something that a robot does while time passes."""
+
+    def __init__(self, sim: NaoSim, task: Task) -> None:
+        self._sim = sim
+        self._task = task
+
+    @property
+    def done(self) -> bool:
+        """Whether it has ended, in whatever way."""
+        return self._task.finished
+
+    def wait(self, longest: float = LONGEST) -> Any:
+        """Let time pass until it ends, and return its result.
+
+        Args:
+            longest: s of simulated time.
+
+        Raises:
+            TimeoutError: It has not ended by then; it goes on.
+            SimulationError: What ended it.
+        """
+        self._sim._pass_until(lambda: self._task.finished, longest, self._task.name)
+        return self._task.result(0.0)
+
+    def cancel(self) -> None:
+        """End it; the joints stay where they are, and a walk comes to a stand within two steps."""
+        self._sim._do(self._task.kill)
+
+
+class HeadCamera:
+    """A camera in the robot's head.
+
+    Args:
+        nao: Whose.
+        index: 0 top, 1 bottom.
+    """
+
+    def __init__(self, nao: Nao, index: int) -> None:
+        self._nao = nao
+        self._index = index
+
+    def picture(self, width: int = 320, height: int = 240) -> np.ndarray:
+        """What it sees now, as (height, width, 3) uint8 RGB; time stands still meanwhile.
+
+        Exposure, white balance and noise are those of the real sensor, see docs/cameras.md.
+
+        Raises:
+            BadValue: The camera has no such resolution; the error names those it has.
+            RenderError: It cannot be drawn.
+        """
+        return self._nao._take_picture(self._index, width, height)
+
+
+class Nao:
+    """One robot of a `NaoSim`.
+
+    Attributes:
+        joint_names: (26,) in the order of the body.
+    """
+
+    def __init__(self, sim: NaoSim, number: int) -> None:
+        self._sim = sim
+        self._number = number
+        self.joint_names = tuple(joint.name for joint in self._simulation.model.joints)
+        self._index = {name: index for index, name in enumerate(self.joint_names)}
+
+    @property
+    def _simulation(self) -> Simulation:
+        return self._sim._simulation_of(self._number)
+
+    @property
+    def robot(self) -> SimulatedRobot:
+        """The robot inside, for what this class has no words for; touch it while nothing is served."""
+        return self._simulation.robot
+
+    # --- what it senses ---------------------------------------------------------------------------------------------
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """All that was sensed at the last tick."""
+        return self._simulation.snapshot
+
+    @property
+    def angles(self) -> JointValues:
+        """Measured, rad; hands 0 to 1."""
+        return JointValues(self._index, self.snapshot.positions)
+
+    @property
+    def velocities(self) -> JointValues:
+        """Measured, rad/s."""
+        return JointValues(self._index, self.snapshot.velocities)
+
+    @property
+    def torques(self) -> JointValues:
+        """Of the motors behind their gears, N m."""
+        return JointValues(self._index, self.snapshot.torques)
+
+    @property
+    def temperatures(self) -> JointValues:
+        """Of the motors, degC."""
+        return JointValues(self._index, self.snapshot.temperatures)
+
+    @property
+    def stiffnesses(self) -> JointValues:
+        """Share of the full torque, 0 to 1."""
+        return JointValues(self._index, self.snapshot.stiffnesses)
+
+    @property
+    def commands(self) -> JointValues:
+        """Where the joints are told to be, rad."""
+        return JointValues(self._index, self.snapshot.commands)
+
+    @property
+    def imu(self) -> Imu:
+        """Accelerometer (m/s2) and gyroscope (rad/s) in the torso's frame, and its roll, pitch and yaw (rad)."""
+        return self.snapshot.imu
+
+    @property
+    def pose_torso_in_world(self) -> Pose:
+        """The true pose of the torso: position in m, orientation as a quaternion (x, y, z, w)."""
+        return self.snapshot.torso
+
+    @property
+    def pose_on_ground(self) -> FootPose:
+        """x, y in m and yaw in rad of the point half way between the feet, in world."""
+        now = self.snapshot
+        return robot_on_ground(self.robot.locomotion.body, now.torso, now.positions)
+
+    @property
+    def feet(self) -> Feet:
+        """What presses on the feet."""
+        now, body = self.snapshot, self.robot.locomotion.body
+        here = robot_on_ground(body, now.torso, now.positions)
+        forces = now.left_foot, now.right_foot
+        load = x = y = 0.0
+        for side, foot in enumerate(forces):
+            pose = foot_on_ground(body, now.torso, now.positions, (1, -1)[side]).moved(*foot.center_of_pressure)
+            point = pose.seen_from(here)
+            load, x, y = load + foot.total, x + foot.total * point.x, y + foot.total * point.y
+        center = (x / load, y / load) if load > 0.0 else (0.0, 0.0)
+        return Feet(*forces, center)
+
+    @property
+    def touched(self) -> frozenset:
+        """Names of touch sensors, bumpers and buttons that something presses."""
+        return self.snapshot.touched
+
+    @property
+    def sonars(self) -> tuple[float, float]:
+        """Distances of the first echoes left and right, m."""
+        return self.snapshot.sonars
+
+    @property
+    def fallen(self) -> bool:
+        """Whether it is on its way down, or lies: not on its feet, and no move of its own that takes it off them."""
+        return self.robot.stability.falls.falling or not self.robot.stability.on_feet
+
+    def camera(self, name: str = "top") -> HeadCamera:
+        """A camera of the head, "top" or "bottom".
+
+        Raises:
+            UnknownName: It has no such camera.
+        """
+        names = ("top", "bottom")
+        if name not in names:
+            raise UnknownName("camera", name, names)
+        return HeadCamera(self, names.index(name))
+
+    # --- what it does -----------------------------------------------------------------------------------------------
+
+    def set_angles(self, names: str | Sequence[str], angles: float | Sequence[float], speed: float = 1.0) -> None:
+        """Send joints to angles from now on; newer targets replace older ones, time passes in `step`.
+
+        Args:
+            names: A joint, a chain ("LArm", "Body"), or a list of both.
+            angles: rad, one for all or one each; what is beyond a limit stops there.
+            speed: Share of the top speed of each joint, above 0 to 1.
+
+        Raises:
+            UnknownName: There is no such joint.
+            BadValue: Numbers do not fit.
+        """
+        indices, values = self._indices(names), None
+        if not 0.0 < speed <= 1.0:
+            raise BadValue("speed", speed, "above 0 to 1")
+        values = _each(angles, len(indices), "angles")
+        joints = self._simulation.model.joints
+        speeds = {index: speed * joints[index].max_velocity for index in indices}
+        self._sim._do(lambda: self.robot.motion.set_targets(dict(zip(indices, values)), speeds))
+
+    def move_angles(
+        self,
+        names: str | Sequence[str],
+        angles: float | Sequence[float],
+        duration: float,
+        wait: bool = True,
+    ) -> Motion:
+        """Move joints smoothly to angles within a time.
+
+        Args:
+            names: As for `set_angles`.
+            angles: As for `set_angles`.
+            duration: s.
+            wait: Let time pass until they are there.
+
+        Raises:
+            UnknownName: There is no such joint.
+            BadValue: Numbers do not fit.
+        """
+        indices = self._indices(names)
+        goals = dict(zip(indices, _each(angles, len(indices), "angles")))
+        if not 0.0 < duration < LONGEST:
+            raise BadValue("duration", duration, f"above 0, below {LONGEST:g} s")
+
+        def curves(commands: Sequence[float]) -> dict[int, SmoothCurve]:
+            return {i: SmoothCurve((0.0, duration), (commands[i], goal)) for i, goal in goals.items()}
+
+        return self._begin(lambda: self.robot.motion.follow("move_angles", indices, curves), wait)
+
+    def set_stiffness(self, names: str | Sequence[str], stiffness: float) -> None:
+        """Let joints have this share of their torque, 0 (limp) to 1, at once."""
+        indices = self._indices(names)
+        if not 0.0 <= stiffness <= 1.0:
+            raise BadValue("stiffness", stiffness, "0 to 1")
+
+        def stiffen() -> None:
+            joints = self.robot.joints
+            joints.hold(self.snapshot.positions, [i for i in indices if joints.stiffnesses[i] == 0.0])
+            self.robot.motion.set_stiffness_now(dict.fromkeys(indices, stiffness))
+
+        self._sim._do(stiffen)
+
+    def go_to_posture(self, name: str, speed: float = 0.8, wait: bool = True) -> Motion:
+        """Go to one of NAOqi's postures ("Stand", "Sit", "LyingBack"...), over others if need be; getting up included.
+
+        The result is whether it got there.
+
+        Raises:
+            UnknownName: There is no such posture.
+        """
+        from nao_sim_bridge.core.posture_change import PostureChange  # who never gets up needs nothing of it
+        from nao_sim_bridge.core.posture_moves import load_moves
+        from nao_sim_bridge.model.postures import load_postures
+
+        if name not in load_postures().by_name:
+            raise UnknownName("posture", name, load_postures().by_name)
+
+        def go() -> Task:
+            return PostureChange(self.robot, lambda: self.snapshot, name, speed, 3, load_moves()).start()
+
+        return self._begin(go, wait)
+
+    def wake_up(self, wait: bool = True) -> Motion:
+        """Stiffen all joints, and stand up when on the feet."""
+        return self._begin(lambda: sequences.wake_up(self.robot, lambda: self.snapshot, lambda: None), wait)
+
+    def rest(self, wait: bool = True) -> Motion:
+        """Crouch when on the feet, and let all joints go limp."""
+        return self._begin(lambda: sequences.rest(self.robot, lambda: self.snapshot, lambda: None), wait)
+
+    def walk_to(self, x: float, y: float = 0.0, theta: float = 0.0, wait: bool = True) -> Motion:
+        """Walk to a pose as seen from the robot now; the result is whether it is there.
+
+        Args:
+            x: Ahead, m.
+            y: To the left, m.
+            theta: To the left, rad.
+            wait: Let time pass until it stands.
+
+        Raises:
+            SimulationError: It cannot walk now: limp, lying, or not on its feet.
+        """
+        goal = FootPose(*_finite("pose", (x, y, theta)))
+        return self._begin(lambda: self.robot.locomotion.move_to([goal], FeetGait()), wait)
+
+    def walk(self, x: float, y: float = 0.0, theta: float = 0.0) -> None:
+        """Walk at a velocity, m/s, m/s and rad/s, until told otherwise; time passes in `step`. All 0: stop.
+
+        Raises:
+            SimulationError: It cannot walk now.
+        """
+        rate = _finite("velocity", (x, y, theta))
+        self._sim._do(lambda: self.robot.locomotion.move(*rate, FeetGait()))
+
+    def stop(self, wait: bool = True) -> Motion:
+        """End a walk as soon as both feet can stand."""
+        return self._begin(lambda: self.robot.locomotion.stop(), wait)
+
+    # --- what happens to it ---------------------------------------------------------------------------------------
+
+    def push(self, link: str = "Torso", force: Sequence[float] = (0.0, 0.0, 0.0), duration: float = 0.1) -> None:
+        """Push a link at its centre of mass from now on; pushes at the same time add up.
+
+        Args:
+            link: "Torso", or the name of a link of the URDF, for example "l_ankle".
+            force: N, in world.
+            duration: s.
+
+        Raises:
+            UnknownName: There is no such link.
+            BadValue: Numbers do not fit.
+        """
+        x, y, z = _finite("force", force, 3)
+        if not 0.0 < duration < LONGEST:
+            raise BadValue("duration", duration, f"above 0, below {LONGEST:g} s")
+        self._sim._do(lambda: self.robot.push((x, y, z), duration, "torso" if link == "Torso" else link))
+
+    def touch(self, *sensors: str) -> None:
+        """Simulated fingers on these touch sensors ("Head/Touch/Front"...) and on no others, from now on.
+
+        Raises:
+            UnknownName: There is no such sensor.
+        """
+        self._sim._do(lambda: self.robot.press(sensors))
+
+    def protect(self, on: bool) -> None:
+        """Switch what ALMotion does on its own on or off, until the next reset.
+
+        Collision avoidance of the arms, slowing down before obstacles, saving torque, putting hot motors to rest,
+        balance and the fall manager.
+        """
+
+        def switch() -> None:
+            robot = self.robot
+            guards = robot.reflexes.self_collision, robot.reflexes.external_collision
+            for guard, parts in zip(guards, (("LArm", "RArm"), ("Move", "LArm", "RArm"))):
+                (guard.enabled.update if on else guard.enabled.difference_update)(parts)
+            robot.reflexes.smart_stiffness.enabled = robot.reflexes.diagnosis_enabled = on
+            robot.stability.balance.enabled = robot.stability.falls.enabled = on
+
+        self._sim._do(switch)
+
+    # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _indices(self, names: str | Sequence[str]) -> list[int]:
+        model = self._simulation.model
+        return [model.joint_index[name] for name in joint_names(names, model)]
+
+    def _begin(self, start: Callable[[], Task], wait: bool) -> Motion:
+        motion = Motion(self._sim, self._sim._do(start))
+        if wait:
+            motion.wait()
+        return motion
+
+    def _take_picture(self, camera: int, width: int, height: int) -> np.ndarray:
+        cameras = self._simulation.cameras
+        return cameras.picture_now(camera, width, height)
+
+
+class NaoSim(Nao):
+    """A world with one NAO or more, in which time passes when it is told to. It is also its first robot.
+
+    Attributes:
+        robots: All robots, itself first.
+
+    Args:
+        posture: In which the robots start, awake and stiff; None for limp ones that crouch, as after boot.
+        seed: Of all random numbers: equal seeds and equal calls give equal runs, to the last bit.
+        world: Name of a world that comes along, or path of a world file; see docs/worlds.md.
+        robots: How many there are.
+        places: Where they stand, (x, y, yaw) each; those of the world, or a circle, if nobody says.
+        version: Of the robots, "V6" or "V5".
+        noise: Scale of the sensors' errors: 0 none, 1 those of a real robot.
+        delay: How late joint angles, inertial unit and foot forces arrive, s.
+        friction: Coefficient between soles and floor; None for what the world says.
+        payload: Mass that the torso carries besides its own, kg.
+        gui: Show it in a window; time then passes no faster than the clock on the wall.
+
+    Raises:
+        SimulationError: World, posture or places cannot be used.
+    """
+
+    def __init__(
+        self,
+        posture: str | None = "Stand",
+        seed: int = 0,
+        world: str | Path = "empty",
+        robots: int = 1,
+        places: Sequence[Sequence[float]] = (),
+        version: str = "V6",
+        noise: float = 0.0,
+        delay: float = 0.0,
+        friction: float | None = None,
+        payload: float = 0.0,
+        gui: bool = False,
+    ) -> None:
+        self._awake = posture is not None
+        scene = Scene(str(world), version, posture or "Crouch", seed, friction, payload, noise, delay)
+        self._shared = SharedWorld(scene)
+        self._server: SimulatorServer | None = None
+        self._viewer: Any = None
+        self._pace: float | None = 1.0 if gui else None
+        self._own = _put_into(self._shared, scene, robots, places)
+        self._wake()
+        super().__init__(self, 0)
+        self.robots = (self, *(Nao(self, number) for number in range(1, robots)))
+        if gui:
+            from nao_sim_bridge.render.client import Viewer  # nobody else needs a window
+
+            self._viewer = Viewer(scene.world, version).start()
+
+    def __enter__(self) -> NaoSim:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the engine, and end the network and the programs that work for it."""
+        if self._viewer is not None:
+            self._viewer.close()
+        if self._server is not None:
+            self._server.stop()
+        else:
+            self._shared.close()
+
+    # --- time ---------------------------------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self._simulation.time
+
+    @property
+    def tick_s(self) -> float:
+        """Length of a tick, s: sensors are read and motors are told once in it."""
+        return self._shared.settings.tick_s
+
+    def step(self, seconds: float | None = None) -> None:
+        """Let time pass.
+
+        Args:
+            seconds: Simulated, rounded to ticks; None for one tick.
+
+        Raises:
+            BadValue: It is negative or not finite.
+        """
+        seconds = self.tick_s if seconds is None else seconds
+        if not 0.0 <= seconds < ENDLESS:
+            raise BadValue("seconds", seconds, "0 or more, finite")
+        left = round(seconds / self.tick_s)
+        if self._server is not None:
+            self._let_pass(left)
+            return
+        if self._viewer is None:
+            tick = self._shared.tick
+            for _ in range(left):
+                tick()
+            return
+        for _ in range(left):
+            self._show_tick()
+
+    def reset(self, seed: int | None = None) -> None:
+        """Put robots and world to their start; what they do ends.
+
+        Args:
+            seed: Of what is random from now on; None for the one of before.
+        """
+
+        def start_again() -> None:
+            for number, simulation in enumerate(self._own):
+                if seed is not None:
+                    simulation.reseed(seed + SEED_STEP * number)
+            self._shared.reset()
+            self._wake()
+
+        self._do(start_again)
+
+    # --- the world --------------------------------------------------------------------------------------------------
+
+    def place(self, thing: str | Mapping[str, Any], at: Sequence[float], **more: Any) -> str:
+        """Put a thing into the world, or elsewhere when there is one of its name already.
+
+        Args:
+            thing: "ball" (a red one of 6 cm), "box", "cylinder", "person" or another kind of a world file, which then
+                is its name, too; or a whole entry of a world file. See docs/worlds.md.
+            at: [x, y, z] of its centre, m.
+            more: Further fields of the entry: `name`, `color`, `mass`, `ball=0.05` for the radius...
+
+        Returns:
+            Its name.
+
+        Raises:
+            SimulationError: There is no such thing, or a robot is where it should be.
+        """
+        from nao_sim_bridge.world.objects import read_object  # a world without things needs nothing of it
+
+        position = list(_finite("at", at, 3))
+        entry = dict(thing) if isinstance(thing, Mapping) else {"name": thing, thing: SIZES.get(thing, {})}
+        entry.update(more, position=position)
+        name = str(entry["name"])
+
+        def put() -> None:
+            if name in self._shared.things.things:
+                self._shared.things.move(name, position, None)
+            else:
+                self._shared.things.place(read_object(entry, "thing", Path))
+
+        self._do(put)
+        return name
+
+    def remove(self, name: str) -> None:
+        """Take a thing out of the world.
+
+        Raises:
+            UnknownName: There is none of this name.
+        """
+        self._do(lambda: self._shared.things.remove(name))
+
+    @property
+    def things(self) -> dict[str, tuple[float, ...]]:
+        """Where everything is that can move: x, y, z in m, roll, pitch, yaw in rad, by name."""
+        return self._do(self._shared.things.places)
+
+    def picture(self, view: str = "three_quarter", width: int = 640, height: int = 480) -> np.ndarray:
+        """A picture from outside, (height, width, 3) uint8 RGB.
+
+        Args:
+            view: "front", "three_quarter", "side", "back", "far", "face", "room", "robots".
+            width: Pixels.
+            height: Pixels.
+
+        Raises:
+            UnknownName: There is no such view.
+            RenderError: It cannot be drawn.
+        """
+        from nao_sim_bridge.world.render_state import preset_camera
+
+        simulation = self._simulation
+        state = simulation.render_state(simulation.snapshot)
+        camera = preset_camera(view, simulation.model, state, width, height)
+        return simulation.renderer.render(state, camera)
+
+    def save_picture(self, path: str | Path, view: str = "three_quarter", width: int = 640, height: int = 480) -> None:
+        """As `picture`, written to a PNG file."""
+        from nao_sim_bridge.render.png import write_png
+
+        write_png(Path(path), self.picture(view, width, height))
+
+    # --- NAOqi ------------------------------------------------------------------------------------------------------
+
+    def serve(self, port: int = 9559, address: str = "127.0.0.1", speed: float | None = None) -> str:
+        """Let programs for NAOqi work with the first robot, while this object looks on and into the world.
+
+        Args:
+            port: To listen on; 0 takes a free one.
+            address: To listen on; "0.0.0.0" for the whole network.
+            speed: Simulated seconds a second in which time passes by itself; None: time passes in `step` only.
+
+        Returns:
+            What a program connects to, "tcp://127.0.0.1:9559".
+
+        Raises:
+            NotAllowed: It is served already, or there is more than one robot.
+            RuntimeError: The address cannot be had.
+        """
+        if self._server is not None:
+            raise NotAllowed("this robot is served already")
+        if len(self.robots) > 1:
+            raise NotAllowed("only a robot that is alone in its world is served; see nao_robots.launch for several")
+        from nao_sim_bridge.server.options import ServerOptions
+        from nao_sim_bridge.server.simulator_server import SimulatorServer  # the wheel qi, and all modules
+
+        simulation = self._simulation
+        options = ServerOptions(simulation.scene, address, port, speed or ENDLESS, paused=speed is None)
+        self._server = SimulatorServer(options, simulation)
+        self._server.start()
+        return f"tcp://{address}:{self._server.broker.port}"
+
+    # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _simulation_of(self, number: int) -> Simulation:
+        return self._own[number] if self._server is None else self._server.simulation
+
+    def _wake(self) -> None:
+        """Begin: the robots are stiff, and a first tick lets their feet feel the floor."""
+        if self._awake:
+            for simulation in self._own:
+                everything = range(len(simulation.model.joints))
+                simulation.robot.motion.set_stiffness_now(dict.fromkeys(everything, 1.0))
+        self._shared.tick()
+
+    def _do(self, command: Callable[[], T]) -> T:
+        """Run a command where the simulation runs."""
+        return command() if self._server is None else self._server.runner.call(command)
+
+    def _pass_until(self, over: Callable[[], bool], longest: float, what: str) -> None:
+        """Let time pass, tick by tick, until something is over."""
+        end = self.time + longest
+        while not over():
+            if self.time > end:
+                raise TimeoutError(f"{what} has not ended within {longest:g} s of simulated time")
+            self.step()
+
+    def _let_pass(self, ticks: int) -> None:
+        """Have the simulation's thread let time pass, or wait as long as it does so by itself."""
+        runner = self._server.runner
+        if runner.paused:
+            runner.advance(ticks * self.tick_s).result()
+            return
+        end = runner.ticks + ticks
+        while runner.ticks < end:
+            if runner.wait_for_tick(end - 1, 1.0) is None and not runner.running:
+                raise TaskKilled("the simulation has ended")
+
+    def _show_tick(self) -> None:
+        began = time.monotonic()
+        self._shared.tick()
+        simulation = self._simulation
+        if simulation.ticks % 2 == 0:
+            self._viewer.show(simulation.render_state(simulation.snapshot))
+        time.sleep(max(0.0, self.tick_s / self._pace - (time.monotonic() - began)))
+
+
+SIZES: Mapping[str, Any] = {"ball": 0.03, "box": [0.1, 0.1, 0.1], "cylinder": [0.05, 0.2]}
+"""Of things that are placed by their kind alone, m."""
+
+
+def _put_into(
+    shared: SharedWorld, scene: Scene, robots: int, places: Sequence[Sequence[float]]
+) -> tuple[Simulation, ...]:
+    """The robots of a new world."""
+    if robots == 1 and not places:
+        return (Simulation(scene, shared=shared),)
+    wanted = tuple(RobotPlace(*_finite("place", place, 3)) for place in places) or shared.world.robots
+    there = checked_places(wanted or on_circle(robots), robots)
+    return tuple(
+        Simulation(replace(scene, seed=scene.seed + SEED_STEP * number), shared=shared, place=place)
+        for number, place in enumerate(there)
+    )
+
+
+def _each(values: float | Sequence[float], count: int, name: str) -> list[float]:
+    """One number for each of `count`, from one for all or one each."""
+    numbers = [float(value) for value in np.ravel(np.asarray(values, dtype=float))]
+    if len(numbers) == 1:
+        numbers *= count
+    if len(numbers) != count or not all(np.isfinite(numbers)):
+        raise BadValue(name, values, f"one finite number, or {count}")
+    return numbers
+
+
+def _finite(name: str, values: Sequence[float], count: int | None = None) -> tuple[float, ...]:
+    numbers = tuple(float(value) for value in values)
+    if (count is not None and len(numbers) != count) or not all(np.isfinite(numbers)):
+        raise BadValue(name, values, f"{count or len(numbers)} finite numbers")
+    return numbers
+
+
+__all__ = ["Feet", "HeadCamera", "JointValues", "Motion", "Nao", "NaoSim", "Vector3"]
