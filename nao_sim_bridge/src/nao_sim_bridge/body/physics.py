@@ -101,6 +101,10 @@ class Physics:
         self.start = place
         self.restart(angles, pitch)
 
+    def forget(self) -> None:
+        """The world was put to its start: what the motors were told before counts no more."""
+        self._forget_efforts()
+
     def restart(self, angles: Sequence[float], pitch: float | None = None) -> None:
         """Put the robot to where it started, at rest; what its motors were told is forgotten."""
         self._forget_efforts()

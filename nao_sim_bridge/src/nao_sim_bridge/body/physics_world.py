@@ -42,6 +42,7 @@ class PhysicsWorld:
         )
         self.bodies = WorldBodies(world, self.client)
         self.robots: list[int] = []
+        self._kept: int | None = None
 
     def step(self, pushes: Sequence[Callable[[], None]] = ()) -> None:
         """Advance by one tick; `pushes` are called before each step, for the engine forgets forces after one."""
@@ -49,6 +50,26 @@ class PhysicsWorld:
             for push in pushes:
                 push()
             pybullet.stepSimulation(physicsClientId=self.client)
+
+    def keep(self) -> None:
+        """Remember all bodies as they are now, for `restore`."""
+        self._kept = pybullet.saveState(physicsClientId=self.client)
+        self.bodies.mark()
+
+    def lose(self) -> None:
+        """Forget what was kept: the engine is not to be trusted any more."""
+        self._kept = None
+
+    def restore(self) -> bool:
+        """Put all bodies, to the last bit, to where they were at `keep`; what motors were told stays.
+
+        Returns:
+            Whether it could; see `WorldBodies.restore`.
+        """
+        if self._kept is None or not self.bodies.restore():
+            return False
+        pybullet.restoreState(stateId=self._kept, physicsClientId=self.client)
+        return True
 
     def inside(self, robot: int) -> dict[str, float]:
         """How deep a robot is in what is there, m: in things by name, in "robot 1"...; what only touches is left out.

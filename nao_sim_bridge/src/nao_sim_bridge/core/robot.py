@@ -222,12 +222,18 @@ class SimulatedRobot:
         self._pushes = [push for push in self._pushes if push.until > self.time + 1e-9]
         return forces
 
-    def sense(self, tick: int, now: float) -> Snapshot:
-        """Second half of a tick: read every sensor."""
+    def sense(self, tick: int, now: float, landed: bool = True) -> Snapshot:
+        """Second half of a tick: read every sensor.
+
+        Args:
+            tick: For the snapshot.
+            now: The same, s.
+            landed: False at the start, when nothing has pressed on the robot yet.
+        """
         joints = self._physics.read_joints()
         self._measured = joints.positions
         body = self._physics.read_body()
-        contacts = self._physics.read_contacts()
+        contacts = self._physics.read_contacts() if landed else ()
         imu = self._imu.read(body, self._dt)
         link_poses = {link: self._pose_of(link, body.pose) for link in {contact.link for contact in contacts}}
         work = self._sensors.motors.work

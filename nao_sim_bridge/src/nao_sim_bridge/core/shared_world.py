@@ -34,6 +34,9 @@ class WorldRobot(Protocol):
     def begin(self, physics: PhysicsWorld) -> None:
         """Be put into a world that has just been made."""
 
+    def begin_again(self) -> None:
+        """Be at the start again: the physics has put the body back."""
+
     def act(self) -> Sequence[Callable[[], None]]:
         """First part of a tick, up to the step of physics; what is to be called before each step of the engine."""
 
@@ -137,18 +140,30 @@ class SharedWorld:
         robot.begin(self.physics)
 
     def reset(self) -> None:
-        """Put all robots and the world to where they started; running tasks are killed, time goes on."""
+        """Put all robots and the world to where they started; running tasks are killed, time goes on.
+
+        The world is built once more at the first reset, and where things can move, come or go; else all bodies go back.
+        """
         for robot in self.robots:
             robot.end_tasks()
         if self._air is not None:
             self._air.stop_all()
+        if self.physics.restore():
+            self.things.begin(self.physics)
+            for robot in self.robots:
+                robot.begin_again()
+        else:
+            self._build_again()
+        for call in self.after_reset:
+            self.guard.call(call)
+
+    def _build_again(self) -> None:
         self.physics.close()
         self.physics = PhysicsWorld(self.world, self.settings)
         self.things.begin(self.physics)
         for robot in self.robots:
             robot.begin(self.physics)
-        for call in self.after_reset:
-            self.guard.call(call)
+        self.physics.keep()
 
     def tick(self) -> None:
         """Advance by one tick: things, LEDs, motion, motors, physics, sensors, sound, cameras, in this order.
@@ -188,6 +203,7 @@ class SharedWorld:
                 self.guard.caught(robot.sense, error)
         if lost is not None:
             self.guard.caught("physics, which begins anew,", lost)
+            self.physics.lose()
             self.reset()
 
     def looks_beside(self, robot: WorldRobot) -> tuple[RobotLook, ...]:

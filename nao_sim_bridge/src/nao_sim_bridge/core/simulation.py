@@ -196,6 +196,10 @@ class Simulation:
         self._physics = Physics(self.model, physics, self.settings, angles, pitch, self.scene.payload, self._place)
         self._start(angles)
 
+    def begin_again(self) -> None:
+        self._physics.forget()
+        self._start(posture(self.model, self.scene.posture))
+
     def act(self) -> Sequence[Callable[[], None]]:
         self.shared.guard.call(self.hands.tick)
         self.robot.command()
@@ -239,7 +243,7 @@ class Simulation:
             self.task_ids,
         )
         self.hands.begin(self._physics, self.robot)
-        self.snapshot = self.robot.sense(self.shared.ticks, self.time)
+        self.snapshot = self.robot.sense(self.shared.ticks, self.time, landed=False)
         if self._sound is not None:
             self._sound.begin(self.snapshot)
         if self._cameras is not None:

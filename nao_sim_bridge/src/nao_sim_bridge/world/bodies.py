@@ -43,6 +43,24 @@ class WorldBodies:
         self._loose = {thing.name: self.ids[thing.name] for thing in world.objects if thing.mass > 0.0}
         # What cannot be moved by the physics is where it was put last: no need to ask the engine.
         self._fixed: dict[str, Pose] = {}
+        self._marked: tuple[dict[str, int], dict[str, Pose]] = ({}, {})
+
+    def mark(self) -> None:
+        """Remember what is there, and where; see `PhysicsWorld.keep`."""
+        self._marked = dict(self.ids), dict(self._fixed)
+
+    def restore(self) -> bool:
+        """Believe what is there to be where it was at `mark`.
+
+        Returns:
+            False where something has come or gone since, or can be moved: the engine does not put such bodies back to
+            the last bit.
+        """
+        ids, fixed = self._marked
+        if self.ids != ids or self._loose:
+            return False
+        self._fixed = dict(fixed)
+        return True
 
     @property
     def things(self) -> Mapping[str, WorldObject]:

@@ -6,7 +6,6 @@ import io
 from collections.abc import Sequence
 
 import pybullet
-from PIL import Image
 
 from nao_sim_bridge.base.whole_file import memory_file
 from nao_sim_bridge.model.meshes import Mesh
@@ -41,6 +40,8 @@ def texture(picture: WorldPicture, client: int) -> int:
     Returns:
         Id of the texture, for `changeVisualShape`.
     """
+    from PIL import Image  # most worlds have no pictures
+
     content = io.BytesIO()
     Image.fromarray(paint(picture)).save(content, "PNG")
     with memory_file(content.getvalue()) as path:

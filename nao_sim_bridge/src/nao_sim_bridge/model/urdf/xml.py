@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from xml.sax.saxutils import quoteattr
+from html import escape
 
 import numpy as np
 
@@ -80,7 +80,7 @@ def collision(shape: Shape) -> list[str]:
 
 def visual(shape: Shape) -> list[str]:
     """A visual element with the colour its shape names."""
-    material = f"<material name={quoteattr(shape.material)}/>" if shape.material else ""
+    material = f"<material name={_quoted(shape.material)}/>" if shape.material else ""
     return [f"    <visual>{origin(shape.xyz, shape.rpy)}{geometry(shape)}{material}</visual>"]
 
 
@@ -88,8 +88,8 @@ def link(name: str, *parts: Iterable[str]) -> list[str]:
     """A link around its inertial, visual and collision elements."""
     body = [line for part in parts for line in part]
     if not body:
-        return [f"  <link name={quoteattr(name)}/>"]
-    return [f"  <link name={quoteattr(name)}>", *body, "  </link>"]
+        return [f"  <link name={_quoted(name)}/>"]
+    return [f"  <link name={_quoted(name)}>", *body, "  </link>"]
 
 
 def fixed_joint(
@@ -97,8 +97,8 @@ def fixed_joint(
 ) -> list[str]:
     """A joint that does not move."""
     return [
-        f'  <joint name={quoteattr(name)} type="fixed">',
-        f"    <parent link={quoteattr(parent)}/><child link={quoteattr(child)}/>",
+        f'  <joint name={_quoted(name)} type="fixed">',
+        f"    <parent link={_quoted(parent)}/><child link={_quoted(child)}/>",
         f"    {origin(xyz, rpy)}",
         "  </joint>",
     ]
@@ -128,8 +128,8 @@ def revolute_joint(
     """
     lower, upper, effort, velocity = map(number, limits)
     lines = [
-        f'  <joint name={quoteattr(name)} type="revolute">',
-        f"    <parent link={quoteattr(parent)}/><child link={quoteattr(child)}/>",
+        f'  <joint name={_quoted(name)} type="revolute">',
+        f"    <parent link={_quoted(parent)}/><child link={_quoted(child)}/>",
         f"    {origin(xyz, rpy)}",
         f'    <axis xyz="{triple(axis)}"/>',
         f'    <limit lower="{lower}" upper="{upper}" effort="{effort}" velocity="{velocity}"/>',
@@ -137,7 +137,7 @@ def revolute_joint(
     if mimic is not None:
         joint, multiplier, offset = mimic
         factors = f'multiplier="{number(multiplier)}" offset="{number(offset)}"'
-        lines.append(f"    <mimic joint={quoteattr(joint)} {factors}/>")
+        lines.append(f"    <mimic joint={_quoted(joint)} {factors}/>")
     return [*lines, "  </joint>"]
 
 
@@ -146,6 +146,10 @@ def robot(name: str, comment: str, lines: Iterable[str]) -> str:
     head = [
         '<?xml version="1.0" encoding="utf-8"?>',
         f"<!-- {comment} -->",
-        f"<robot name={quoteattr(name)}>",
+        f"<robot name={_quoted(name)}>",
     ]
     return "\n".join([*head, *lines, "</robot>", ""])
+
+
+def _quoted(text: str) -> str:
+    return f'"{escape(text)}"'
