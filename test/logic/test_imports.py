@@ -43,7 +43,7 @@ class Layer:
 
 ROOMS = {
     "nao_library_modules": """
-    base nao processes owners robot functions ros server
+    . base nao processes owners robot functions ros server
     lights audio audio_out audio_in motion vision.capture vision.detection vision tactile
     driver.base driver.joints driver.walk driver.path_follower driver.camera driver.audio driver.memory driver.sensors
     driver.life driver.teleop driver
@@ -57,10 +57,10 @@ ROOMS = {
     cameras render.scene render.opengl render sound hearing.grammars hearing speech vision behaviors tracking core
     naoqi.binding naoqi.memory naoqi.motion naoqi.body naoqi.speech naoqi.sound naoqi.vision naoqi.cameras
     naoqi.behaviors naoqi.tracker naoqi.system naoqi.life naoqi
-    server ros testing
+    server . envs ros testing
     """.split(),
 }
-"""Folders of a package from the ground up: each imports only what stands before it."""
+"""Folders of a package from the ground up: each imports only what stands before it; the dot is the package itself."""
 MOST_FILES = 25
 """In one folder: a reader sees at a glance what is there."""
 LIBRARY = "nao_library_modules/src/nao_library_modules"
@@ -77,10 +77,10 @@ LAYERS = (
     Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "cli")),
     *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
     Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi"}),
-    Layer("sim", SIMULATOR, frozenset({"pybullet"}), ("naoqi", "server", "ros", "testing", *FRONT)),
+    Layer("sim", SIMULATOR, frozenset({"pybullet"}), ("naoqi", "server", "ros", "testing", "envs", *FRONT)),
     Layer("modules", f"{SIMULATOR}/naoqi", frozenset({"sim", "qi"})),
     Layer("server", f"{SIMULATOR}/server", frozenset({"modules", "sim", "qi"})),
-    *(Layer("front", f"{SIMULATOR}/{name}", frozenset({"server", "sim"})) for name in FRONT),
+    *(Layer("front", f"{SIMULATOR}/{name}", frozenset({"server", "sim"})) for name in (*FRONT, "envs")),
     Layer("ros side", f"{SIMULATOR}/ros", frozenset({"server", "modules", "sim", "ros", "definitions"})),
     Layer("testing", f"{SIMULATOR}/testing", frozenset({"server", "sim", "qi", "ros", "definitions"})),
 )
@@ -118,7 +118,7 @@ def layer_of(module: str) -> str | None:
     if root in ROS_LIBRARIES or root.endswith(("_msgs", "_srvs")):
         return "ros"
     if root == "nao_sim_bridge":
-        own = {"naoqi": "modules", "server": "server", "ros": "ros side", "testing": "testing"}
+        own = {"naoqi": "modules", "server": "server", "ros": "ros side", "testing": "testing", "envs": "front"}
         first = inner[0] if inner else "__init__"
         return "front" if f"{first}.py" in FRONT else own.get(first, "sim")
     if root == "nao_library_modules":
@@ -127,10 +127,10 @@ def layer_of(module: str) -> str | None:
 
 
 def room_of(module: str) -> str:
-    """The room of a module; empty for the package itself and its programs."""
+    """The room of a module; a dot for the package itself and its programs."""
     package, *inner = module.split(".")
     rooms = ROOMS[package]
-    return next((room for n in (2, 1) for room in [".".join(inner[:n])] if room in rooms), "")
+    return next((room for n in (2, 1) for room in [".".join(inner[:n])] if room in rooms), ".")
 
 
 def imports_of(package: str) -> dict[str, set[str]]:
@@ -151,12 +151,12 @@ def imports_of(package: str) -> dict[str, set[str]]:
 def test_a_room_imports_only_what_stands_below_it(package):
     rank = {room: number for number, room in enumerate(ROOMS[package])}
     imports = imports_of(package)
-    assert {room_of(name) for name in imports} == {*ROOMS[package], ""}
+    assert {room_of(name) for name in imports} == {*ROOMS[package], "."}
     wrong = [
         f"{name} imports {other}"
         for name, others in imports.items()
         for other in others
-        if room_of(name) and rank[room_of(other)] > rank[room_of(name)]
+        if room_of(name) != "." and rank[room_of(other)] > rank[room_of(name)]
     ]
     assert not wrong, "\n".join(wrong)
 

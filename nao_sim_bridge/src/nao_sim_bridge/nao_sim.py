@@ -14,6 +14,7 @@ or listens has no cameras, no sound and no process beside it.
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,7 +25,7 @@ import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, NotAllowed, TaskKilled, UnknownName
 from nao_sim_bridge.base.readings import FootForces, Pose
-from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.base.rotations import Vector3, rotate
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.control.joints.curves import SmoothCurve
@@ -46,6 +47,8 @@ T = TypeVar("T")
 LONGEST = 600.0
 """s of simulated time that a call waits for what it has begun, if nobody says otherwise."""
 ENDLESS = float("inf")
+FALLEN = 1.0
+"""Lean of the torso from which on a robot has fallen, rad."""
 SEED_STEP = 1000
 """Robots of one world have seeds so far apart."""
 
@@ -249,8 +252,8 @@ class Nao:
 
     @property
     def fallen(self) -> bool:
-        """Whether it is on its way down, or lies: not on its feet, and no move of its own that takes it off them."""
-        return self.robot.stability.falls.falling or not self.robot.stability.on_feet
+        """Whether the torso leans by more than 1 rad: it lies, or is about to."""
+        return rotate(self.snapshot.torso.orientation, (0.0, 0.0, 1.0))[2] < math.cos(FALLEN)
 
     def camera(self, name: str = "top") -> HeadCamera:
         """A camera of the head, "top" or "bottom".
@@ -277,12 +280,13 @@ class Nao:
             UnknownName: There is no such joint.
             BadValue: Numbers do not fit.
         """
-        indices, values = self._indices(names), None
+        indices = self._indices(names)
         if not 0.0 < speed <= 1.0:
             raise BadValue("speed", speed, "above 0 to 1")
         values = _each(angles, len(indices), "angles")
         joints = self._simulation.model.joints
         speeds = {index: speed * joints[index].max_velocity for index in indices}
+        self.let_go()
         self._sim._do(lambda: self.robot.motion.set_targets(dict(zip(indices, values)), speeds))
 
     def move_angles(
@@ -377,11 +381,38 @@ class Nao:
             SimulationError: It cannot walk now.
         """
         rate = _finite("velocity", (x, y, theta))
+        self.let_go()
         self._sim._do(lambda: self.robot.locomotion.move(*rate, FeetGait()))
 
     def stop(self, wait: bool = True) -> Motion:
         """End a walk as soon as both feet can stand."""
         return self._begin(lambda: self.robot.locomotion.stop(), wait)
+
+    def drive(self, values: Sequence[float], mode: str = "position", ticks: int = 1) -> None:
+        """Drive all joints directly, past everything that ALMotion does, and let time pass.
+
+        The sensors look once, at the end; that makes it the fast way for learning. The next call that moves the robot
+        otherwise, or `let_go`, gives the joints back to ALMotion's control, where they are then.
+
+        Args:
+            values: (26,) in the order of `joint_names`: rad, rad/s or N m.
+            mode: "position" (full torque, no limit but that of the motors' speed), "velocity" (at most the torque of
+                the motors) or "torque" (cut at what the motors give; gears without friction).
+            ticks: How many pass.
+
+        Raises:
+            UnknownName: There is no such mode.
+            BadValue: There are not 26 finite values, or less than one tick is to pass.
+        """
+        if len(values) != len(self.joint_names):
+            raise BadValue("values", f"{len(values)} of them", f"{len(self.joint_names)}, one for each joint")
+        if ticks < 1:
+            raise BadValue("ticks", ticks, "1 or more")
+        self._sim._drive(self, mode, values, ticks)
+
+    def let_go(self) -> None:
+        """End `drive`: the joints stay where they are, and do what other calls want again."""
+        self._sim._do(lambda: self.robot.let_go())
 
     # --- what happens to it ---------------------------------------------------------------------------------------
 
@@ -434,14 +465,14 @@ class Nao:
         return [model.joint_index[name] for name in joint_names(names, model)]
 
     def _begin(self, start: Callable[[], Task], wait: bool) -> Motion:
+        self.let_go()
         motion = Motion(self._sim, self._sim._do(start))
         if wait:
             motion.wait()
         return motion
 
     def _take_picture(self, camera: int, width: int, height: int) -> np.ndarray:
-        cameras = self._simulation.cameras
-        return cameras.picture_now(camera, width, height)
+        return self._simulation.cameras.picture(self.snapshot, camera, width, height)
 
 
 class NaoSim(Nao):
@@ -549,17 +580,25 @@ class NaoSim(Nao):
         for _ in range(left):
             self._show_tick()
 
-    def reset(self, seed: int | None = None) -> None:
-        """Put robots and world to their start; what they do ends.
+    def reset(self, seed: int | None = None, payload: float | None = None, delay: float | None = None) -> None:
+        """Put robots and world to their start; what they do ends. What is None stays as it was.
 
         Args:
-            seed: Of what is random from now on; None for the one of before.
+            seed: Of what is random from now on.
+            payload: As for the constructor.
+            delay: As for the constructor.
+
+        Raises:
+            BadValue: A number is not in its range.
         """
+        changes = {"payload": payload, "sensor_delay": delay}
+        changes = {name: value for name, value in changes.items() if value is not None}
 
         def start_again() -> None:
             for number, simulation in enumerate(self._own):
                 if seed is not None:
-                    simulation.reseed(seed + SEED_STEP * number)
+                    changes["seed"] = seed + SEED_STEP * number
+                simulation.vary(**changes)
             self._shared.reset()
             self._wake()
 
@@ -671,13 +710,26 @@ class NaoSim(Nao):
     def _simulation_of(self, number: int) -> Simulation:
         return self._own[number] if self._server is None else self._server.simulation
 
+    def _drive(self, nao: Nao, mode: str, values: Sequence[float], ticks: int) -> None:
+        if self._server is not None:
+            raise NotAllowed("a robot that is served is driven by its NAOqi alone")
+        nao.robot.drive(mode, values)
+        shared = self._shared
+        if all(simulation.robot.driven for simulation in self._own):
+            shared.leap(ticks)
+            return
+        for _ in range(ticks):
+            shared.tick()
+
     def _wake(self) -> None:
-        """Begin: the robots are stiff, and a first tick lets their feet feel the floor."""
+        """Begin: the robots are stiff, and time passes until their feet have felt the floor."""
         if self._awake:
             for simulation in self._own:
                 everything = range(len(simulation.model.joints))
                 simulation.robot.motion.set_stiffness_now(dict.fromkeys(everything, 1.0))
-        self._shared.tick()
+        latest = max(simulation.scene.sensor_delay for simulation in self._own)
+        for _ in range(1 + round(latest / self.tick_s)):
+            self._shared.tick()
 
     def _do(self, command: Callable[[], T]) -> T:
         """Run a command where the simulation runs."""

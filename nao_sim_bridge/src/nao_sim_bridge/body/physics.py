@@ -5,6 +5,7 @@ Whoever calls this owns the world: one thread only. Readings are plain tuples in
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from typing import Callable, Mapping, Sequence
 
@@ -91,7 +92,8 @@ class Physics:
         self._forget_efforts()
         keep_apart(self.client, self.robot, model, self.links)
         set_friction(self.client, self.robot, settings.contact, self.links)
-        load_torso(self.client, self.robot, payload)
+        self._payload = 0.0
+        self._carry(payload)
         speeds = self._to_engine_speeds([j.max_velocity for j in model.joints])
         limit_speeds(self.client, self.robot, dict(zip(self._indices, speeds)))
         couple_hips(self.client, self.robot, joints, settings.motor.coupling_force_n)
@@ -101,9 +103,19 @@ class Physics:
         self.start = place
         self.restart(angles, pitch)
 
-    def forget(self) -> None:
-        """The world was put to its start: what the motors were told before counts no more."""
+    def forget(self, payload: float) -> None:
+        """The world was put to its start: what the motors were told before counts no more.
+
+        Args:
+            payload: As for the constructor.
+        """
         self._forget_efforts()
+        self._carry(payload)
+
+    def _carry(self, payload: float) -> None:
+        if payload != self._payload:
+            load_torso(self.client, self.robot, payload - self._payload)
+            self._payload = payload
 
     def restart(self, angles: Sequence[float], pitch: float | None = None) -> None:
         """Put the robot to where it started, at rest; what its motors were told is forgotten."""
@@ -192,6 +204,62 @@ class Physics:
             velocityGains=self._velocity_gains,
             physicsClientId=self.client,
         )
+
+    def scale_friction(self, share: float) -> None:
+        """Let body and soles have this share of their friction."""
+        contact = self._settings.contact
+        scaled = replace(
+            contact, body_friction=share * contact.body_friction, sole_friction=share * contact.sole_friction
+        )
+        set_friction(self.client, self.robot, scaled, self.links)
+
+    def drive_positions(self, angles: Sequence[float]) -> None:
+        """Send all joints to (26,) angles, rad (hands 0..1), with the full torque and the gains of their motors."""
+        self._efforts = ()  # `drive` has to tell forces anew
+        pybullet.setJointMotorControlArray(
+            self.robot,
+            self._indices,
+            pybullet.POSITION_CONTROL,
+            targetPositions=self._to_engine(angles),
+            forces=self._torques,
+            positionGains=self._position_gains,
+            velocityGains=self._velocity_gains,
+            physicsClientId=self.client,
+        )
+
+    def drive_velocities(self, speeds: Sequence[float]) -> None:
+        """Let all joints turn at (26,) speeds, rad/s (hands 1/s), with at most the torque of their motors."""
+        self._efforts = ()
+        pybullet.setJointMotorControlArray(
+            self.robot,
+            self._indices,
+            pybullet.VELOCITY_CONTROL,
+            targetVelocities=self._to_engine_speeds(speeds),
+            forces=self._torques,
+            physicsClientId=self.client,
+        )
+
+    def free_joints(self) -> None:
+        """Let nothing but `turn_joints` turn the joints; their gears have no friction then."""
+        self._efforts = ()
+        pybullet.setJointMotorControlArray(
+            self.robot,
+            self._indices,
+            pybullet.VELOCITY_CONTROL,
+            forces=[0.0] * len(self._indices),
+            physicsClientId=self.client,
+        )
+
+    def turn_joints(self, torques: Sequence[float]) -> None:
+        """Apply (26,) torques, N m (hands N m of their simulated finger), in the coming step of the engine alone."""
+        pybullet.setJointMotorControlArray(
+            self.robot, self._indices, pybullet.TORQUE_CONTROL, forces=torques, physicsClientId=self.client
+        )
+
+    @property
+    def torque_limits(self) -> Sequence[float]:
+        """(26,) most that the motors give, N m."""
+        return self._torques
 
     def _forget_efforts(self) -> None:
         self._efforts: Sequence[float] = ()

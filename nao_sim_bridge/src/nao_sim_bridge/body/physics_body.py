@@ -68,9 +68,7 @@ def set_friction(client: int, robot: int, contact: ContactSettings, links: Mappi
 
 
 def load_torso(client: int, robot: int, payload: float) -> None:
-    """Have the torso carry a mass besides its own, at its centre of mass, kg."""
-    if payload == 0.0:
-        return
+    """Have the torso carry so much more mass, at its centre of mass, kg."""
     mass, _, inertia = pybullet.getDynamicsInfo(robot, -1, physicsClientId=client)[:3]
     # With a mass alone the engine would take a new inertia from the collision shapes.
     pybullet.changeDynamics(robot, -1, mass=mass + payload, localInertiaDiagonal=inertia, physicsClientId=client)

@@ -12,6 +12,8 @@ from nao_sim_bridge.world.world import FLOOR, World
 
 DISTANCE = 8
 """Column of PyBullet's closest points."""
+AWAY = 100.0
+"""m, in which nothing touches a robot."""
 DEEPEST = 0.002
 """What is inside the robot by less only touches it, m."""
 
@@ -68,6 +70,11 @@ class PhysicsWorld:
         """
         if self._kept is None or not self.bodies.restore():
             return False
+        # The engine keeps what it knows of two bodies as long as they touch, and would begin with forces of before.
+        for number, robot in enumerate(self.robots):
+            away = (0.0, 0.0, AWAY * (number + 1))
+            pybullet.resetBasePositionAndOrientation(robot, away, (0.0, 0.0, 0.0, 1.0), physicsClientId=self.client)
+        pybullet.performCollisionDetection(physicsClientId=self.client)
         pybullet.restoreState(stateId=self._kept, physicsClientId=self.client)
         return True
 

@@ -63,7 +63,6 @@ class Cameras:
         tick_s: Length of a tick, s.
         renderer: What draws.
         look: What there is to see at a snapshot.
-        seed: Of the noise.
         released: Called when time that waited need not wait any more.
         guard: Calls who gets frames; None for one of its own.
     """
@@ -74,7 +73,6 @@ class Cameras:
         tick_s: float,
         renderer: CapturesPictures,
         look: Callable[[Snapshot], RenderState],
-        seed: int = 0,
         released: Callable[[], None] = lambda: None,
         guard: Guard | None = None,
     ) -> None:
@@ -85,7 +83,7 @@ class Cameras:
         self.released = released
         self._look = look
         self._places = CameraPlaces(model)
-        self._darkroom = Darkroom(renderer, self._places, model.version, seed, guard or Guard())
+        self._darkroom = Darkroom(renderer, self._places, model.version, guard or Guard())
         self._streams: tuple[CameraStream, ...] = ()
         self._shutters = [Shutter(self.ticks_per_second) for _ in CAMERAS]
         self._stopped = [False for _ in CAMERAS]
@@ -94,14 +92,15 @@ class Cameras:
         self._chosen = [self._nothing_chosen() for _ in CAMERAS]
         self._replaced: list[np.ndarray | None] = [None for _ in CAMERAS]
         self._snapshot: Snapshot | None = None
+        self._seed = self._began = 0
         self._next_tick = Shutter.NEVER
         self._closed = False
 
     # --- in the simulation thread ---------------------------------------------------------------------------------
 
-    def begin(self, snapshot: Snapshot) -> None:
-        """The robot stands at its start."""
-        self._snapshot = snapshot
+    def begin(self, snapshot: Snapshot, seed: int = 0) -> None:
+        """The robot stands at its start; `seed` is that of the noise from now on."""
+        self._snapshot, self._seed, self._began = snapshot, seed, snapshot.tick
 
     def tick(self, snapshot: Snapshot) -> None:
         """A tick has passed."""
@@ -154,8 +153,8 @@ class Cameras:
             self.changed()
         return stream
 
-    def picture_now(self, camera: int, width: int, height: int) -> np.ndarray:
-        """What a camera sees at the last tick, (height, width, 3) uint8 RGB; waits until it is drawn.
+    def picture(self, snapshot: Snapshot, camera: int, width: int, height: int) -> np.ndarray:
+        """What a camera sees at a snapshot, the last one, (height, width, 3) uint8 RGB; waits until it is drawn.
 
         Raises:
             BadValue: The cameras have no such resolution.
@@ -166,15 +165,7 @@ class Cameras:
             allowed = ", ".join(f"{w}x{h}" for w, h in sorted(sizes))
             raise BadValue("picture", f"{width}x{height}", allowed)
         with self.lock:
-            snapshot = self._snapshot
-            moment = Moment(
-                self.tables.camera(camera),
-                self._numbers[camera],
-                snapshot,
-                self._look(snapshot),
-                self._parameters[camera],
-                self._replaced[camera],
-            )
+            moment = self._moment(self.tables.camera(camera), snapshot, self._look(snapshot))
         drawn: Future[Frame] = Future()
         size, pixels = sizes[width, height], self.tables.color_space(RGB)
 
@@ -314,12 +305,22 @@ class Cameras:
             wanted = [stream for stream in self._streams if stream.camera == camera and stream.takes(exact_time)]
             if wanted:
                 state = state or self._look(snapshot)
-                parameters, picture = self._parameters[camera], self._replaced[camera]
-                moment = Moment(camera, self._numbers[camera], snapshot, state, parameters, picture)
+                moment = self._moment(camera, snapshot, state)
                 for stream in wanted:
                     stream.put(moment)
             self._numbers[camera] += 1
         self._next_tick = min(shutter.next_tick for shutter in self._shutters)
+
+    def _moment(self, camera: int, snapshot: Snapshot, state: RenderState) -> Moment:
+        return Moment(
+            camera,
+            self._numbers[camera],
+            snapshot,
+            state,
+            self._parameters[camera],
+            (self._seed * 2 + camera) * 1000003 + snapshot.tick - self._began,
+            self._replaced[camera],
+        )
 
     def _develop(self, stream: CameraStream, ask: Ask, moment: Moment) -> None:
         """Draw a frame and hand it over; cameras' thread."""

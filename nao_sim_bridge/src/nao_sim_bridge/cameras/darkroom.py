@@ -42,16 +42,14 @@ class Darkroom:
         renderer: See above.
         places: Where the cameras are.
         version: Robot version.
-        seed: Of the noise.
         guard: Does what is put.
     """
 
-    def __init__(self, renderer: CapturesPictures, places: CameraPlaces, version: str, seed: int, guard: Guard) -> None:
+    def __init__(self, renderer: CapturesPictures, places: CameraPlaces, version: str, guard: Guard) -> None:
         self._guard = guard
         self.renderer = renderer
         self._places = places
         self._version = version
-        self._seed = seed
         self._jobs: deque[Callable[[], None]] = deque()
         self._news = threading.Condition()
         self._thread: threading.Thread | None = None
@@ -114,7 +112,7 @@ class Darkroom:
             height=size.height,
             color_space=pixels.id,
             parameters=moment.parameters,
-            seed=(self._seed * 2 + moment.camera) * 1000003 + moment.snapshot.tick,
+            seed=moment.noise,
         )
         photo = read_photograph(self._photograph(moment, shot))
         if len(photo.data) != size.width * size.height * pixels.layers:

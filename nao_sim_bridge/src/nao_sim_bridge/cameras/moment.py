@@ -21,6 +21,7 @@ class Moment:
         snapshot: What was sensed.
         state: What there was to see.
         parameters: Settings of the camera, by NAOqi's id; never changed, only replaced.
+        noise: Seed of the noise; equal runs have equal noise, after a reset as well.
         replaced_by: (h, w, 3) uint8 RGB that the camera sees instead of the world; None for the world.
     """
 
@@ -29,6 +30,7 @@ class Moment:
     snapshot: Snapshot
     state: RenderState
     parameters: Mapping[int, int]
+    noise: int
     replaced_by: np.ndarray | None = None
 
     @property

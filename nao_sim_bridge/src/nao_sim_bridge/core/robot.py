@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass, replace
-from typing import Iterable, Mapping, Sequence
+from functools import partial
+from typing import Callable, Iterable, Mapping, Sequence
 
-from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.finite import NotFinite, check_finite
 from nao_sim_bridge.base.readings import Contact, Pose
 from nao_sim_bridge.base.rotations import Vector3
@@ -38,6 +39,7 @@ from nao_sim_bridge.walk.locomotion import Locomotion
 
 # The links under which the soles are.
 ANKLES = ("l_ankle", "r_ankle")
+DRIVES = ("position", "velocity", "torque")
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,7 @@ class SimulatedRobot:
         power: Heat of the motors, and the battery.
         faults: What is broken.
         random: The only source of chance, so that a seed decides everything.
+        driven: Whether something else than ALMotion's control drives the joints; see `drive`.
         getting_up: True while a move runs that takes the robot off its feet or back on them: leaning is no fall then.
 
     Its clock starts at 0 with it: after a reset equal commands must meet equal times, to the last bit.
@@ -118,6 +121,8 @@ class SimulatedRobot:
         self.getting_up = False
         self._measured = tuple(angles)
         self._sensed: Snapshot | None = None
+        self._torques: Sequence[float] | None = None
+        self.driven = False
         self._ticks = 0
 
     @property
@@ -176,6 +181,50 @@ class SimulatedRobot:
         """
         self._pointed = frozenset() if ray is None else pointed_at(self.model, self._physics, *ray)
 
+    def drive(self, mode: str, values: Sequence[float]) -> None:
+        """Drive all joints past everything that ALMotion does, until `let_go`.
+
+        No task, target, balance or protection moves a joint meanwhile.
+
+        Args:
+            mode: "position": rad; "velocity": rad/s, at most the torque of the motors; "torque": N m, cut at what the
+                motors give, and gears without friction.
+            values: (26,) in the order of the body.
+
+        Raises:
+            UnknownName: There is no such mode.
+            NotFinite: One of the values is not.
+        """
+        if mode not in DRIVES:
+            raise UnknownName("drive", mode, DRIVES)
+        check_finite("values of the joints", values)
+        torques = None
+        if mode == "torque":
+            torques = [min(max(v, -limit), limit) for v, limit in zip(values, self._physics.torque_limits)]
+            if self._torques is None:
+                self._physics.free_joints()
+        elif mode == "position":
+            self._physics.drive_positions(values)
+        else:
+            self._physics.drive_velocities(values)
+        self._torques, self.driven = torques, True
+
+    def let_go(self) -> None:
+        """Leave the joints to ALMotion's control again, where they are now."""
+        if self.driven:
+            self._torques, self.driven = None, False
+            self.joints.hold(self._measured, range(len(self._measured)))
+
+    def scale_friction(self, share: float) -> None:
+        """Let body and soles have this share of their friction; it stays at a reset.
+
+        Raises:
+            BadValue: It is not above 0, or above 10.
+        """
+        if not 0.0 < share <= 10.0:
+            raise BadValue("share of friction", share, "above 0 to 10")
+        self._physics.scale_friction(share)
+
     def act(self) -> None:
         """First half of a tick for a robot that is alone: LEDs, motion and motors up to its end, then physics."""
         self.command()
@@ -184,6 +233,8 @@ class SimulatedRobot:
     def command(self) -> None:
         """First half of a tick: LEDs, motion and motors up to its end, before the step of physics."""
         self._ticks += 1
+        if self.driven:
+            return
         now = self.time
         self.task_ids.guard.call(self.leds.tick, now)
         self.whole_body.suspended = self.getting_up or self.locomotion.active
@@ -222,22 +273,28 @@ class SimulatedRobot:
         self._pushes = [push for push in self._pushes if push.until > self.time + 1e-9]
         return forces
 
-    def sense(self, tick: int, now: float, landed: bool = True) -> Snapshot:
+    def turning(self) -> Sequence[Callable[[], None]]:
+        """What is to be called before each step of the engine for joints that are driven by torques."""
+        return () if self._torques is None else (partial(self._physics.turn_joints, self._torques),)
+
+    def sense(self, tick: int, now: float, landed: bool = True, ticks: int = 1) -> Snapshot:
         """Second half of a tick: read every sensor.
 
         Args:
             tick: For the snapshot.
             now: The same, s.
             landed: False at the start, when nothing has pressed on the robot yet.
+            ticks: How many have passed since the last time.
         """
+        span = ticks * self._dt
         joints = self._physics.read_joints()
         self._measured = joints.positions
         body = self._physics.read_body()
         contacts = self._physics.read_contacts() if landed else ()
-        imu = self._imu.read(body, self._dt)
+        imu = self._imu.read(body, span)
         link_poses = {link: self._pose_of(link, body.pose) for link in {contact.link for contact in contacts}}
         work = self._sensors.motors.work
-        self.power.advance(lambda: work(joints.torques, joints.velocities, self.joints.efforts), self._dt)
+        self.power.advance(lambda: work(joints.torques, joints.velocities, self.joints.efforts), span)
         if self._imperfection is not None:
             joints, imu, contacts, link_poses = self._imperfection.of(Felt(joints, imu, contacts, link_poses))
         self._sensed = Snapshot(

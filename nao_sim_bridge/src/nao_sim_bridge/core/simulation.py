@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Callable, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.body.physics import Physics
@@ -115,11 +115,10 @@ class Simulation:
                 self.settings.tick_s,
                 self.renderer,
                 self.render_state,
-                self.scene.seed,
                 released=lambda: self.wake(),
                 guard=self.shared.guard,
             )
-            self._cameras.begin(self.snapshot)
+            self._cameras.begin(self.snapshot, self.scene.seed)
             self.holds.append(self._cameras.holds)
         return self._cameras
 
@@ -128,9 +127,13 @@ class Simulation:
         """To be called, from any thread, when one of `holds` may answer differently."""
         return self.shared.wake
 
-    def reseed(self, seed: int) -> None:
-        """Take another seed; it counts from the next reset on."""
-        self.scene = replace(self.scene, seed=seed)
+    def vary(self, **changes: Any) -> None:
+        """Change `seed`, `payload`, `sensor_delay` or `sensor_noise` of the scene; they count from the next reset on.
+
+        Raises:
+            BadValue: A number is not in its range.
+        """
+        self.scene = replace(self.scene, **changes)
 
     def reset(self) -> None:
         """Put all robots and the world to where they started; running tasks are killed."""
@@ -197,17 +200,17 @@ class Simulation:
         self._start(angles)
 
     def begin_again(self) -> None:
-        self._physics.forget()
+        self._physics.forget(self.scene.payload)
         self._start(posture(self.model, self.scene.posture))
 
     def act(self) -> Sequence[Callable[[], None]]:
         self.shared.guard.call(self.hands.tick)
         self.robot.command()
-        pushes = self.robot.take_pushes()
-        return self._physics.pushing(pushes) if pushes else ()
+        pushes, turning = self.robot.take_pushes(), self.robot.turning()
+        return [*turning, *self._physics.pushing(pushes)] if pushes else turning
 
-    def sense(self) -> None:
-        self.snapshot = self.robot.sense(self.shared.ticks, self.shared.time)
+    def sense(self, ticks: int = 1) -> None:
+        self.snapshot = self.robot.sense(self.shared.ticks, self.shared.time, ticks=ticks)
         if self._sound is not None:
             self._sound.record(self.snapshot)
 
@@ -247,6 +250,6 @@ class Simulation:
         if self._sound is not None:
             self._sound.begin(self.snapshot)
         if self._cameras is not None:
-            self._cameras.begin(self.snapshot)
+            self._cameras.begin(self.snapshot, self.scene.seed)
         for call in self.after_reset:
             self.shared.guard.call(call)

@@ -1,0 +1,208 @@
+"""What the environments share: the robot, its observations, what is random in it, and rendering."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Mapping, Sequence
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from nao_sim_bridge.base.rotations import rotate_back
+from nao_sim_bridge.model.model_reader import load_model
+from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.nao_sim import FALLEN, NaoSim
+
+UP = (0.0, 0.0, 1.0)
+SCALE_OF_SPEED, SCALE_OF_LOAD = 0.1, 0.02
+"""Joint speeds are observed times this, s/rad, and the load of a foot times this, 1/N: both are then about 1."""
+
+LARGEST = 100.0
+"""What is observed is cut at this."""
+
+
+@dataclass(frozen=True)
+class Randomization:
+    """What differs from episode to episode; each a width around the true robot, 0 for none.
+
+    Attributes:
+        payload: Up to so much more mass in the torso, kg.
+        friction: Coefficient of soles and floor, a share of it up or down.
+        delay: How late the sensors are at most, s.
+        noise: Scale of the sensors' errors, 1 for those of a real robot.
+        push: Momentum of pushes, N s, at most; they come from any side.
+        push_every: s between pushes, on average.
+    """
+
+    payload: float = 0.0
+    friction: float = 0.0
+    delay: float = 0.0
+    noise: float = 0.0
+    push: float = 0.0
+    push_every: float = 2.0
+
+
+class NaoEnv(gymnasium.Env):
+    """A NAO whose joints are driven by an agent: actions are changes of the angles of `JOINTS` around a posture.
+
+    Observation (float32), in this order: the direction of up in the torso's frame (3), the gyroscope in rad/s (3), the
+    angles of all joints less those of the posture in rad (26), their speeds in rad/s times 0.1 (26), the loads of left
+    and right foot in N times 0.02 (2), the last action (n), and what the environment adds.
+
+    Action (float32, -1..1 each): target of a joint, less its angle in the posture, times `REACH` rad. The other joints
+    keep the posture.
+
+    Args:
+        render_mode: "rgb_array", "human" or None.
+        randomization: What differs from episode to episode, as a `Randomization` or a mapping of its fields.
+        drive: What the actions are sent to: "position", as above; "torque": N m, a share of what the motors give.
+        options: Passed on to `NaoSim`.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "human"], "render_fps": 40}
+    POSTURE: ClassVar[str] = "Stand"
+    JOINTS: ClassVar[Sequence[str]] = ()
+    REACH: ClassVar[float] = 0.5
+    TICKS: ClassVar[int] = 3
+    """Ticks in a step: 25 ms."""
+    EXTRA: ClassVar[int] = 0
+    """Numbers that an environment adds to the observation."""
+
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        randomization: Randomization | Mapping[str, float] | None = None,
+        drive: str = "position",
+        **options: Any,
+    ) -> None:
+        if drive not in ("position", "torque"):
+            raise ValueError(f'drive is {drive!r}, allowed are "position" and "torque"')
+        self.render_mode = render_mode
+        self.randomization = (
+            randomization if isinstance(randomization, Randomization) else Randomization(**(randomization or {}))
+        )
+        self._drive = drive
+        self._options = options
+        self._model = load_model(options.get("version", "V6"))
+        self._reference = np.array(posture(self._model, self.POSTURE))
+        self._driven = np.array([self._model.joint_index[name] for name in self.JOINTS])
+        self._limits = np.array([self._model.joints[i].max_torque for i in self._driven])
+        self._sim: NaoSim | None = None
+        self._action = np.zeros(len(self._driven), np.float32)
+        self._next_push = np.inf
+        count = len(self._driven)
+        self.action_space = spaces.Box(-1.0, 1.0, (count,), np.float32)
+        size = 3 + 3 + 26 + 26 + 2 + count + self.EXTRA
+        self.observation_space = spaces.Box(-LARGEST, LARGEST, (size,), np.float32)
+
+    @property
+    def sim(self) -> NaoSim:
+        """The simulation; there is one from the first `reset` on."""
+        if self._sim is None:
+            raise RuntimeError("there is no simulation yet: call reset first")
+        return self._sim
+
+    def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Any, dict]:
+        """Begin an episode."""
+        super().reset(seed=seed)
+        chance = self.np_random
+        wide, number = self.randomization, int(chance.integers(1 << 30))
+        drawn = {"payload": wide.payload * chance.uniform(), "delay": wide.delay * chance.uniform()}
+        friction = 1.0 + wide.friction * chance.uniform(-1.0, 1.0)
+        if self._sim is None:
+            fixed = {"posture": self.POSTURE, "noise": wide.noise, "gui": self.render_mode == "human"}
+            self._sim = NaoSim(seed=number, **{**fixed, **drawn, **self._options})
+        else:
+            self._sim.reset(number, **{name: value for name, value in drawn.items() if name not in self._options})
+        if wide.friction:
+            self._sim.robot.scale_friction(friction)
+        self._action[:] = 0.0
+        self._plan_push()
+        self._begin()
+        return self._observe(), {}
+
+    def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict]:
+        """Drive the joints for 25 ms."""
+        action = np.clip(np.asarray(action, np.float32), -1.0, 1.0)
+        if self._sim.time >= self._next_push:
+            self._push()
+        if self._drive == "position":
+            values = self._reference.copy()
+            values[self._driven] += self.REACH * action
+        else:
+            values = np.zeros(len(self._reference))
+            values[self._driven] = self._limits * action
+        self._sim.drive(values.tolist(), self._drive, self.TICKS)
+        reward, over = self._judge(action)
+        self._action = action
+        if self.render_mode == "human":
+            self.render()
+        return self._observe(), float(reward), bool(over), False, {}
+
+    def render(self) -> np.ndarray | None:
+        """A picture from outside, (480, 640, 3) uint8; a window shows itself."""
+        return self.sim.picture() if self.render_mode == "rgb_array" else None
+
+    def close(self) -> None:
+        """End the simulation."""
+        if self._sim is not None:
+            self._sim.close()
+            self._sim = None
+
+    # --- for the environments -----------------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        """Draw what an episode is about; robot and world are at their start."""
+
+    def _judge(self, action: np.ndarray) -> tuple[float, bool]:
+        """Reward of the step that has just been made, and whether the episode has failed."""
+        raise NotImplementedError
+
+    def _more(self) -> Sequence[float]:
+        """What is added to the observation."""
+        return ()
+
+    # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _observe(self) -> np.ndarray:
+        now = self._sim.snapshot
+        seen = np.concatenate(
+            (
+                rotate_back(now.torso.orientation, UP),
+                now.imu.gyroscope,
+                np.array(now.positions) - self._reference,
+                np.array(now.velocities) * SCALE_OF_SPEED,
+                np.array(now.foot_loads) * SCALE_OF_LOAD,
+                self._action,
+                self._more(),
+            ),
+            dtype=np.float32,
+        )
+        return np.clip(seen, -LARGEST, LARGEST)
+
+    def _upright(self) -> float:
+        """Cosine of the lean of the torso: 1 upright, 0 lying."""
+        return rotate_back(self._sim.snapshot.torso.orientation, UP)[2]
+
+    def _has_fallen(self) -> bool:
+        return self._upright() < np.cos(FALLEN)
+
+    def _plan_push(self) -> None:
+        wide = self.randomization
+        self._next_push = self._sim.time + self.np_random.exponential(wide.push_every) if wide.push else np.inf
+
+    def _push(self) -> None:
+        angle, size = self.np_random.uniform(0.0, 2.0 * np.pi), self.randomization.push * self.np_random.uniform()
+        force = (10.0 * size * np.cos(angle), 10.0 * size * np.sin(angle), 0.0)
+        self._sim.push("Torso", force, 0.1)
+        self._plan_push()
+
+
+def legs_of(*names: str) -> tuple[str, ...]:
+    """Joints of both legs, from their names without the side."""
+    return tuple(f"{side}{name}" for side in "LR" for name in names)
+
+
+LEGS = legs_of("HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
+ARMS = legs_of("ShoulderPitch", "ShoulderRoll")

@@ -1,0 +1,226 @@
+"""The simulator as a library: what a script does with it, and what is the same from run to run."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from nao_sim_bridge import NaoSim
+from nao_sim_bridge.base.errors import BadValue, MoveRefused, NotAllowed, UnknownName
+
+
+@pytest.fixture
+def nao():
+    with NaoSim(seed=1) as sim:
+        yield sim
+
+
+def felt(sim):
+    now = sim.snapshot
+    return now.positions, now.velocities, now.torso, now.imu, now.contacts
+
+
+def stumble(sim):
+    """Something that reaches motors, contacts, noise and balance."""
+    sim.walk(0.06, 0.0, 0.2)
+    sim.push("Torso", (12.0, 8.0, 0.0), 0.2)
+    sim.step(1.5)
+    return felt(sim)
+
+
+def test_it_walks_to_where_it_is_sent(nao):
+    assert nao.walk_to(0.3, 0.1, 0.4).wait() is True
+    assert nao.pose_on_ground == pytest.approx((0.3, 0.1, 0.4), abs=0.03)
+
+
+def test_joints_go_to_their_targets(nao):
+    nao.set_angles(["HeadYaw", "LArm"], [0.5, 1.0, 0.3, -1.0, -0.5, 0.2, 0.5])
+    nao.step(2.0)
+    assert nao.angles["HeadYaw"] == pytest.approx(0.5, abs=0.01)
+    assert np.asarray(nao.angles)[2:7] == pytest.approx([1.0, 0.3, -1.0, -0.5, 0.2], abs=0.03)
+
+
+def test_a_motion_ends_in_its_time(nao):
+    began = nao.time
+    nao.move_angles("HeadPitch", 0.2, duration=0.7)
+    assert nao.time - began == pytest.approx(0.7, abs=0.05)
+    assert nao.angles["HeadPitch"] == pytest.approx(0.2, abs=0.01)
+
+
+def test_a_motion_that_is_cancelled_stops_where_it_is(nao):
+    motion = nao.move_angles("HeadYaw", 1.0, duration=2.0, wait=False)
+    nao.step(1.0)
+    motion.cancel()
+    nao.step(0.5)
+    assert motion.done and nao.angles["HeadYaw"] == pytest.approx(0.5, abs=0.05)
+
+
+def test_the_feet_bear_the_robot_and_lean_tells_where(nao):
+    nao.step(1.0)
+    assert nao.feet.left.total + nao.feet.right.total == pytest.approx(nao.robot.model.total_mass * 9.81, rel=0.05)
+    assert nao.feet.center_of_pressure == pytest.approx((0.0, 0.0), abs=0.03)
+    before = nao.feet.center_of_pressure[1]
+    nao.push("Torso", (0.0, 6.0, 0.0), 0.3)
+    nao.step(0.25)
+    assert nao.feet.center_of_pressure[1] > before + 0.01
+
+
+def test_pushes_at_the_same_time_add_up(nao):
+    def speed(*forces):
+        nao.reset(1)
+        for force in forces:
+            nao.push("Torso", force, 0.1)
+        nao.step(0.1)
+        return np.array(nao.snapshot.linear_velocity)
+
+    assert speed((8.0, 0.0, 0.0), (8.0, 0.0, 0.0)) == pytest.approx(speed((16.0, 0.0, 0.0)))
+
+
+def test_a_pushed_robot_without_protection_falls_and_gets_up(nao):
+    nao.protect(False)
+    nao.push("Torso", (60.0, 0.0, 0.0), 0.2)
+    nao.step(3.0)
+    assert nao.fallen
+    with pytest.raises(MoveRefused):
+        nao.walk_to(0.1)
+    assert nao.go_to_posture("Stand").wait() is True and not nao.fallen
+
+
+@pytest.mark.parametrize("noise, delay", [(0.0, 0.0), (1.0, 0.03)])
+def test_equal_seeds_and_calls_are_equal_to_the_last_bit(noise, delay):
+    with NaoSim(seed=3, noise=noise, delay=delay) as first, NaoSim(seed=3, noise=noise, delay=delay) as second:
+        assert stumble(first) == stumble(second)
+
+
+@pytest.mark.parametrize("world, robots", [("empty", 1), ("empty", 2), ("obstacles", 1), ("uneven", 1)])
+def test_a_reset_is_a_fresh_start_to_the_last_bit(world, robots):
+    with NaoSim(seed=3, noise=1.0, world=world, robots=robots) as sim:
+        once = stumble(sim)
+        for _ in range(3):  # the first builds the world once more, the others put it back
+            sim.reset(3)
+            assert stumble(sim) == once
+        sim.reset(4)
+        assert stumble(sim) != once
+
+
+def test_a_reset_takes_back_what_was_placed(nao):
+    once = stumble(nao)
+    nao.place("box", at=(0.6, 0.0, 0.05))
+    nao.step(0.5)
+    assert "box" in nao.things
+    nao.reset(1)
+    assert "box" not in nao.things and stumble(nao) == once
+
+
+def test_things_come_move_and_go(nao):
+    assert nao.place("ball", at=(1.0, 0.0, 0.03)) == "ball"
+    nao.place("ball", at=(1.0, 0.5, 0.03))
+    assert nao.things["ball"][:2] == pytest.approx((1.0, 0.5), abs=0.01)
+    nao.remove("ball")
+    assert nao.things == {}
+
+
+@pytest.mark.parametrize("mode, values", [("position", None), ("velocity", 0.0), ("torque", 0.0)])
+def test_joints_that_are_driven_directly_do_what_the_mode_says(nao, mode, values):
+    stand = np.asarray(nao.angles)
+    wanted = stand.copy()
+    wanted[0] = 0.4
+    nao.drive(wanted if values is None else np.zeros(26), mode, ticks=60)
+    height = nao.pose_torso_in_world.position[2]
+    if mode == "torque":
+        assert height < 0.25  # nothing holds it
+        return
+    assert height > 0.3
+    assert nao.angles["HeadYaw"] == pytest.approx(0.4 if mode == "position" else 0.0, abs=0.02)
+
+
+def test_a_torque_turns_its_joint(nao):
+    torques = np.zeros(26)
+    torques[0] = 0.3
+    nao.drive(torques, "torque", ticks=6)
+    assert nao.velocities["HeadYaw"] > 1.0
+
+
+def test_a_robot_that_was_driven_walks_afterwards(nao):
+    nao.drive(np.asarray(nao.commands), ticks=30)
+    assert nao.walk_to(0.1).wait() is True
+
+
+def test_a_reset_after_driving_is_a_fresh_start(nao):
+    nao.reset(1)
+    once = felt(nao)
+    nao.drive(np.asarray(nao.commands) + 0.2, ticks=3)
+    nao.reset(1)
+    assert felt(nao) == once
+
+
+def test_the_camera_sees_what_is_in_front_of_it(nao):
+    empty = nao.camera("bottom").picture(160, 120).astype(int)
+    nao.place("ball", at=(0.6, 0.0, 0.03))
+    seen = nao.camera("bottom").picture(160, 120).astype(int)
+    assert seen.shape == (120, 160, 3)
+    redder = (seen - empty)[..., 0] - (seen - empty)[..., 2]
+    assert (redder > 60).sum() > 30
+
+
+def test_a_picture_of_a_size_that_the_camera_has_not_names_those_it_has(nao):
+    with pytest.raises(BadValue, match="320x240"):
+        nao.camera().picture(100, 100)
+
+
+def test_robots_of_one_world_move_by_themselves():
+    with NaoSim(robots=2, places=[(0.0, 0.0, 0.0), (0.0, 1.0, math.pi / 2.0)]) as sim:
+        sim.robots[1].walk_to(0.2)
+        assert sim.pose_on_ground == pytest.approx((0.0, 0.0, 0.0), abs=0.02)
+        assert sim.robots[1].pose_on_ground == pytest.approx((0.0, 1.2, math.pi / 2.0), abs=0.05)
+
+
+def test_a_program_for_naoqi_and_a_script_share_the_robot(nao):
+    import qi
+
+    session = qi.Session()
+    session.connect(nao.serve(port=0))
+    walk = session.service("ALMotion").moveTo(0.15, 0.0, 0.0, _async=True)
+    while not walk.isFinished():
+        nao.step(0.1)
+    assert walk.value() is True and nao.pose_on_ground.x == pytest.approx(0.15, abs=0.03)
+    nao.set_angles("HeadYaw", 0.4)
+    nao.step(1.0)
+    assert session.service("ALMotion").getAngles("HeadYaw", True)[0] == pytest.approx(0.4, abs=0.02)
+    with pytest.raises(NotAllowed, match="served already"):
+        nao.serve(port=0)
+    session.close()
+
+
+def test_nobody_who_does_not_look_or_listen_pays_for_it(nao):
+    nao.walk_to(0.1)
+    simulation = nao._simulation
+    assert simulation._sound is None and simulation._cameras is None and simulation.renderer.pid is None
+
+
+@pytest.mark.parametrize(
+    "call, told",
+    [
+        (lambda nao: nao.set_angles("Tail", 0.1), "Tail"),
+        (lambda nao: nao.set_angles("HeadYaw", math.nan), "angles"),
+        (lambda nao: nao.set_angles("Head", [0.1, 0.2, 0.3]), "angles"),
+        (lambda nao: nao.set_angles("HeadYaw", 0.1, speed=0.0), "speed"),
+        (lambda nao: nao.move_angles("HeadYaw", 0.1, duration=0.0), "duration"),
+        (lambda nao: nao.push("Tail", (1, 0, 0)), "Tail"),
+        (lambda nao: nao.push("Torso", (1, 0)), "force"),
+        (lambda nao: nao.walk_to(math.inf), "pose"),
+        (lambda nao: nao.step(-1.0), "seconds"),
+        (lambda nao: nao.step(math.inf), "seconds"),
+        (lambda nao: nao.drive([0.0] * 25), "26"),
+        (lambda nao: nao.drive([0.0] * 26, "muscle"), "muscle"),
+        (lambda nao: nao.camera("left"), "left"),
+        (lambda nao: nao.go_to_posture("Handstand"), "Handstand"),
+        (lambda nao: nao.reset(payload=-1.0), "payload"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_name(nao, call, told):
+    with pytest.raises((UnknownName, BadValue), match=told):
+        call(nao)
+    nao.step(0.1)
