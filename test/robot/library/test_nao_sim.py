@@ -105,6 +105,17 @@ def test_a_reset_is_a_fresh_start_to_the_last_bit(world, robots):
         assert stumble(sim) != once
 
 
+def test_balance_begins_anew_with_a_reset(nao):
+    def pushed():
+        nao.push("Torso", (30.0, 10.0, 0.0), 0.2)
+        nao.step(1.0)
+        return felt(nao)
+
+    once = pushed()
+    nao.reset(1)
+    assert pushed() == once
+
+
 def test_a_reset_takes_back_what_was_placed(nao):
     once = stumble(nao)
     nao.place("box", at=(0.6, 0.0, 0.05))

@@ -300,6 +300,7 @@ class SimulatedRobot:
         self._sensed = Snapshot(
             tick=tick,
             time=now,
+            age=self.time,
             positions=joints.positions,
             velocities=joints.velocities,
             torques=joints.torques,

@@ -37,7 +37,8 @@ def sweep(
         output: CSV file with a row for each run, written as they end; None to keep them only in memory.
         workers: Processes on this computer, as many as it has processors if None; 0: all runs in this process, one
             after the other.
-        address: Of a Ray cluster ("ray://head:10001", "auto"), which then does the work.
+        address: Of a Ray cluster ("ray://head:10001", "auto"), which then does the work. Where `ray.init` was called
+            before, that Ray does it.
         progress: Show how far it is.
         parameters: A sequence of values for each, of numbers, truth values or texts.
 
@@ -109,16 +110,19 @@ def _by_ray(
     elif mine:
         ray.init(address=address, log_to_driver=False, configure_logging=False)
     try:
-        call = ray.remote(max_retries=RETRIES)(_call)
-        shared = ray.put(function)
+
+        @ray.remote(max_retries=RETRIES)
+        def call(run: Mapping[str, Any]) -> dict[str, Any]:
+            return _call(function, run)  # part of what each worker loads once
+
         slots = AT_ONCE * max(1, int(ray.cluster_resources().get("CPU", 1)))
         left = iter(runs)
-        waiting = {call.remote(shared, run): run for run in itertools.islice(left, slots)}
+        waiting = {call.remote(run): run for run in itertools.islice(left, slots)}
         while waiting:
             (ready,), _ = ray.wait(list(waiting), num_returns=1)
             run = waiting.pop(ready)
             for more in itertools.islice(left, 1):
-                waiting[call.remote(shared, more)] = more
+                waiting[call.remote(more)] = more
             try:
                 yield ray.get(ready)
             except ray.exceptions.RayError as error:

@@ -172,9 +172,9 @@ class FallManager:
         if distance < self._settings.outside:
             self._outside_since = None
         elif self._outside_since is None:
-            self._outside_since = snapshot.time
-        elif snapshot.time - self._outside_since >= self._settings.confirm_time:
-            self._begin(way, snapshot.time)
+            self._outside_since = snapshot.age
+        elif snapshot.age - self._outside_since >= self._settings.confirm_time:
+            self._begin(way, snapshot.age)
 
     def look_at_walk(self, off: Tuple[float, float], snapshot: Snapshot) -> None:
         """Look whether a robot that walks begins to fall: its feet go where the body goes, up to a point.
@@ -189,13 +189,13 @@ class FallManager:
         roll, pitch, _ = snapshot.imu.angles
         if math.hypot(*off) > settings.walking_off:
             size = math.hypot(*off)
-            self._begin((off[0] / size, off[1] / size), snapshot.time)
+            self._begin((off[0] / size, off[1] / size), snapshot.age)
         elif _lean(roll, pitch) > settings.walking_lean:
-            self._begin(_downhill(roll, pitch), snapshot.time)
+            self._begin(_downhill(roll, pitch), snapshot.age)
 
     def go_on(self, snapshot: Snapshot) -> None:
         """Advance a fall that goes on: let go before the impact, and tell when the robot lies."""
-        settings, now = self._settings, snapshot.time
+        settings, now = self._settings, snapshot.age
         roll, pitch, _ = snapshot.imu.angles
         lean = _lean(roll, pitch)
         elapsed = now - self._noticed

@@ -56,12 +56,12 @@ class PushDetector:
         if self._since is not None:
             return self._follow(speed, snapshot)
         if speed < AT_REST:
-            self._rest(snapshot.time, stands_still)
+            self._rest(snapshot.age, stands_still)
             return None
         self._at_rest_since = None
         if speed >= PUSHED:
             if self._armed and stands_still():
-                self._since = snapshot.time
+                self._since = snapshot.age
                 self._take(speed, snapshot)
             self._armed = False
         return None
@@ -78,7 +78,7 @@ class PushDetector:
     def _follow(self, speed: float, snapshot: Snapshot) -> Push | None:
         if speed >= self._peak:
             self._take(speed, snapshot)
-        if speed > PAST_PEAK * self._peak and snapshot.time - self._since < LONGEST:
+        if speed > PAST_PEAK * self._peak and snapshot.age - self._since < LONGEST:
             return None
         self._since = None
         return Push(self._angle, 0.5 * self._mass * self._peak * self._peak)

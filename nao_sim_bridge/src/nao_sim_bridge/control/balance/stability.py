@@ -178,13 +178,13 @@ class Stability:
         roll, pitch, _ = imu.angles
         limit, (settled_roll, settled_pitch) = settings.quiet_lean, self._settled_lean
         if abs(turn_x) > settings.quiet_turn or abs(turn_y) > settings.quiet_turn:
-            self._moved = snapshot.time
+            self._moved = snapshot.age
             return False
         if abs(roll - settled_roll) > limit or abs(pitch - settled_pitch) > limit:
             self._settled_lean = (roll, pitch)
-            self._moved = snapshot.time
+            self._moved = snapshot.age
             return False
-        return snapshot.time - self._moved >= settings.quiet_time
+        return snapshot.age - self._moved >= settings.quiet_time
 
     def _note_feet(self, snapshot: Snapshot, able: bool) -> None:
         """See whether the robot is on its feet, and tell the fall manager."""
@@ -192,7 +192,7 @@ class Stability:
         load = snapshot.left_foot.total + snapshot.right_foot.total
         least = self._weight * (STANDING_SHARE if self.on_feet and able else STANDING_UP_SHARE)
         on_feet = load > least and abs(roll) < UPRIGHT and abs(pitch) < UPRIGHT
-        now = snapshot.time
+        now = snapshot.age
         if able:
             self.falls.note_feet(on_feet, now)
         if on_feet == self.on_feet:

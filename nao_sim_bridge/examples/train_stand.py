@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Learns to stand against pushes by augmented random search, plays what it has learned, and compares.
+
+Needs `pip install ./nao_sim_bridge[rl,sweep]`. The policy is linear in the observation of NaoStand-v0; each iteration
+tries a handful of directions in the space of policies, both ways, over the same pushes, and goes along those that
+paid (Mania, Guy and Recht 2018, without their scaling of states). The rollouts are spread over all processors.
+"""
+
+from __future__ import annotations
+
+import argparse
+from functools import lru_cache
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+
+import nao_sim_bridge.envs  # noqa: F401 makes the environments known
+from nao_sim_bridge import NaoSim
+from nao_sim_bridge.sweep import sweep
+
+ENVIRONMENT = "NaoStand-v0"
+
+
+@lru_cache(maxsize=None)
+def environment(push: float) -> gymnasium.Env:
+    """One for each process: building it takes longer than putting it back."""
+    return gymnasium.make(ENVIRONMENT, randomization={"push": push, "noise": 1.0, "delay": 0.01})
+
+
+def rollout(policy: np.ndarray, seed: int, push: float) -> tuple[float, bool]:
+    """Sum of rewards of an episode, and whether the robot stood to its end."""
+    env = environment(push)
+    seen, _ = env.reset(seed=seed)
+    total, over, late = 0.0, False, False
+    while not (over or late):
+        seen, reward, over, late, _ = env.step(np.tanh(policy @ seen))
+        total += reward
+    return total, not over
+
+
+def train(iterations: int, directions: int, push: float, workers: int | None) -> np.ndarray:
+    """A policy, (actions, observations)."""
+    env = environment(push)
+    policy = np.zeros((env.action_space.shape[0], env.observation_space.shape[0]))
+    chance, width, rate = np.random.default_rng(0), 0.03, 0.02
+    for iteration in range(iterations):
+        ways = chance.standard_normal((directions, *policy.shape))
+
+        def tried(seed: int, way: int, sign: int, now=policy, ways=ways) -> float:
+            return rollout(now + sign * width * ways[way], seed, push)[0]
+
+        table = sweep(
+            tried, seeds=[1000 + iteration], workers=workers, progress=False, way=list(range(directions)), sign=[1, -1]
+        )
+        rewards = np.array([row["result"] for row in table.rows]).reshape(directions, 2)
+        steps = (rewards[:, 0] - rewards[:, 1])[:, None, None] * ways
+        policy = policy + rate / (rewards.std() + 1e-6) * steps.mean(axis=0)
+        print(f"iteration {iteration + 1}: {rewards.mean():.1f} of 400")
+    return policy
+
+
+def own_balance(seed: int, push: float) -> bool:
+    """Whether the robot's own balance stands the same kind of pushes for ten seconds."""
+    chance = np.random.default_rng(seed)
+    with NaoSim(seed=seed, noise=1.0) as nao:
+        while nao.time < 10.0 and not nao.fallen:
+            nao.step(chance.exponential(2.0))
+            angle, size = chance.uniform(0.0, 2.0 * np.pi), 10.0 * push * chance.uniform()
+            nao.push("Torso", (size * np.cos(angle), size * np.sin(angle), 0.0), 0.1)
+        return not nao.fallen
+
+
+def main() -> None:
+    """Train, compare, draw."""
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--iterations", type=int, default=60)
+    options.add_argument("--directions", type=int, default=16)
+    options.add_argument("--push", type=float, default=3.0, help="momentum, N s, at most")
+    options.add_argument("--episodes", type=int, default=40, help="for the comparison")
+    options.add_argument("--workers", type=int, default=None, help="processes; 0: none beside this one")
+    options.add_argument("--output", type=Path, default=Path("train_stand"), help="folder for policy, table and figure")
+    chosen = options.parse_args()
+    chosen.output.mkdir(parents=True, exist_ok=True)
+    if chosen.workers != 0:
+        import ray
+
+        ray.init(num_cpus=chosen.workers, include_dashboard=False, log_to_driver=False)  # once, for all sweeps
+    policy = train(chosen.iterations, chosen.directions, chosen.push, chosen.workers)
+    np.save(chosen.output / "policy.npy", policy)
+    nothing = np.zeros_like(policy)
+
+    def compared(seed: int, push: float, who: str) -> dict[str, bool]:
+        if who == "own balance":
+            return {"stood": own_balance(seed, push)}
+        return {"stood": rollout(policy if who == "trained" else nothing, seed, push)[1]}
+
+    pushes = [chosen.push * share for share in (0.5, 0.75, 1.0, 1.25, 1.5)]
+    table = sweep(
+        compared,
+        chosen.episodes,
+        chosen.output / "compared.csv",
+        chosen.workers,
+        push=pushes,
+        who=["no policy", "trained", "own balance"],
+    )
+    print(table)
+    print(f"figure: {table.plot(chosen.output / 'compared.png')}")
+
+
+if __name__ == "__main__":
+    main()
