@@ -40,7 +40,7 @@ class Snapshot:
     Attributes:
         tick: Number of ticks since the start of the program; never goes back, not even at a reset.
         time: Simulated time, s; as `tick`.
-        age: Simulated time since the robot was put to its start, s: after a reset equal commands meet equal ages, to the
+        age: Simulated time since the robot was put to its start, s: after a reset equal commands meet equal ages to the
             last bit.
         positions: Measured joint angles, rad (hands 0..1).
         velocities: Measured joint speeds, rad/s.
