@@ -37,6 +37,9 @@ class WorldRobot(Protocol):
     def begin_again(self) -> None:
         """Be at the start again: the physics has put the body back."""
 
+    def begin_sound(self, air: Air) -> None:
+        """There is sound from now on: have a voice and ears."""
+
     def act(self) -> Sequence[Callable[[], None]]:
         """First part of a tick, up to the step of physics; what is to be called before each step of the engine."""
 
@@ -112,6 +115,8 @@ class SharedWorld:
             self._air = Air(self.task_ids, self.settings.tick_s)
             if self.ticks:
                 self._air.tick(self.ticks)
+            for robot in self.robots:
+                robot.begin_sound(self._air)
         return self._air
 
     @property
@@ -138,6 +143,8 @@ class SharedWorld:
             self.physics = PhysicsWorld(self.world, self.settings)
             self.things.begin(self.physics)
         robot.begin(self.physics)
+        if self._air is not None:
+            robot.begin_sound(self._air)
 
     def reset(self) -> None:
         """Put all robots and the world to where they started; running tasks are killed, time goes on.

@@ -23,6 +23,7 @@ from nao_sim_bridge.world.render_state import RenderState, RobotLook
 
 if TYPE_CHECKING:
     from nao_sim_bridge.cameras.cameras import Cameras
+    from nao_sim_bridge.sound.air import Air
     from nao_sim_bridge.sound.sound_world import SoundWorld
 
 
@@ -97,11 +98,7 @@ class Simulation:
         It stays at a reset, which ends everything that plays.
         """
         if self._sound is None:
-            from nao_sim_bridge.sound.sound_world import SoundWorld  # who is deaf and mute needs nothing of it
-
-            self._sound = SoundWorld(self.model, self.shared.air, self.scene.seed, released=lambda: self.wake())
-            self._sound.begin(self.snapshot)
-            self.holds.append(self._sound.ears.holds)
+            self.shared.air  # noqa: B018 with it comes the sound of all robots, who hear each other
         return self._sound
 
     @property
@@ -202,6 +199,13 @@ class Simulation:
     def begin_again(self) -> None:
         self._physics.forget(self.scene.payload)
         self._start(posture(self.model, self.scene.posture))
+
+    def begin_sound(self, air: Air) -> None:
+        from nao_sim_bridge.sound.sound_world import SoundWorld  # who is deaf and mute needs nothing of it
+
+        self._sound = SoundWorld(self.model, air, self.scene.seed, released=lambda: self.wake())
+        self._sound.begin(self.snapshot)
+        self.holds.append(self._sound.ears.holds)
 
     def act(self) -> Sequence[Callable[[], None]]:
         self.shared.guard.call(self.hands.tick)

@@ -41,11 +41,13 @@ class PoseTrack:
         self._columns = [model.joint_index[joint.name] for joint in self._neck]
         self._keep = keep
         self._poses: dict[int, tuple[Sequence[float], Sequence[float], tuple[float, ...]]] = {}
-        self._first = 0
+        self._first = self._began = 0
 
     def record(self, tick: int, snapshot: Snapshot) -> None:
         """Remember where the head is at a tick."""
         torso, angles = snapshot.torso, snapshot.positions
+        if not self._poses:
+            self._first = self._began = tick
         self._poses[tick] = (torso.position, torso.orientation, tuple([angles[column] for column in self._columns]))
         if tick - self._first >= self._keep:
             self._poses.pop(self._first, None)
@@ -56,13 +58,13 @@ class PoseTrack:
         return tick in self._poses
 
     def at(self, first: int, last: int) -> HeadPoses:
-        """Poses at the ticks `first` to `last`, this one included.
+        """Poses at the ticks `first` to `last`, this one included; before all of them the head was where it was first.
 
         Raises:
             BadValue: One of them is still to come, or forgotten.
         """
         try:
-            known = [self._poses[max(tick, 0)] for tick in range(first, last + 1)]
+            known = [self._poses[max(tick, self._began)] for tick in range(first, last + 1)]
         except KeyError as error:
             raise BadValue("tick", error.args[0], f"{self._first} to {self._first + len(self._poses) - 1}") from error
         rotations = _quaternion_matrices(np.array([pose[1] for pose in known]))
