@@ -125,6 +125,34 @@ def test_a_reset_takes_back_what_was_placed(nao):
     assert "box" not in nao.things and stumble(nao) == once
 
 
+def test_what_follows_a_saved_state_is_the_same_each_time():
+    with NaoSim(seed=2, noise=1.0) as nao:
+        stumble(nao)
+        nao.stop()
+        nao.step(0.5)
+        state = nao.save_state()
+        once = stumble(nao)
+        assert nao.time > 3.0
+        nao.stop()
+        for _ in range(2):
+            nao.restore_state(state)
+            assert stumble(nao) == once
+
+
+def test_a_state_is_refused_where_it_does_not_fit(nao):
+    motion = nao.move_angles("HeadYaw", 0.5, duration=1.0, wait=False)
+    with pytest.raises(NotAllowed, match="no motion"):
+        nao.save_state()
+    motion.wait()
+    state = nao.save_state()
+    nao.place("box", at=(0.6, 0.0, 0.05))
+    with pytest.raises(BadValue, match="nothing has come or gone"):
+        nao.restore_state(state)
+    nao.reset()
+    with pytest.raises(BadValue, match="since its last reset"):
+        nao.restore_state(state)
+
+
 def test_things_come_move_and_go(nao):
     assert nao.place("ball", at=(1.0, 0.0, 0.03)) == "ball"
     nao.place("ball", at=(1.0, 0.5, 0.03))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Callable, Sequence
+from typing import Callable, Mapping, Sequence
 
 import pybullet
 
@@ -70,12 +70,27 @@ class PhysicsWorld:
         """
         if self._kept is None or not self.bodies.restore():
             return False
+        self._put_back(self._kept)
+        return True
+
+    def _put_back(self, state: int) -> None:
         # The engine keeps what it knows of two bodies as long as they touch, and would begin with forces of before.
         for number, robot in enumerate(self.robots):
             away = (0.0, 0.0, AWAY * (number + 1))
             pybullet.resetBasePositionAndOrientation(robot, away, (0.0, 0.0, 0.0, 1.0), physicsClientId=self.client)
         pybullet.performCollisionDetection(physicsClientId=self.client)
-        pybullet.restoreState(stateId=self._kept, physicsClientId=self.client)
+        pybullet.restoreState(stateId=state, physicsClientId=self.client)
+
+    def save(self) -> tuple[int, Mapping[str, int]]:
+        """The state of all bodies, for `load`; the engine keeps it as long as the world."""
+        return pybullet.saveState(physicsClientId=self.client), dict(self.bodies.ids)
+
+    def load(self, saved: tuple[int, Mapping[str, int]]) -> bool:
+        """Put all bodies to where they were at `save`; False where something has come or gone since."""
+        state, ids = saved
+        if self.bodies.ids != ids:
+            return False
+        self._put_back(state)
         return True
 
     def inside(self, robot: int) -> dict[str, float]:

@@ -209,6 +209,11 @@ class SimulatedRobot:
             self._physics.drive_velocities(values)
         self._torques, self.driven = torques, True
 
+    def tell_motors(self) -> None:
+        """Tell the motors anew what they were told: the engine does not keep that with the state of the bodies."""
+        if not self.driven:
+            self._physics.drive(self.joints)
+
     def let_go(self) -> None:
         """Leave the joints to ALMotion's control again, where they are now."""
         if self.driven:

@@ -92,6 +92,11 @@ class Simulation:
         return self.shared.ticks
 
     @property
+    def physics(self) -> Physics:
+        """Its body in the engine."""
+        return self._physics
+
+    @property
     def sound(self) -> SoundWorld:
         """What sounds and what is heard; made when somebody first asks for it.
 

@@ -1,4 +1,4 @@
-"""How far readings are from the truth, read strictly from `config/sensors.json`."""
+"""How far readings are from the truth, read strictly from `config/sensor_noise.json`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from nao_sim_bridge.base.config import read_settings
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.paths import config_file
 
-FILE = "sensors.json"
+FILE = "sensor_noise.json"
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class FootNoise:
 
 @dataclass(frozen=True)
 class NoiseSettings:
-    """All of `sensors.json`: standard deviations, at a scale of 1."""
+    """All of `sensor_noise.json`: standard deviations, at a scale of 1."""
 
     joints: JointNoise
     inertial: InertialNoise
