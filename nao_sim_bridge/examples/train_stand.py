@@ -9,23 +9,22 @@ paid (Mania, Guy and Recht 2018, without their scaling of states). The rollouts 
 from __future__ import annotations
 
 import argparse
-from functools import lru_cache
 from pathlib import Path
 
 import gymnasium
 import numpy as np
 
-import nao_sim_bridge.envs  # noqa: F401 makes the environments known
 from nao_sim_bridge import NaoSim
 from nao_sim_bridge.sweep import sweep
 
-ENVIRONMENT = "NaoStand-v0"
+ENVIRONMENT = "nao_sim_bridge.envs:NaoStand-v0"
 
 
-@lru_cache(maxsize=None)
-def environment(push: float) -> gymnasium.Env:
-    """One for each process: building it takes longer than putting it back."""
-    return gymnasium.make(ENVIRONMENT, randomization={"push": push, "noise": 1.0, "delay": 0.01})
+def environment(push: float, made: dict[float, gymnasium.Env] = {}) -> gymnasium.Env:  # noqa: B006 one a process
+    """Building one takes longer than putting it back."""
+    if push not in made:
+        made[push] = gymnasium.make(ENVIRONMENT, randomization={"push": push, "noise": 1.0, "delay": 0.01})
+    return made[push]
 
 
 def rollout(policy: np.ndarray, seed: int, push: float) -> tuple[float, bool]:
@@ -53,6 +52,8 @@ def train(iterations: int, directions: int, push: float, workers: int | None) ->
         table = sweep(
             tried, seeds=[1000 + iteration], workers=workers, progress=False, way=list(range(directions)), sign=[1, -1]
         )
+        if table.errors:
+            raise RuntimeError(f"a rollout failed: {table.errors[0]['error']}")
         rewards = np.array([row["result"] for row in table.rows]).reshape(directions, 2)
         steps = (rewards[:, 0] - rewards[:, 1])[:, None, None] * ways
         policy = policy + rate / (rewards.std() + 1e-6) * steps.mean(axis=0)

@@ -126,8 +126,7 @@ def _by_ray(
             try:
                 yield ray.get(ready)
             except ray.exceptions.RayError as error:
-                first = str(error).strip().splitlines()[0]
-                yield {**run, SECONDS: 0.0, ERROR: f"{type(error).__name__}: {first}"}
+                yield {**run, SECONDS: 0.0, ERROR: str(error).strip().splitlines()[-1]}
     finally:
         if mine:
             ray.shutdown()
