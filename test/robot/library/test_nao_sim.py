@@ -175,6 +175,13 @@ def test_joints_that_are_driven_directly_do_what_the_mode_says(nao, mode, values
     assert nao.angles["HeadYaw"] == pytest.approx(0.4 if mode == "position" else 0.0, abs=0.02)
 
 
+def test_no_target_moves_a_joint_that_is_driven(nao):
+    stand = np.asarray(nao.commands)
+    nao.set_angles("HeadYaw", 1.0)
+    nao.drive(stand, ticks=120)
+    assert nao.angles["HeadYaw"] == pytest.approx(0.0, abs=0.02)
+
+
 def test_a_torque_turns_its_joint(nao):
     torques = np.zeros(26)
     torques[0] = 0.3
