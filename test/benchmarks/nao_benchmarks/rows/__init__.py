@@ -7,6 +7,7 @@ from .behaviors import BehaviorOverhead
 from .cameras import CameraFrame, CameraRate, PhysicsWithCameras
 from .chained_functions import ChainedFunctions
 from .goal_round_trip import GoalRoundTrip
+from .library import LIBRARY
 from .memory import Memory
 from .motion_latency import MotionStart, MotionStop
 from .plans import ParOfHundred, PerformOverhead
@@ -20,6 +21,7 @@ from .touch import TouchEvent
 # Those that compute come first, while nothing else runs yet.
 ROWS: tuple[Row, ...] = (
     *TICKS,
+    *LIBRARY,
     CameraFrame("camera_frame", "320x240"),
     CameraFrame("camera_frame_vga", "640x480"),
     RealTimeFactor(),
