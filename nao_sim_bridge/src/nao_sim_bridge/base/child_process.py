@@ -40,7 +40,6 @@ class ChildProcess:
 
     Args:
         module: Full name of the module that is run; its first argument is for `pipe_to_parent`.
-        arguments: What else it gets.
         name: What error texts call it, for example "picture process".
         failed: Class of the error for a process that died or is late.
         refused: Class of the error for a process that is well and answers with an error.
@@ -80,8 +79,6 @@ class ChildProcess:
         """Send a request.
 
         Args:
-            kind: Of the request.
-            content: Of the request.
             what: What it is about, for error texts; here and below.
 
         Raises:
@@ -149,7 +146,6 @@ class ChildProcess:
         self._life.close()
 
     def kill(self) -> None:
-        """End it by force."""
         self.leave()
         self.process.kill()
         self.process.wait()

@@ -39,11 +39,7 @@ def check_keys(
     """Return `entry` if it is a mapping that has every required key and none that is unknown.
 
     Args:
-        entry: What the file holds at this place.
         where: File and path of the entry, for the error text.
-        required: Keys that must be there.
-        optional: Keys that may be there.
-        error: Class of the error raised.
 
     Raises:
         ConfigError: Naming the offending keys and the closest allowed ones.
@@ -75,7 +71,6 @@ def section(cls: type[T], entry: Any, where: str, notes: Sequence[str] = ()) -> 
 
     Args:
         cls: The dataclass; a field that is one itself is a section of the entry, one that is a tuple is a list there.
-        entry: What the file holds at this place.
         where: File and path of the entry, for the error text.
         notes: Key that the entry may have for its readers only, then that of its sections.
 

@@ -28,7 +28,6 @@ def check_finite(what: str, numbers: Iterable[float]) -> None:
     """Refuse numbers of which one is not finite.
 
     Args:
-        what: What they are.
         numbers: As they are about to go to the engine, or have just come from it.
 
     Raises:

@@ -50,7 +50,6 @@ class Guard:
 
         Args:
             culprit: What raised it: a function, or a text that names it.
-            error: It.
         """
         name = culprit if isinstance(culprit, str) else name_of(culprit)
         with self._lock:

@@ -40,13 +40,11 @@ class Kind:
         return self.lowest == -math.inf and self.highest == math.inf
 
     def fits(self, number: float) -> bool:
-        """Whether a number is within the bounds."""
         if self.lowest <= number <= self.highest:
             return number == 0.0 or abs(number) >= self.smallest
         return self.anything or (self.infinite and number == math.inf)
 
     def __str__(self) -> str:
-        """The bounds as a person reads them."""
         unit = "" if self.unit == "none" else f" {self.unit}"
         least = f", and 0 or at least {self.smallest:g} away from it" if self.smallest else ""
         endless = ", or infinity" if self.infinite else ""
@@ -55,7 +53,6 @@ class Kind:
 
 @lru_cache(maxsize=None)
 def kinds() -> Mapping[str, Kind]:
-    """All kinds, by name."""
     fields = ("lowest", "highest", "smallest", "infinite")
     return {
         name: Kind(name, **check_keys(entry, f"{FILE}: kinds.{name}", ("unit",), fields))
@@ -99,7 +96,6 @@ def check_world(content: Any, where: str) -> None:
     """Look at every number of a world file, or of a part of it.
 
     Args:
-        content: What the file holds.
         where: Its place, for error texts.
 
     Raises:
@@ -118,11 +114,6 @@ def check_world(content: Any, where: str) -> None:
 
 def check(value: Any, field: str, wanted: Kind) -> None:
     """Look at every number in a value, also in lists and mappings.
-
-    Args:
-        value: From outside.
-        field: What it is called.
-        wanted: What its numbers are.
 
     Raises:
         BadValue: One of them is out of bounds.

@@ -13,7 +13,6 @@ def config_file(name: str) -> Path:
 
 
 def world_directory() -> Path:
-    """Directory of the worlds that come with the package."""
     return _PACKAGE / "worlds"
 
 

@@ -113,7 +113,6 @@ def world_of_client(name: str, files: ClientFiles, first: str) -> str:
 
     Args:
         name: Of the world, or path of its file, in full or from one of these folders.
-        files: Files of the client.
         first: The world in which the simulator was started, which may be elsewhere.
 
     Raises:

@@ -58,5 +58,4 @@ def from_roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Quaternion:
 
 
 def cross(a: Sequence[float], b: Sequence[float]) -> Vector3:
-    """Cross product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

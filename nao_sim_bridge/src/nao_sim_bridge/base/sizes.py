@@ -251,7 +251,6 @@ def require_few(field: str, count: int, what: str) -> None:
     """See that a list is not too long.
 
     Args:
-        field: Name of what holds it.
         count: How long it is, with what it is added to.
         what: Which of `ListSizes` bounds it.
 

@@ -23,8 +23,6 @@ class Task:
         killed: True when it ended by `kill` and not by itself.
 
     Args:
-        name: See above.
-        task_id: See above.
         on_kill: Called in the simulation thread when the task is killed, to drop the work.
         ask: Called with the task when another thread requests its end.
         guard: Calls what is called at its end; None for one of its own.

@@ -49,7 +49,6 @@ class InstalledBehaviors:
 
     @property
     def all(self) -> dict[str, Behavior]:
-        """All of them, sorted by name."""
         return dict(sorted({**self.system, **self.user}.items()))
 
     def knows(self, name: str) -> bool:

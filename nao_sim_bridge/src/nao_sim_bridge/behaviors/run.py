@@ -18,11 +18,6 @@ class BehaviorRun:
     Attributes:
         behavior: Which it is.
         task: Ends with it.
-
-    Args:
-        behavior: See above.
-        task: See above.
-        leds: Of the robot.
     """
 
     def __init__(self, behavior: Behavior, task: Task, leds: LedBank) -> None:
@@ -38,7 +33,6 @@ class BehaviorRun:
 
     @property
     def over(self) -> bool:
-        """Whether it has ended."""
         return self._stopped or self.task.finished
 
     def watch(self, task: Task, end: Callable[[], object] | None = None, needed: bool = True) -> Task:
@@ -68,7 +62,6 @@ class BehaviorRun:
         """As `watch`, for a command whose result may be a further task, and so on.
 
         Args:
-            command: What was asked for.
             settled: Called at its end with the error or None, and with the result if there is one.
 
         Returns:

@@ -101,7 +101,6 @@ class _Xar:
         """What a box does.
 
         Args:
-            box: Which.
             text: That it gets from the box before it.
             depth: In how many others it is.
         """

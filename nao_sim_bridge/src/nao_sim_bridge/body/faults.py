@@ -43,7 +43,6 @@ class Faults:
         known: Names of all devices that can break.
 
     Args:
-        model: The robot.
         touch_names: Names of its touch sensors, bumpers and buttons.
     """
 

@@ -31,7 +31,6 @@ class HandPath:
         lifts: How far what is felt of the robot is over each sensor, m.
 
     Args:
-        model: The robot.
         names: Of sensors or of their events.
 
     Raises:

@@ -49,10 +49,6 @@ class LedBank:
 
     Attributes:
         values: (89,) intensities 0..1 in the order of the LED layout's device names.
-
-    Args:
-        count: Number of devices.
-        task_ids: Source of the tasks' numbers.
     """
 
     def __init__(self, count: int, task_ids: TaskIds) -> None:
@@ -87,7 +83,6 @@ class LedBank:
         return task
 
     def busy(self, indices: Iterable[int]) -> bool:
-        """Whether an animation runs on one of the devices."""
         return any(index in self._fades for index in indices)
 
     def tick(self, now: float) -> None:

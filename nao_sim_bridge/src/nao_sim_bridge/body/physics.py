@@ -54,13 +54,10 @@ class Physics:
         links: Link name to PyBullet's index; the torso is -1.
 
     Args:
-        model: The robot.
         world: What else there is; or a world that there is already, and that others may be in.
-        settings: Time step, gains, friction.
         angles: (26,) joint angles to start with, rad (hands 0..1).
         pitch: Of the torso at the start, rad, for a robot that is not on its feet; see `place`.
         payload: Mass that the torso carries besides its own, at its centre of mass, kg.
-        place: Where on the floor it starts.
     """
 
     def __init__(
@@ -104,11 +101,7 @@ class Physics:
         self.restart(angles, pitch)
 
     def forget(self, payload: float) -> None:
-        """The world was put to its start: what the motors were told before counts no more.
-
-        Args:
-            payload: As for the constructor.
-        """
+        """The world was put to its start: what the motors were told before counts no more."""
         self._forget_efforts()
         self._carry(payload)
 
@@ -206,7 +199,6 @@ class Physics:
         )
 
     def scale_friction(self, share: float) -> None:
-        """Let body and soles have this share of their friction."""
         contact = self._settings.contact
         scaled = replace(
             contact, body_friction=share * contact.body_friction, sole_friction=share * contact.sole_friction

@@ -25,10 +25,6 @@ class PhysicsWorld:
         client: PyBullet's physics client.
         bodies: The floor and the things of the world.
         robots: PyBullet's body ids of the robots.
-
-    Args:
-        world: What there is.
-        settings: Time step, gravity.
     """
 
     def __init__(self, world: World, settings: Settings) -> None:

@@ -23,8 +23,6 @@ def pointed_at(model: RobotModel, physics: Physics, eye: Vector3, direction: Vec
     """The sensor that is seen nearest to a line of sight; none when nothing is near.
 
     Args:
-        model: The robot.
-        physics: Where it is.
         eye: Where the line begins, m, in world.
         direction: Unit vector, in world.
     """

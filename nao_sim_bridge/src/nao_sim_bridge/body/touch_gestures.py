@@ -80,7 +80,6 @@ class GestureBook:
         self._names = {gesture: name for name, gesture in GESTURES.items()}
 
     def all(self) -> dict[str, List[str]]:
-        """The sequence of each gesture."""
         return {name: list(gesture) for gesture, name in self._names.items()}
 
     def name_of(self, sequence: Iterable[str]) -> str | None:
@@ -106,7 +105,6 @@ class GestureRecogniser:
     """Finds gestures in what the sensors of one head feel: feed it with every reading.
 
     Args:
-        book: What it knows.
         times: May be changed at any moment.
     """
 
@@ -124,7 +122,6 @@ class GestureRecogniser:
         """What there is to tell.
 
         Args:
-            pattern: What is touched now.
             now: Simulated time, s.
         """
         if pattern != self._raw:

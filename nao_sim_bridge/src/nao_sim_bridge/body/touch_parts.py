@@ -22,11 +22,7 @@ LEAST_STIFFNESS = 0.5
 
 
 class LimbTouch:
-    """Which limbs somebody holds: feed it with every snapshot.
-
-    Args:
-        model: The robot.
-    """
+    """Which limbs somebody holds: feed it with every snapshot."""
 
     def __init__(self, model: RobotModel) -> None:
         self._joints: Dict[str, Tuple[int, ...]] = {

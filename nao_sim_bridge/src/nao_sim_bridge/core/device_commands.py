@@ -109,7 +109,6 @@ def index_of(robot: SimulatedRobot, device: str) -> int:
 
 
 def actuators(robot: SimulatedRobot) -> list[str]:
-    """Names of all actuators that take commands."""
     joints = [joint + suffix for joint in robot.model.joint_index for suffix in (POSITION, HARDNESS)]
     return [*joints, *robot.led_layout.devices]
 

@@ -93,7 +93,6 @@ class DiagnosisEffect:
         }
 
     def _reason(self, bad: set, broken: set) -> str:
-        """Why the robot must not wake up."""
         if self._exhausted:
             return EMPTY
         if LEGS not in bad:

@@ -69,12 +69,7 @@ class _Hand:
 
 
 class Hands:
-    """All hands that touch one robot. Simulation thread only.
-
-    Args:
-        model: The robot.
-        task_ids: Source of the tasks' numbers.
-    """
+    """All hands that touch one robot. Simulation thread only."""
 
     def __init__(self, model: RobotModel, task_ids: TaskIds) -> None:
         self._model = model

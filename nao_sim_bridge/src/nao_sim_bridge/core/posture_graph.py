@@ -39,11 +39,8 @@ def path_to(
 
     Args:
         goal: Name of the posture.
-        seen: What the robot is in.
         angles: (26,) command angles, rad.
         fraction: Share of the joints' top speeds for direct moves, above 0 to 1.
-        model: The robot.
-        moves: The moves with key frames there are.
     """
     start = _Place(seen, angles)
     best: dict[str, float] = {}

@@ -96,11 +96,9 @@ class Move:
 
     @property
     def goal_family(self) -> str:
-        """Family of the posture it ends in."""
         return load_postures().by_name[self.goal].family
 
     def __str__(self) -> str:
-        """As logs name it."""
         return f"{self.start} -> {self.goal}"
 
 
@@ -148,7 +146,6 @@ def direct(model: RobotModel, start: str, goal: str, angles: Sequence[float], fr
     """The straight move to a posture.
 
     Args:
-        model: The robot.
         start: Posture or family it begins in.
         goal: Posture it ends in.
         angles: (26,) command angles it begins at, rad.

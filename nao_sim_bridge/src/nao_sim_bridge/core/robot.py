@@ -70,13 +70,7 @@ class SimulatedRobot:
     Its clock starts at 0 with it: after a reset equal commands must meet equal times, to the last bit.
 
     Args:
-        model: The robot.
-        leds: Layout of its LEDs.
-        settings: Physics settings.
-        physics: The world with the robot in it.
         angles: (26,) joint angles it was placed with, rad (hands 0..1).
-        scene: Seed of the random numbers, noise and delay of the sensors.
-        task_ids: Source of the tasks' numbers.
     """
 
     def __init__(

@@ -20,10 +20,6 @@ class RobotRunner:
 
     Attributes:
         thread: Of the world.
-
-    Args:
-        runner: Of the world.
-        simulation: The robot.
     """
 
     def __init__(self, runner: SimulationRunner, simulation: Simulation) -> None:

@@ -97,7 +97,6 @@ class SimulationRunner:
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Start the thread."""
         self._thread.start()
 
     def stop(self, timeout: float = 5.0) -> None:

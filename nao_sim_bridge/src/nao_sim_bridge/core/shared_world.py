@@ -81,7 +81,6 @@ class SharedWorld:
             who lets time pass.
 
     Args:
-        scene: World, version of all robots, friction.
         settings: None for those of the file.
         renderer: What draws: "auto", "opengl" or "builtin", see `Renderer`; or one that has drawn this world before.
     """

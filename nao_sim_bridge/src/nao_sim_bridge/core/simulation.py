@@ -46,7 +46,6 @@ class Simulation:
             threads without which a fast run would give other results. Asked in the simulation thread.
 
     Args:
-        scene: World, robot, posture, seed.
         settings: Of the physics, for a world of its own; None for those of the file.
         renderer: What draws, for a world of its own; see `SharedWorld`.
         shared: A world that others are in, too; None for one of its own.
@@ -88,7 +87,6 @@ class Simulation:
 
     @property
     def ticks(self) -> int:
-        """Ticks since the start."""
         return self.shared.ticks
 
     @property

@@ -45,8 +45,6 @@ class Things:
     A reset puts everything to where the world file says: what was placed goes, what was removed is back.
 
     Args:
-        world: The world.
-        task_ids: Source of the tasks' numbers.
         now: Tells simulated time, s.
         changed: Called when something was placed, moved at once or removed.
     """

@@ -24,9 +24,6 @@ class WorldSounds:
 
     Args:
         simulation: Whose world it is; nothing is added to its ticks when the world is silent.
-        world: That world.
-        speak: Says texts.
-        read: Reads files.
 
     Raises:
         WorldError: A file cannot be read, or a text cannot be said.

@@ -105,7 +105,6 @@ def _seen_shape(entry: Any, where: str, materials: Mapping[str, Any]) -> Shape:
 
 
 def _lamp_figures(tables: Any, lamps: tuple[Lamp, ...]) -> list[LampFigure]:
-    """A figure for each lamp of the layout."""
     where = f"{FILE}: lamps"
     check_keys(tables, where, ("eye", "ear", "brain", "chest", "foot"))
     figures = []

@@ -37,7 +37,6 @@ class Coupling:
 
 
 def couplings(model: RobotModel) -> tuple[Coupling, ...]:
-    """Every coupling of the robot, in the order of the joints."""
     index = model.joint_index
     found = [
         Coupling(index[limit.joint], index[limit.by_joint], [tuple(row) for row in limit.table.tolist()])

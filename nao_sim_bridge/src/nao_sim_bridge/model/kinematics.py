@@ -94,7 +94,6 @@ def link_transforms(model: RobotModel, angles: Sequence[float]) -> dict[str, np.
     """Poses of the 25 links in the torso frame.
 
     Args:
-        model: The robot.
         angles: (26,) in Body order, rad; hands do not matter.
 
     Returns:
@@ -112,7 +111,6 @@ class LinkPoses(Dict[str, np.ndarray]):
     """As `link_transforms`, each pose worked out when it is asked for; to be looked up, not gone through.
 
     Args:
-        model: The robot.
         angles: (26,) in Body order, rad; hands do not matter.
     """
 
@@ -134,7 +132,6 @@ def finger_transforms(model: RobotModel, opening: float) -> dict[str, np.ndarray
     """Poses of the eight phalanges of a hand in the frame of its wrist link.
 
     Args:
-        model: The robot.
         opening: Hand value, 0 closed to 1 open.
 
     Returns:

@@ -204,7 +204,6 @@ def _eye_short_name(side: str, index: int) -> str:
 
 
 def _lamps(short_names: Mapping[str, tuple[int, ...]]) -> list[Lamp]:
-    """All lamps: eyes, ears, head, chest, feet."""
     blue, white = (0.1, 0.35, 1.0), (1.0, 1.0, 1.0)
     lamps = []
     for side in SIDES:

@@ -63,7 +63,6 @@ def read_place(entry: Any, where: str, extra: Iterable[str] = (), parent: str = 
 
 
 def read_places(entries: list[Any], where: str) -> tuple[Place, ...]:
-    """A list of frames."""
     return tuple(read_place(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
 
 
@@ -75,7 +74,6 @@ class ModelReader:
         self.version = version
 
     def read(self) -> RobotModel:
-        """The whole model."""
         tables = self.tables
         joints = self.joints()
         links = self.links()
@@ -210,12 +208,10 @@ class ModelReader:
         return limits
 
     def fsr(self) -> tuple[Place, ...]:
-        """Foot pressure sensors."""
         section = check_keys(self.tables["fsr"], at("fsr"), ("frames",), ("range_N", "unit_in_ALMemory", "note"))
         return read_places(section["frames"], at("fsr.frames"))
 
     def sonars(self) -> tuple[Place, ...]:
-        """One frame a side."""
         section = check_keys(
             self.tables["sonars"],
             at("sonars"),
@@ -246,7 +242,6 @@ class ModelReader:
         return tuple(cameras)
 
     def fingers(self) -> tuple[Finger, ...]:
-        """Fingers and thumb of a hand."""
         section = check_keys(
             self.tables["fingers"],
             at("fingers"),
@@ -274,7 +269,6 @@ class ModelReader:
         return tuple(fingers)
 
     def simulated_hand(self) -> SimulatedHand:
-        """The finger body of the physics."""
         where = at("simulated_hand")
         keys = "note origin_xyz_m axis mass_kg com_xyz_m inertia_kg_m2 travel_rad phalanx_mass_kg".split()
         section = check_keys(self.tables["simulated_hand"], where, keys)

@@ -255,11 +255,9 @@ class RobotModel:
     total_mass: float
 
     def joint(self, name: str) -> Joint:
-        """The joint of that name."""
         return self.joints[self.joint_index[name]]
 
     def link(self, name: str) -> Link:
-        """The link of that name."""
         return next(link for link in self.links if link.name == name)
 
     def limits_array(self) -> np.ndarray:

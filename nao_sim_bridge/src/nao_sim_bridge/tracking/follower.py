@@ -65,9 +65,6 @@ class Follower:
         approach: Walks to the place.
         effector: Which arms point at the place.
         search_share: Of the head's velocity while it searches.
-
-    Args:
-        simulation: Whose robot it is.
     """
 
     def __init__(self, simulation: Any) -> None:
@@ -88,7 +85,6 @@ class Follower:
 
     @property
     def mode(self) -> Mode:
-        """What follows."""
         return self._mode
 
     @mode.setter

@@ -78,7 +78,6 @@ def head_angles(model: RobotModel, point: Point, camera: int = 0) -> Tuple[float
     """HeadYaw and HeadPitch, rad within their limits, that bring a place into the middle of a camera's picture.
 
     Args:
-        model: The robot.
         point: In the frame of the torso, m.
         camera: Index, 0 top, 1 bottom.
     """
@@ -100,7 +99,6 @@ def arm_angles(model: RobotModel, arm: str, point: Point) -> dict[str, float]:
     """Angles of an arm, rad within the limits, that points at a place.
 
     Args:
-        model: The robot.
         arm: "LArm" or "RArm".
         point: In the frame of the torso, m.
     """

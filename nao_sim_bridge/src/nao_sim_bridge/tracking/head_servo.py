@@ -19,11 +19,6 @@ class HeadServo:
     Attributes:
         velocity: rad/s, at most.
         acceleration: rad/s2, at most.
-
-    Args:
-        simulation: Whose robot it is.
-        velocity: See above.
-        acceleration: See above.
     """
 
     def __init__(self, simulation: Any, velocity: float, acceleration: float) -> None:
@@ -43,7 +38,6 @@ class HeadServo:
 
     @property
     def limp(self) -> bool:
-        """Whether the head cannot move."""
         stiffnesses = self._simulation.robot.joints.stiffnesses
         return any(stiffnesses[i] == 0.0 for i in self._indices)
 

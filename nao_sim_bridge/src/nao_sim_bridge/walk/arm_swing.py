@@ -23,9 +23,6 @@ class ArmSwing:
         enabled: Name of each arm to whether it may swing.
 
     Args:
-        model: The robot.
-        joints: Its commands.
-        settings: How far arms swing.
         stride: How far the left foot is ahead of the right one, m; None while the robot does not walk.
     """
 

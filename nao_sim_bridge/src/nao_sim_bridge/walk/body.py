@@ -19,9 +19,6 @@ class WalkingBody:
     Attributes:
         legs: Their kinematics.
         mass: Of the robot, kg.
-
-    Args:
-        model: The robot.
     """
 
     def __init__(self, model: RobotModel) -> None:
@@ -49,7 +46,6 @@ class WalkingBody:
 
         Args:
             upper: As `upper_moment`.
-            pose: Of the legs.
         """
         hip, left, right = pose
         l_moment, l_ankle, l_foot = self.legs.state(LEFT, hip, left)

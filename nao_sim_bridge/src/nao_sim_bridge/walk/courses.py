@@ -46,7 +46,6 @@ class Course(ABC):
         haste: Share of its speed that a course may use, 0..1: a body that is off its plan comes back best on the spot.
 
     Args:
-        settings: Of the walk.
         rate: At which the robot walks already.
     """
 
@@ -89,7 +88,6 @@ class Course(ABC):
         Args:
             support: The foot that carries.
             side: Of the foot that moves next.
-            count: How many are wanted.
         """
         steps: list[Step] = []
         state = self._state

@@ -24,8 +24,6 @@ class WalkFeedback:
         ankle: What the ankles of legs that carry get, roll and pitch, rad.
 
     Args:
-        settings: How strong it answers.
-        body: The robot.
         omega: Frequency of the pendulum, rad/s.
     """
 

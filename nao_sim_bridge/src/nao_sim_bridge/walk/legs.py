@@ -44,11 +44,7 @@ class Sole:
 
 
 class Legs:
-    """Leg kinematics of one robot model.
-
-    Args:
-        model: The robot.
-    """
+    """Leg kinematics of one robot model."""
 
     def __init__(self, model: RobotModel) -> None:
         joints = {joint.name: joint for joint in model.joints}
@@ -82,9 +78,7 @@ class Legs:
 
         Args:
             torso: Position of the torso, m.
-            rotation: Of the torso.
             left: Left sole, in the same frame as the torso.
-            right: Right sole.
             hip_yaw: HipYawPitch to begin with, rad: that of the last tick.
 
         Returns:

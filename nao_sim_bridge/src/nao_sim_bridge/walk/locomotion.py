@@ -65,13 +65,7 @@ class Locomotion:
             the place of the obstacle in the world of the robot's odometry, m, if one was the cause.
 
     Args:
-        model: The robot.
-        settings: Gravity.
-        joints: Its commands.
-        motion: What moves its joints.
         stability: What keeps it on its feet while it does not walk, and watches for falls.
-        reflexes: Which protections are on.
-        task_ids: Source of the tasks' numbers.
         snapshot: What was sensed at the last tick; None before the first one.
     """
 
@@ -150,7 +144,6 @@ class Locomotion:
 
         Args:
             points: The last one is where the walk ends.
-            gait: How.
             time: Take so long at least, s.
 
         Returns:

@@ -29,7 +29,6 @@ class PendulumObserver:
         return self.place + self.speed / self._omega
 
     def reset(self, place: float, speed: float) -> None:
-        """Start anew."""
         self.place, self.speed = place, speed
 
     def update(self, measured: float, pressure: float, dt: float) -> None:

@@ -54,10 +54,7 @@ class WalkPlan:
         waited: How long the foot in the air has been waited for, s.
 
     Args:
-        settings: Of the walk.
         gravity: m/s2.
-        feet: Where they stand.
-        com: Where the centre of mass is.
     """
 
     def __init__(self, settings: WalkSettings, gravity: float, feet: Mapping[int, FootPose], com: Point) -> None:
@@ -95,7 +92,6 @@ class WalkPlan:
         return min(max((self.time - 0.5 * double) / (self.step.period - double), 0.0), 1.0)
 
     def foot(self, side: int) -> FootInAir:
-        """Where a foot is to be now."""
         if self.phase is not Phase.STEP or self.step is None or side != self.step.side:
             return FootInAir(self.feet[side], 0.0)
         settings = self._settings

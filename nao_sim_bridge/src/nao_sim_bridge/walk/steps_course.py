@@ -30,7 +30,6 @@ class StepsCourse(Course):
     """Makes steps that somebody else has planned; more can be added.
 
     Args:
-        settings: Of the walk.
         gait: Their height.
         placements: Where they go; clipped to what the legs can step.
     """

@@ -24,8 +24,6 @@ class TargetCourse(Course):
     """Goes to a place in the world, through others.
 
     Args:
-        settings: Of the walk.
-        gait: How it steps.
         goals: Poses of the robot in the world, the last one is where it ends.
         steps: Take so many at least; fewer would be faster than asked for.
         rate: At which the robot walks already.

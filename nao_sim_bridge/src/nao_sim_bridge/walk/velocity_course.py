@@ -38,8 +38,6 @@ class VelocityCourse(Course):
     """Goes on at a velocity until it is told to end.
 
     Args:
-        settings: Of the walk.
-        gait: How it steps.
         wanted: Way in one step.
         rate: At which the robot walks already.
     """

@@ -37,12 +37,7 @@ class WalkGuard:
     """Looks after one robot's walks.
 
     Args:
-        model: The robot.
         gravity: m/s2.
-        joints: Their stiffnesses.
-        legs: Indices of the joints that walk.
-        stability: Tells of falls.
-        reflexes: Which protections are on.
     """
 
     def __init__(
@@ -64,7 +59,6 @@ class WalkGuard:
         self._echoes: Sequence[float] = ()
 
     def begin(self) -> None:
-        """A walk begins."""
         self._lifted = 0.0
 
     def hindrance(self, now: Snapshot) -> str:

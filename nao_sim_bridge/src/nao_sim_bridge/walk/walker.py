@@ -72,8 +72,6 @@ class Walker:
         feedback: What is done about where they are not.
 
     Args:
-        body: The robot.
-        settings: Of the walk.
         gravity: m/s2.
         commands: (26,) commanded angles to start from, rad.
     """

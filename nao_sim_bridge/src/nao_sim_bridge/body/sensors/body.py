@@ -21,8 +21,6 @@ class BodySensors:
         motors: What the motors draw.
 
     Args:
-        model: The robot.
-        settings: Voltage and gear efficiency.
         links: URDF link name to PyBullet's link index; a name that is not there is the torso.
     """
 

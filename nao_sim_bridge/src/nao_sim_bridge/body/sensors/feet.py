@@ -18,7 +18,6 @@ class FootSensors:
     rectangle loads the nearest edge.
 
     Args:
-        model: The robot.
         side: "L" or "R".
     """
 

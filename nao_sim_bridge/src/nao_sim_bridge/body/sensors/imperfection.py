@@ -122,7 +122,6 @@ class Imperfection:
 
     Args:
         noise: What spoils its readings; None for a robot without noise.
-        delay: How late they arrive.
     """
 
     def __init__(self, noise: Noise | None, delay: Delay) -> None:

@@ -33,10 +33,6 @@ class Motors:
 
     Attributes:
         heat_capacities: (26,) J/K.
-
-    Args:
-        model: The robot.
-        settings: Voltage, gear efficiency, heat capacities.
     """
 
     def __init__(self, model: RobotModel, settings: Settings) -> None:

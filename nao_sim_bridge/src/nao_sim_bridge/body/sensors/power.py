@@ -22,7 +22,6 @@ class PowerSystem:
 
     Args:
         heat_capacities: (26,) of the motors, J/K.
-        settings: Heat and charge figures.
         tells_plugged: Whether the battery's board reports that a charger is there.
     """
 

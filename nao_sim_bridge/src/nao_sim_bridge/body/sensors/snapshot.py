@@ -94,12 +94,10 @@ class Snapshot:
 
     @cached_property
     def left_foot(self) -> FootForces:
-        """Force sensors of the left foot."""
         return self.sensors.foot_forces("L", self._presses)
 
     @cached_property
     def right_foot(self) -> FootForces:
-        """Force sensors of the right foot."""
         return self.sensors.foot_forces("R", self._presses)
 
     @cached_property

@@ -74,10 +74,6 @@ class Sonars:
 
     Attributes:
         echoes: Of each sonar, distances in m, nearest first; a new tuple with each measurement.
-
-    Args:
-        model: The robot.
-        surroundings: What is around it.
     """
 
     def __init__(self, model: RobotModel, surroundings: Surroundings) -> None:

@@ -21,7 +21,6 @@ class PhysicalSurroundings:
     """The other bodies of the world. Simulation thread only.
 
     Args:
-        client: PyBullet's physics client.
         robot: Body id of the robot, which does not hear itself.
     """
 

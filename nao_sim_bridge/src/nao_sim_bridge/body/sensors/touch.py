@@ -24,7 +24,6 @@ class TouchSensors:
     """All touch sensors of the robot.
 
     Args:
-        model: The robot.
         link_of: Name of a model link to PyBullet's link index.
     """
 
@@ -37,7 +36,6 @@ class TouchSensors:
             self._felt[link_of(link)] = _toes(places) if bumpers else _pads(places)
 
     def read(self, presses: Presses) -> frozenset[str]:
-        """Names of the pressed sensors."""
         return frozenset(
             name
             for link in self._felt.keys() & presses.keys()

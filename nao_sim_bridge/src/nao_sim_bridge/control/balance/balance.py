@@ -117,7 +117,6 @@ class Balance:
         acting: Whether there are corrections now.
 
     Args:
-        settings: How strong it answers.
         reader: Tells where the body belongs with the commanded angles.
     """
 
@@ -133,7 +132,6 @@ class Balance:
 
     @property
     def acting(self) -> bool:
-        """Whether there are corrections now."""
         return any(self._values)
 
     def release(self) -> None:
@@ -149,7 +147,6 @@ class Balance:
         """What to add to joint commands at this tick, by joint index in rad.
 
         Args:
-            motion: How the body moves over its feet.
             commands: (26,) commanded angles, rad: where it belongs.
             dt: Of the tick, s.
         """

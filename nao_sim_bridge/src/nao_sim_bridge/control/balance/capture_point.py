@@ -45,7 +45,6 @@ class BodyTracker:
     """Follows the body's motion from encoders and inertial unit.
 
     Args:
-        model: The robot.
         gravity: m/s2.
         smoothing: Share of the old velocity in the new one at each tick, 0..1.
     """
@@ -65,7 +64,6 @@ class BodyTracker:
         """The motion of now.
 
         Args:
-            snapshot: Of this tick.
             left_share: How much of the weight the left foot carries, 0..1: the velocity is against that foot.
             dt: Time since the last call, s.
         """

@@ -101,8 +101,6 @@ class FallManager:
         direction: Unit vector of the last fall in the level frame (X where the torso heads).
 
     Args:
-        model: The robot.
-        settings: When and how it acts.
         reader: Tells where the soles are.
         motion: Whose tasks end when the robot falls, and what moves the arms.
     """
@@ -135,7 +133,6 @@ class FallManager:
 
     @property
     def falling(self) -> bool:
-        """Whether a fall goes on."""
         return self.state is FallState.FALLING
 
     def rest(self) -> None:
@@ -162,8 +159,6 @@ class FallManager:
         """Look whether the robot that it watches begins to fall.
 
         Args:
-            body: How the body moves over the feet.
-            snapshot: Of this tick.
             loaded: Whether the left and the right foot carry.
         """
         if self.state is not FallState.WATCHING:
@@ -181,7 +176,6 @@ class FallManager:
 
         Args:
             off: How far ahead and to the left of where it should be the body is heading, m.
-            snapshot: Of this tick.
         """
         if self.state is not FallState.WATCHING:
             return

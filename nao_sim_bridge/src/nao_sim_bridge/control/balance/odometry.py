@@ -27,7 +27,6 @@ class Odometry:
         torso: Pose of the torso in the world of odometry.
 
     Args:
-        model: The robot.
         ankles: PyBullet's index of the left and the right foot.
         positions: (26,) joint angles at the start, rad.
         tilt: Roll, pitch and yaw at the start by the inertial unit, rad.
@@ -55,7 +54,6 @@ class Odometry:
         Args:
             positions: (26,) measured joint angles, rad.
             tilt: Roll, pitch and yaw of the torso by the inertial unit, rad.
-            contacts: What presses on the robot.
 
         Returns:
             Pose of the torso in the world of odometry.

@@ -48,7 +48,6 @@ class PushDetector:
         """The push that has ended by now, if one has.
 
         Args:
-            snapshot: Of this tick.
             stands_still: Whether the robot is on its feet and nothing moves its joints; asked only when needed.
         """
         x, y, _ = snapshot.linear_velocity

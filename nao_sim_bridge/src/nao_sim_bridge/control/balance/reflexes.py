@@ -41,9 +41,6 @@ class Reflexes:
         switches: Of `SWITCHES`, those of whoever walks among them.
 
     Args:
-        model: The robot.
-        joints: Its commands.
-        motion: Its motion.
         snapshot: What was sensed at the last tick; None before the first one.
     """
 

@@ -41,12 +41,6 @@ class Stability:
         walk: Set by who walks, and takes the place of balance: a walk keeps its feet under the body by itself. The
             fall manager goes on watching, and asks it how far the body is off.
         on_feet: Whether the weight is on the feet.
-
-    Args:
-        model: The robot.
-        settings: Gravity.
-        joints: Which are corrected.
-        motion: What else moves the joints.
     """
 
     def __init__(self, model: RobotModel, settings: Settings, joints: JointCommands, motion: MotionEngine) -> None:

@@ -60,7 +60,6 @@ class MassCarrier:
         mass: Of all of them, kg.
 
     Args:
-        model: The robot.
         tips: Last links of the limbs, see `limb_tips`.
     """
 
@@ -81,17 +80,12 @@ class MassCarrier:
 
 
 def limb_tips(model: RobotModel) -> list[str]:
-    """The last links of all limbs."""
     parents = {link.parent_joint and model.joint(link.parent_joint).parent_link for link in model.links}
     return [link.name for link in model.links if link.name not in parents]
 
 
 class StanceReader:
-    """Makes stances of one robot.
-
-    Args:
-        model: The robot.
-    """
+    """Makes stances of one robot."""
 
     def __init__(self, model: RobotModel) -> None:
         self._masses = MassCarrier(model, limb_tips(model))

@@ -74,7 +74,6 @@ class MotionEngine:
 
     Args:
         joints: Where commands and stiffnesses go.
-        task_ids: Source of the tasks' numbers.
     """
 
     def __init__(self, joints: JointCommands, task_ids: TaskIds) -> None:
@@ -148,7 +147,6 @@ class MotionEngine:
             self.corrector.stop(wanted)
 
     def kill_all(self) -> None:
-        """Kill every task and drop every target."""
         for job in list(self._jobs):
             job.task.kill()
         self._targets.clear()
@@ -194,7 +192,6 @@ class MotionEngine:
         self._finish_jobs(now)
 
     def _moved(self) -> AbstractSet[int]:
-        """Joints that tasks and targets move."""
         return {*self._targets, *(i for job in self._jobs if not job.stiffness for i in job.indices)}
 
     def _command(self, wanted: dict[int, float], dt: float) -> None:

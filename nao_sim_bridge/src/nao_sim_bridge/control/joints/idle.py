@@ -68,8 +68,6 @@ class Idle:
         suspended: True while the robot falls or gets up: it is left alone.
 
     Args:
-        model: The robot.
-        joints: Its commands.
         reference: Name of the posture that a robot like now goes back to, None to stay as it is.
         stands: Whether the robot stands now.
     """
@@ -104,7 +102,6 @@ class Idle:
         self.active = any(chain.mode is not Mode.NOTHING for chain in self._chains.values())
 
     def has_mode(self, group: str, mode: Mode) -> bool:
-        """Whether all chains of a group have this mode."""
         return all(self._chains[name].mode is mode for name in GROUPS[group])
 
     def set_breath(self, bpm: float, amplitude: float) -> None:

@@ -43,9 +43,6 @@ class SelfCollision:
     Attributes:
         enabled: Arms that are kept apart from the rest.
         suspended: True while a move runs that has been tried with its contacts; nothing is kept apart then.
-
-    Args:
-        model: The robot.
     """
 
     def __init__(self, model: RobotModel) -> None:

@@ -41,7 +41,6 @@ def sole_corners(model: RobotModel, foot: str, pose: np.ndarray) -> np.ndarray:
     """(n, 2) outline on the ground, m, of what counts of the sole of `LLeg` or `RLeg`.
 
     Args:
-        model: The robot.
         foot: `LLeg` or `RLeg`.
         pose: (4, 4) of the effector under the foot.
     """

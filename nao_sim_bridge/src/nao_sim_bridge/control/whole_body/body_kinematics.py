@@ -25,9 +25,6 @@ class BodyKinematics:
         model: The robot.
         max_velocities: (26,) rad/s.
         movable: (26,) True for the joints that have a column: all but hands and RHipYawPitch.
-
-    Args:
-        model: The robot.
     """
 
     def __init__(self, model: RobotModel) -> None:
@@ -83,7 +80,6 @@ class BodyPose:
         poses: (27, 4, 4) of the links, by the row of their parent joint; the last one is the torso.
 
     Args:
-        body: Constants of the robot.
         angles: (26,) rad.
     """
 

@@ -177,8 +177,6 @@ def joint_curves(
     """Curves of joints that bring frames along paths.
 
     Args:
-        body: The robot.
-        indices: Joints that move.
         goals_at: The goals at a time in s.
         times: Key times of the paths, s, rising.
         commands: (26,) angles to begin at, rad.

@@ -38,9 +38,6 @@ class Footholds:
 
     Attributes:
         states: What each foot may do.
-
-    Args:
-        body: The robot.
     """
 
     def __init__(self, body: BodyKinematics) -> None:
@@ -106,7 +103,6 @@ class Footholds:
         return balance_region(np.concatenate(corners))
 
     def standing(self) -> list[str]:
-        """Feet that are not free."""
         return [foot for foot, state in self.states.items() if state is not FootState.FREE]
 
     @property

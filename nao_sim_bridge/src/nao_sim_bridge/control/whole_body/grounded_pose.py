@@ -33,7 +33,6 @@ class GroundedPose:
         torso: (4, 4) pose of the torso in the ground frame.
 
     Args:
-        body: The pose in the torso frame.
         footing: The foot that stays; without one it is the torso that stays, and its frame is the ground's.
     """
 

@@ -90,7 +90,6 @@ def joint_freedom(
     """What the joints may do in a tick of `dt` s.
 
     Args:
-        body: The robot.
         angles: (26,) where the joints are, rad.
         posture: (26,) where they should be, rad.
         moved: Joints that go there with all their speed; the others drift.
@@ -112,8 +111,6 @@ def whole_body_step(demands: Demands, freedom: Freedom, dt: float) -> np.ndarray
     """(26,) change of the joints in one tick, rad.
 
     Args:
-        demands: What is asked for.
-        freedom: What the joints may do.
         dt: Length of the tick, s.
     """
     now = demands.now
