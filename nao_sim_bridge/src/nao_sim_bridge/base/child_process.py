@@ -164,12 +164,7 @@ class ChildProcess:
 
 
 def pipe_to_parent(descriptors: str, completes: bool = False) -> Connection:
-    """The pipe that the process was given.
-
-    Args:
-        descriptors: Its first argument.
-        completes: It ends by itself when its pipe is closed, as it has something to complete.
-    """
+    """The pipe that the process was given by its first argument; one that `completes` its work ends by itself."""
     # Ctrl-C in a terminal goes to all processes; the owner of the pipe decides when this one ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     pipe, life = map(int, descriptors.split(","))

@@ -1,4 +1,4 @@
-"""Strict reading of data files: an unknown or missing key is an error that names what is allowed."""
+"""Where the data files of this package are, and strict reading of them: an error names the key and what is allowed."""
 
 from __future__ import annotations
 
@@ -10,12 +10,44 @@ from typing import Any, TypeVar, get_origin, get_type_hints
 
 import numpy as np
 
-from nao_sim_bridge.base.bounded_files import read_bounded
 from nao_sim_bridge.base.errors import ConfigError, did_you_mean
 
 T = TypeVar("T")
+_PACKAGE = Path(__file__).resolve().parents[1]
 LARGEST_FILE = 20_000_000
 """Bytes of a data file; clients bring some, too."""
+
+
+def config_file(name: str) -> Path:
+    """Path of a file in `config`."""
+    return _PACKAGE / "config" / name
+
+
+def world_directory() -> Path:
+    return _PACKAGE / "worlds"
+
+
+def sounds_directory() -> Path:
+    """Directory of the sounds that come with the package, a folder a sound set."""
+    return _PACKAGE / "sounds"
+
+
+class TooLarge(ValueError):
+    """A file that is larger than what is allowed; the text says what is."""
+
+
+def read_bounded(path: Path, largest: int) -> bytes:
+    """All of a file that others bring: counted while reading, whatever its folder says.
+
+    Raises:
+        TooLarge: It has more than `largest` bytes.
+        OSError: It cannot be read.
+    """
+    with open(path, "rb") as file:
+        content = file.read(largest + 1)
+    if len(content) > largest:
+        raise TooLarge(f"has more than {largest} bytes")
+    return content
 
 
 def read_json(path: Path) -> dict:

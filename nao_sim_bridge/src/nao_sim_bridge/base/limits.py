@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Mapping
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import BadValue, ConfigError
-from nao_sim_bridge.base.paths import config_file
 
 FILE = "limits.json"
 
@@ -94,9 +93,6 @@ def world_kind(key: str) -> Kind:
 
 def check_world(content: Any, where: str) -> None:
     """Look at every number of a world file, or of a part of it.
-
-    Args:
-        where: Its place, for error texts.
 
     Raises:
         BadValue: One of the numbers is out of the bounds of its key.

@@ -158,12 +158,7 @@ class TaskIds:
         self.guard = Guard()
 
     def make(self, name: str, on_kill: Callable[[Task], None] | None = None) -> Task:
-        """A new task of the next number.
-
-        Args:
-            name: NAOqi name of the call.
-            on_kill: Called in the simulation thread when the task is killed, to drop the work.
-        """
+        """A new task of the next number; `on_kill` is called in the simulation thread when it is killed, to drop work."""
         return Task(name, next(self._count), on_kill, lambda task: self.ask(task) if self.ask else None, self.guard)
 
 

@@ -23,8 +23,7 @@ from typing import Any, Callable, Mapping, Tuple
 
 import yaml
 
-from nao_sim_bridge.base.bounded_files import read_bounded
-from nao_sim_bridge.base.config import array, check_keys
+from nao_sim_bridge.base.config import array, check_keys, read_bounded
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.yaml_values import load_yaml
 from nao_sim_bridge.behaviors.steps import (

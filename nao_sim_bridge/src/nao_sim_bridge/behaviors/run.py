@@ -36,15 +36,12 @@ class BehaviorRun:
         return self._stopped or self.task.finished
 
     def watch(self, task: Task, end: Callable[[], object] | None = None, needed: bool = True) -> Task:
-        """Have a task end with the behaviour.
+        """Have a task end with the behaviour; the task.
 
         Args:
             task: What the behaviour has begun.
             end: How it is ended; by killing it when None.
             needed: Whether the behaviour ends when somebody else kills the task.
-
-        Returns:
-            The task.
         """
         self._ends[task] = end or task.kill
 

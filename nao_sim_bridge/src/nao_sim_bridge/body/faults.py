@@ -41,9 +41,6 @@ class Faults:
         sensors: Names of the sensors that tell nothing.
         found: Those of `motors` that the robot has found.
         known: Names of all devices that can break.
-
-    Args:
-        touch_names: Names of its touch sensors, bumpers and buttons.
     """
 
     def __init__(self, model: RobotModel, touch_names: Iterable[str]) -> None:

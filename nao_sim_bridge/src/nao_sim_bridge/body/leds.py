@@ -71,9 +71,6 @@ class LedBank:
             keyframes: In rising order of time.
             now: Present time of the simulation, s.
             step: Jump at each key frame instead of fading towards it.
-
-        Returns:
-            The task, which ends at the time of the last key frame.
         """
         task = self._ids.make(name, on_kill=self._stop)
         end = now + (keyframes[-1].time if keyframes else 0.0)

@@ -11,7 +11,7 @@ from typing import Callable, Mapping, Sequence
 
 import pybullet
 
-from nao_sim_bridge.base.finite import check_finite
+from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.readings import BodyReadings, Contact, JointReadings, Pose
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.settings import Settings

@@ -10,7 +10,7 @@ from nao_sim_bridge.base.settings import ContactSettings
 from nao_sim_bridge.base.whole_file import memory_file
 from nao_sim_bridge.model.collision import LOAD_FLAGS, apart
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.model.urdf.document import physics_urdf
+from nao_sim_bridge.model.urdf.physics import physics_urdf
 
 # Columns of PyBullet's joint info.
 JOINT_NAME, LINK_NAME = 1, 12

@@ -21,12 +21,7 @@ class ClickCounter:
         self._clicks = 0
 
     def feed(self, down: bool, now: float) -> int:
-        """How many clicks are over: 1 to 3, once for each series; 0 while there is nothing to tell.
-
-        Args:
-            down: Whether the button is pressed.
-            now: Simulated time, s.
-        """
+        """How many clicks are over at simulated time `now`, s: 1 to 3, once for each series; else 0."""
         if down != self._down:
             held = now - self._since
             self._down, self._since = down, now

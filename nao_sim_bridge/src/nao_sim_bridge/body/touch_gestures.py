@@ -102,11 +102,7 @@ class GestureBook:
 
 
 class GestureRecogniser:
-    """Finds gestures in what the sensors of one head feel: feed it with every reading.
-
-    Args:
-        times: May be changed at any moment.
-    """
+    """Finds gestures in what the sensors of one head feel: feed it with every reading. `times` may change meanwhile."""
 
     def __init__(self, book: GestureBook, times: Times) -> None:
         self._book = book
@@ -119,11 +115,7 @@ class GestureRecogniser:
         self._told = False
 
     def feed(self, pattern: str, now: float) -> Seen:
-        """What there is to tell.
-
-        Args:
-            now: Simulated time, s.
-        """
+        """What there is to tell when `pattern` is touched at simulated time `now`, s."""
         if pattern != self._raw:
             self._raw = pattern
             if self._settling is None:

@@ -14,9 +14,9 @@ from typing import Callable, Sequence
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.battery import BatteryReading
-from nao_sim_bridge.body.sensors.heat import CRITICAL, VERY_HOT, heat_status
-from nao_sim_bridge.body.sensors.heat import HOT as LIMITS
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.body.temperatures import CRITICAL, VERY_HOT, heat_status
+from nao_sim_bridge.body.temperatures import HOT as LIMITS
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.control.joints.idle import CHAINS
 from nao_sim_bridge.core import sequences

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Mapping, Sequence, Tuple
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.balance.posture_recognition import BACK, BELLY, CROUCHING, FAMILIES, SITTING, STANDING
 from nao_sim_bridge.control.joints.curves import SmoothCurve

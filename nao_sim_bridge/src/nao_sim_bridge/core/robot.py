@@ -7,22 +7,20 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Callable, Iterable, Mapping, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
-from nao_sim_bridge.base.finite import NotFinite, check_finite
+from nao_sim_bridge.base.errors import BadValue, NotFinite, UnknownName, check_finite
 from nao_sim_bridge.base.readings import Contact, Pose
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.body.faults import Faults
+from nao_sim_bridge.body.hand import pointed_at
 from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.body.led_animations import power_on
 from nao_sim_bridge.body.leds import LedBank
 from nao_sim_bridge.body.physics import NO_PUSHES, Physics
-from nao_sim_bridge.body.pointing import pointed_at
 from nao_sim_bridge.body.sensors.body import BodySensors
-from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise
+from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise, load_noise
 from nao_sim_bridge.body.sensors.inertial import InertialUnit
-from nao_sim_bridge.body.sensors.noise_settings import load_noise
 from nao_sim_bridge.body.sensors.power import PowerSystem
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.body.sensors.sonar import Sonars
@@ -168,11 +166,7 @@ class SimulatedRobot:
         self._fingers = wanted
 
     def point_at(self, ray: tuple[Vector3, Vector3] | None) -> None:
-        """Touch the sensor that a line of sight meets, and let go of the one before; None: let go.
-
-        Args:
-            ray: Eye (m) and unit vector, in world.
-        """
+        """Touch the sensor that a line of sight meets (eye in m, unit vector, in world) and let go of others; None: of all."""
         self._pointed = frozenset() if ray is None else pointed_at(self.model, self._physics, *ray)
 
     def drive(self, mode: str, values: Sequence[float]) -> None:

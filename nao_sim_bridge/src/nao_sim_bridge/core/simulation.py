@@ -15,8 +15,7 @@ from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.start_lean import start_pitch
+from nao_sim_bridge.model.postures import posture, start_pitch
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.world.places import RobotPlace
 from nao_sim_bridge.world.render_state import RenderState, RobotLook

@@ -13,9 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from nao_sim_bridge.base.config import check_keys, read_json, vector
+from nao_sim_bridge.base.config import check_keys, config_file, read_json, vector
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.kinematics import matrix_rpy, rpy_matrix
 from nao_sim_bridge.model.leds_layout import Lamp, load_leds
 from nao_sim_bridge.model.model_reader import load_model

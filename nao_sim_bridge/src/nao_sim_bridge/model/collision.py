@@ -9,9 +9,8 @@ from typing import Any
 
 import pybullet
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.shapes import Shape, read_shape
 

@@ -14,9 +14,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError, UnknownName
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import VERSIONS, frozen_mapping
 
 FILE = "nao_leds.json"

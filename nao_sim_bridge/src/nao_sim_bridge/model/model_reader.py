@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from nao_sim_bridge.base.config import array, check_keys, read_json, vector
+from nao_sim_bridge.base.config import array, check_keys, config_file, read_json, vector
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import (
     FILE,
     VERSIONS,
@@ -196,16 +195,16 @@ class ModelReader:
 
     def coupled_limits(self) -> dict[str, CoupledLimit]:
         """Tables called `<joint>_by_<other joint>`."""
-        limits = {}
+        order, limits = self.tables["almotion_body_order"], {}
         for name, rows in self.tables["coupled_limits"].items():
             if name == "note":
                 continue
-            joint, _, by_joint = name.partition("_by_")
+            joint, by_joint = name.split("_by_")
             table = array(rows, at("coupled_limits", name), (-1, 3))
             if np.any(np.diff(table[:, 0]) <= 0.0):
                 raise ConfigError(at("coupled_limits", name), "first column does not ascend")
-            limits[joint] = CoupledLimit(joint, by_joint, table)
-        return limits
+            limits[joint] = CoupledLimit(order.index(joint), order.index(by_joint), [*map(tuple, table.tolist())])
+        return dict(sorted(limits.items(), key=lambda entry: entry[1].joint))
 
     def fsr(self) -> tuple[Place, ...]:
         section = check_keys(self.tables["fsr"], at("fsr"), ("frames",), ("range_N", "unit_in_ALMemory", "note"))

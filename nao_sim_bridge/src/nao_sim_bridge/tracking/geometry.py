@@ -52,16 +52,13 @@ def robot_pose(model: RobotModel, placed: Placement) -> Tuple[float, float, floa
 
 
 def seen_place(camera: Sequence[float], alpha: float, beta: float, distance: float) -> Point:
-    """Where something is that a camera sees.
+    """Where something is that a camera sees: x, y, z in the frame of the pose, m.
 
     Args:
         camera: Pose of the camera: x, y, z in m, roll, pitch, yaw in rad.
         alpha: Of it in the picture, positive to the left, rad.
         beta: Of it in the picture, positive downwards, rad.
         distance: From the camera, m.
-
-    Returns:
-        x, y, z in the frame of the pose, m.
     """
     # Angles of a picture are those of the axes: tangents, not two turns in a row.
     ray = np.array((1.0, math.tan(alpha), -math.tan(beta)))
@@ -96,12 +93,7 @@ def head_angles(model: RobotModel, point: Point, camera: int = 0) -> Tuple[float
 
 
 def arm_angles(model: RobotModel, arm: str, point: Point) -> dict[str, float]:
-    """Angles of an arm, rad within the limits, that points at a place.
-
-    Args:
-        arm: "LArm" or "RArm".
-        point: In the frame of the torso, m.
-    """
+    """Angles, rad within limits, of "LArm" or "RArm" that points at a place in the frame of the torso, m."""
     side = ARMS[arm]
     pitch_joint = model.joints[model.joint_index[f"{side}ShoulderPitch"]]
     roll_joint = model.joints[model.joint_index[f"{side}ShoulderRoll"]]

@@ -83,12 +83,7 @@ class Course(ABC):
         self.frame = other.frame
 
     def upcoming(self, support: FootPose, side: int, count: int) -> list[Step]:
-        """The next steps, fewer than `count` when the course ends.
-
-        Args:
-            support: The foot that carries.
-            side: Of the foot that moves next.
-        """
+        """The next steps, of the foot on the `side` first; fewer than `count` when the course ends."""
         steps: list[Step] = []
         state = self._state
         while len(steps) < count:

@@ -71,7 +71,7 @@ class Legs:
     def solve(
         self, torso: Vector, rotation: Matrix, left: Sole, right: Sole, hip_yaw: float
     ) -> tuple[float, LegAngles, LegAngles]:
-        """Angles that put both soles where they are asked for, as far as one hip motor can.
+        """HipYawPitch and angles of both legs that put the soles where they are asked for, as far as one hip motor can.
 
         With the torso's pose given, each foot asks for a HipYawPitch of its own; the one in the middle leaves both
         feet turned off by the same small angle.
@@ -80,9 +80,6 @@ class Legs:
             torso: Position of the torso, m.
             left: Left sole, in the same frame as the torso.
             hip_yaw: HipYawPitch to begin with, rad: that of the last tick.
-
-        Returns:
-            HipYawPitch, left leg, right leg.
         """
         l_ankle, l_turn = self._in_torso(torso, rotation, left)
         r_ankle, r_turn = self._in_torso(torso, rotation, right)

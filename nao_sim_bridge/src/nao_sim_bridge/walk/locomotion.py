@@ -20,7 +20,7 @@ from nao_sim_bridge.control.balance.stability import Stability
 from nao_sim_bridge.control.joints.engine import MotionEngine
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.walk.arm_swing import ArmSwing
-from nao_sim_bridge.walk.body import WalkingBody
+from nao_sim_bridge.walk.body import WalkingBody, foot_on_ground, frame_from, robot_on_ground
 from nao_sim_bridge.walk.courses import STANDSTILL, Course, Rate, rate_limits
 from nao_sim_bridge.walk.footstep_plan import FootstepPlan, steps_to_come
 from nao_sim_bridge.walk.footsteps import FootPose, middle, side_by_side
@@ -34,7 +34,6 @@ from nao_sim_bridge.walk.velocity_course import VelocityCourse
 from nao_sim_bridge.walk.waits import WalkWaits
 from nao_sim_bridge.walk.walk_guard import WalkGuard
 from nao_sim_bridge.walk.walker import Readings, Walker
-from nao_sim_bridge.walk.whereabouts import foot_on_ground, frame_from, robot_on_ground
 
 # Where in a step the foot that carries tells where the plan's frame lies in the world.
 MIDDLE = 0.5

@@ -18,11 +18,10 @@ from math import exp, sqrt
 from typing import Mapping, Sequence
 
 from nao_sim_bridge.walk.courses import Course, Step
-from nao_sim_bridge.walk.footsteps import FootPose, middle
+from nao_sim_bridge.walk.footsteps import FootInAir, FootPose, middle, swing
 from nao_sim_bridge.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.walk.pattern import Point, Segment, divergent_component
 from nao_sim_bridge.walk.settings import WalkSettings
-from nao_sim_bridge.walk.swing import FootInAir, swing
 
 # A foot is in the air for this at most, s: longer steps stand on both feet the longer.
 LONGEST_SWING = 0.48
@@ -40,7 +39,7 @@ class Phase(Enum):
 
 
 class WalkPlan:
-    """Advances a walk, tick by tick.
+    """Advances a walk, tick by tick; `gravity` in m/s2.
 
     Attributes:
         phase: What it is at.
@@ -52,9 +51,6 @@ class WalkPlan:
         pressure: Where the zero moment point is to be, m.
         time: Since the begin of the phase or step, s.
         waited: How long the foot in the air has been waited for, s.
-
-    Args:
-        gravity: m/s2.
     """
 
     def __init__(self, settings: WalkSettings, gravity: float, feet: Mapping[int, FootPose], com: Point) -> None:
@@ -149,12 +145,7 @@ class WalkPlan:
         self._course = course
 
     def advance(self, dt: float, landed: bool) -> None:
-        """One tick.
-
-        Args:
-            dt: Of the tick, s.
-            landed: Whether the foot in the air, if any, feels the ground.
-        """
+        """One tick of `dt` s; `landed`: whether the foot in the air, if any, feels the ground."""
         if self._late(landed, dt):
             self.waited += dt
         else:

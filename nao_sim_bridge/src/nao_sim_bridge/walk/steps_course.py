@@ -27,12 +27,7 @@ class Placement(NamedTuple):
 
 
 class StepsCourse(Course):
-    """Makes steps that somebody else has planned; more can be added.
-
-    Args:
-        gait: Their height.
-        placements: Where they go; clipped to what the legs can step.
-    """
+    """Makes steps that somebody else has planned, clipped to what legs can step, as high as `gait` says; takes more."""
 
     def __init__(self, settings: WalkSettings, gait: FeetGait, placements: Sequence[Placement]) -> None:
         self._gait = gait

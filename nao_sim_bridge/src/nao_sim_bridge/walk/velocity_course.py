@@ -35,12 +35,7 @@ class _Going(NamedTuple):
 
 
 class VelocityCourse(Course):
-    """Goes on at a velocity until it is told to end.
-
-    Args:
-        wanted: Way in one step.
-        rate: At which the robot walks already.
-    """
+    """Goes on at `wanted`, the way in one step, until it is told to end; `rate`: at which the robot walks already."""
 
     def __init__(self, settings: WalkSettings, gait: FeetGait, wanted: Rate, rate: Rate = STANDSTILL) -> None:
         self._gait = gait

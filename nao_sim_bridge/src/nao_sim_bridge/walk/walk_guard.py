@@ -34,11 +34,7 @@ class Obstacle(NamedTuple):
 
 
 class WalkGuard:
-    """Looks after one robot's walks.
-
-    Args:
-        gravity: m/s2.
-    """
+    """Looks after one robot's walks; `gravity` in m/s2."""
 
     def __init__(
         self,

@@ -94,15 +94,12 @@ class Walker:
         self._off: Dict[int, float] | None = None
 
     def tick(self, readings: Readings, commands: Sequence[float], dt: float) -> Dict[int, float]:
-        """Advance by one tick.
+        """Advance by one tick of `dt` s; joint index to command, rad, of both legs.
 
         Args:
             readings: Of the last tick.
             commands: (26,) commanded angles, rad: where arms and head are.
             dt: Of the tick, s.
-
-        Returns:
-            Joint index to command, rad, of both legs.
         """
         plan, body = self.plan, self._body
         if commands is not self._upper_of:

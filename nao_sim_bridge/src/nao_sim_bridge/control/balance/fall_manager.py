@@ -12,16 +12,14 @@ import math
 from dataclasses import dataclass
 from typing import Mapping, Tuple
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.control.balance.capture_point import BodyMotion
 from nao_sim_bridge.control.balance.stance import StanceReader
 from nao_sim_bridge.control.joints.engine import MotionEngine
-from nao_sim_bridge.model.body_mass import convex_hull
+from nao_sim_bridge.model.body_mass import Point, convex_hull, outside
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.model.support_polygon import Point, outside
 
 FILE = "fall_manager.json"
 # A capture point between the ankles and no more than this behind or ahead of either, m, is over the soles or between
@@ -156,11 +154,7 @@ class FallManager:
             self.state = FallState.WATCHING
 
     def look(self, body: BodyMotion, snapshot: Snapshot, loaded: Tuple[bool, bool]) -> None:
-        """Look whether the robot that it watches begins to fall.
-
-        Args:
-            loaded: Whether the left and the right foot carry.
-        """
+        """Look whether the robot that it watches begins to fall; `loaded`: whether left and right foot carry."""
         if self.state is not FallState.WATCHING:
             return
         distance, way = self._outside(body, snapshot, loaded)

@@ -54,9 +54,6 @@ class Odometry:
         Args:
             positions: (26,) measured joint angles, rad.
             tilt: Roll, pitch and yaw of the torso by the inertial unit, rad.
-
-        Returns:
-            Pose of the torso in the world of odometry.
         """
         turn = self._turn(tilt)
         loads = [0.0, 0.0]

@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import AbstractSet, Callable, Container, Iterable, Mapping, Protocol, Sequence, Union
 
-from nao_sim_bridge.base.finite import check_finite
+from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.tasks import Task, TaskIds
 from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.control.joints.bezier import BezierCurve
@@ -71,9 +71,6 @@ class MotionEngine:
         corrector: Who changes what tasks and targets want; None when nobody does.
         idle: Who moves idle joints; None when nobody does.
         notices: Tells in the log what cannot be done as it was asked.
-
-    Args:
-        joints: Where commands and stiffnesses go.
     """
 
     def __init__(self, joints: JointCommands, task_ids: TaskIds) -> None:

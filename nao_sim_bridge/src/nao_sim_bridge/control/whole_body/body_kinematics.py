@@ -11,7 +11,6 @@ from typing import Sequence
 
 import numpy as np
 
-from nao_sim_bridge.model.coupled import couplings
 from nao_sim_bridge.model.frames import Frame
 from nao_sim_bridge.model.robot_model import RobotModel
 
@@ -54,7 +53,7 @@ class BodyKinematics:
         self.carried_mass = self.carried @ self.masses
         self.max_velocities = np.array([j.max_velocity for j in model.joints])
         self._limits = model.limits_array()
-        self._couplings = couplings(model)
+        self._couplings = tuple(model.coupled_limits.values())
         for constant in (self.movable, self.moves, self.carried):
             constant.flags.writeable = False
 
@@ -78,9 +77,6 @@ class BodyPose:
     Attributes:
         angles: (26,) rad.
         poses: (27, 4, 4) of the links, by the row of their parent joint; the last one is the torso.
-
-    Args:
-        angles: (26,) rad.
     """
 
     def __init__(self, body: BodyKinematics, angles: np.ndarray) -> None:

@@ -12,8 +12,8 @@ from typing import Sequence
 
 import numpy as np
 
-from nao_sim_bridge.control.whole_body.balance_region import BalanceRegion
 from nao_sim_bridge.control.whole_body.body_kinematics import BodyKinematics
+from nao_sim_bridge.control.whole_body.footholds import BalanceRegion
 from nao_sim_bridge.control.whole_body.grounded_pose import GroundedPose
 from nao_sim_bridge.control.whole_body.inverse_kinematics import Goal
 from nao_sim_bridge.control.whole_body.task_solver import Wish, ranked_step
@@ -108,11 +108,7 @@ def joint_freedom(
 
 
 def whole_body_step(demands: Demands, freedom: Freedom, dt: float) -> np.ndarray:
-    """(26,) change of the joints in one tick, rad.
-
-    Args:
-        dt: Length of the tick, s.
-    """
+    """(26,) change of the joints in one tick of `dt` s, rad."""
     now = demands.now
     center = now.center_of_mass()
     place, rows = center[:2], now.com_jacobian()[:2]
