@@ -24,7 +24,7 @@ Step = Callable[[], object]
 
 
 def wait_for_end(server: Any) -> int:
-    """Exit status of a started simulator (`SimulatorServer`, `RobotsServer`) at its end: 0, or `FAILED` when it failed."""
+    """Exit status of a started `SimulatorServer` or `RobotsServer` at its end: 0, or `FAILED` when it failed."""
     while not server.ended.wait(LOOK_PERIOD):
         if not server.runner.running:
             return FAILED

@@ -121,7 +121,16 @@ def _value(kind: Any, value: Any, where: str, notes: Sequence[str]) -> Any:
         if not isinstance(value, list):
             raise ConfigError(where, f"is {value!r}, not a list")
         return tuple(value)
-    if kind in (int, float) and (isinstance(value, bool) or not isinstance(value, (int, float))):
+    return number(value, where) if kind in (int, float) else value
+
+
+def number(value: Any, where: str) -> float:
+    """A number, and no truth value.
+
+    Raises:
+        ConfigError: It is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise ConfigError(where, f"is {value!r}, not a number")
     return value
 

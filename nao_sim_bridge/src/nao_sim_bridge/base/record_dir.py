@@ -77,12 +77,7 @@ class ClientFiles:
                     break
 
     def to_keep(self, name: str) -> Path:
-        """As `to_write`, for who runs the simulator: `forget` leaves it.
-
-        Raises:
-            OutsideRecordDir: The name leads out of the folder.
-            UnusableName: It is too long, or something else than a file is there.
-        """
+        """As `to_write`, for who runs the simulator: `forget` leaves it."""
         path = inside(self.folder, relative_to_home(name))
         if path.exists() and not path.is_file():
             raise UnusableName(f"{name!r} cannot be written: {'Is a directory' if path.is_dir() else 'it is no file'}")

@@ -56,13 +56,10 @@ class BehaviorRun:
         return task
 
     def watch_command(self, command: Task, settled: Callable[..., None]) -> Task:
-        """As `watch`, for a command whose result may be a further task, and so on.
+        """As `watch`, for a command whose result may be a further task, and so on; a task that ends when all have.
 
         Args:
             settled: Called at its end with the error or None, and with the result if there is one.
-
-        Returns:
-            A task that ends when all of it has.
         """
         over = Task(command.name, 0)
         now = [command]

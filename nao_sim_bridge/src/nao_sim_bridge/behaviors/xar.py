@@ -221,7 +221,7 @@ class _Xar:
             if joint not in model.joint_index:
                 raise ConfigError(self._file, f"a curve moves {joint!r}, which is no joint of a NAO")
             factor = math.radians(1.0) if curve.get("unit", DEGREES) == DEGREES else 1.0
-            limits = model.joints[model.joint_index[joint]]
+            limits = model.joint(joint)
             points = [self._key(key, fps, factor, joint) for key in curve.findall("Key")]
             points.sort(key=lambda point: point.time)
             kept = [p for p, after in zip(points, [*points[1:], None]) if after is None or after.time > p.time]

@@ -8,8 +8,7 @@ from typing import Any, Iterable, Tuple
 
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.readings import FootForces
-from nao_sim_bridge.body.sensors.body import BodySensors
-from nao_sim_bridge.body.sensors.contacts import Presses
+from nao_sim_bridge.body.sensors.body import BodySensors, Presses
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.model.robot_model import RobotModel
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, List, Mapping, Sequence, Tuple
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
-from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw, rotate
+from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw, rotate, vector3
 from nao_sim_bridge.model.robot_model import Place, RobotModel
 from nao_sim_bridge.model.shapes import Shape, rod
 from nao_sim_bridge.model.touch_names import sensor_of
@@ -70,7 +70,7 @@ class HandPath:
         self.link = places[0].parent_link
         self._tilt = TILTS.get(self.link.lstrip("LR"), FROM_ABOVE)
         self.lifts = [0.0] * len(places)
-        self._stops: List[Tuple[Vector3, Vector3]] = [(_vector(p.position), _outward(p)) for p in places]
+        self._stops: List[Tuple[Vector3, Vector3]] = [(vector3(p.position), _outward(p)) for p in places]
 
     def at(self, share: float, off: float) -> Tuple[Vector3, Quaternion]:
         """Where the tip of the finger is, and how the hand is turned.
@@ -108,7 +108,7 @@ def _place(model: RobotModel, name: str) -> Place:
 
 def _outward(place: Place) -> Vector3:
     """Unit vector out of the robot at a sensor, whose X axis it is."""
-    return rotate(from_roll_pitch_yaw(*(float(angle) for angle in place.rpy)), (1.0, 0.0, 0.0))
+    return rotate(from_roll_pitch_yaw(*vector3(place.rpy)), (1.0, 0.0, 0.0))
 
 
 def _pointing(direction: Vector3) -> Quaternion:
@@ -125,11 +125,6 @@ def _between(a: Vector3, b: Vector3, share: float) -> Vector3:
 def _unit(vector: Vector3) -> Vector3:
     length = math.sqrt(sum(value * value for value in vector))
     x, y, z = (value / length for value in vector)
-    return x, y, z
-
-
-def _vector(values: Sequence[float]) -> Vector3:
-    x, y, z = (float(value) for value in values)
     return x, y, z
 
 
@@ -167,7 +162,7 @@ def pointed_at(model: RobotModel, physics: Physics, eye: Vector3, direction: Vec
     best, name = POINTED, ""
     for place in model.touch:
         link = physics.pose_of(model.link(place.parent_link).alt_name)
-        offset = rotate(link.orientation, _vector(place.position))
+        offset = rotate(link.orientation, vector3(place.position))
         way = [a + b - c for a, b, c in zip(link.position, offset, eye)]
         along = _dot(way, direction)
         aside = math.sqrt(max(_dot(way, way) - along * along, 0.0))

@@ -59,11 +59,7 @@ class PhysicsWorld:
         self._kept = None
 
     def restore(self) -> bool:
-        """Put all bodies, to the last bit, to where they were at `keep`; what motors were told stays.
-
-        Returns:
-            Whether it could; see `WorldBodies.restore`.
-        """
+        """Put all bodies, to the last bit, to where they were at `keep`, if it can; what motors were told stays."""
         if self._kept is None or not self.bodies.restore():
             return False
         # The engine keeps what it knows of two bodies as long as they touch, and would begin with forces of before.

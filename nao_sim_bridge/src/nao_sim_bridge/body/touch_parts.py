@@ -30,7 +30,7 @@ class LimbTouch:
             limb: tuple(
                 model.joint_index[name]
                 for name in model.chains[limb]
-                if not (model.joints[model.joint_index[name]].is_hand or name.endswith("HipYawPitch"))
+                if not (model.joint(name).is_hand or name.endswith("HipYawPitch"))
             )
             for limb in LIMBS
         }

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Mapping, Sequence, Tuple
 
-from nao_sim_bridge.base.config import check_keys, config_file, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, number, read_json
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.balance.posture_recognition import BACK, BELLY, CROUCHING, FAMILIES, SITTING, STANDING
@@ -202,7 +202,7 @@ def _certainty(checked: Any, where: str) -> float:
         return 1.0
     if not isinstance(checked, Mapping):
         raise ConfigError(f"{where}.checked", f"is {checked!r}, not a mapping with runs and reached")
-    runs, reached = (_number(checked.get(key), f"{where}.checked.{key}") for key in ("runs", "reached"))
+    runs, reached = (number(checked.get(key), f"{where}.checked.{key}") for key in ("runs", "reached"))
     if not 0 < reached <= runs:
         raise ConfigError(f"{where}.checked", f"reached is {reached:g} of {runs:g} runs, allowed is above 0 to all")
     return reached / runs
@@ -211,20 +211,14 @@ def _certainty(checked: Any, where: str) -> float:
 def _frame(entry: Any, where: str, model: RobotModel) -> KeyFrame:
     check_keys(entry, where, ["time", "angles"])
     check_keys(entry["angles"], f"{where}.angles", [], model.joint_index)
-    angles = {}
-    for joint, value in entry["angles"].items():
-        index = model.joint_index[joint]
-        angles[index] = _number(value, f"{where}.angles.{joint}")
-    duration = _number(entry["time"], f"{where}.time")
+    angles = {
+        model.joint_index[joint]: float(number(value, f"{where}.angles.{joint}"))
+        for joint, value in entry["angles"].items()
+    }
+    duration = float(number(entry["time"], f"{where}.time"))
     if not duration > 0.0:
         raise ConfigError(f"{where}.time", f"is {duration}, not above 0")
     return KeyFrame(duration, angles)
-
-
-def _number(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ConfigError(where, f"is {value!r}, not a number")
-    return float(value)
 
 
 def _one_of(value: Any, where: str, allowed: Any) -> None:

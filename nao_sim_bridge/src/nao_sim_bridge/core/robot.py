@@ -98,6 +98,7 @@ class SimulatedRobot:
         self.leds.set(power_on(leds))
         self._sensors = BodySensors(model, settings, physics.links)
         self._physics = physics
+        self._ankles = [physics.links[name] for name in ANKLES]
         self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2, physics.start.yaw)
         self._imperfection = self._imperfect(scene)
         self._odometry: Odometry | None = None
@@ -166,7 +167,7 @@ class SimulatedRobot:
         self._fingers = wanted
 
     def point_at(self, ray: tuple[Vector3, Vector3] | None) -> None:
-        """Touch the sensor that a line of sight meets (eye in m, unit vector, in world) and let go of others; None: of all."""
+        """Touch the sensor that a line of sight (eye in m, unit vector, in world) meets, and no other; None: none."""
         self._pointed = frozenset() if ray is None else pointed_at(self.model, self._physics, *ray)
 
     def drive(self, mode: str, values: Sequence[float]) -> None:
@@ -332,14 +333,12 @@ class SimulatedRobot:
             return None
         noise = None
         if scene.sensor_noise:
-            feet = [self._physics.links[name] for name in ANKLES]
-            noise = Noise(load_noise(), scene.sensor_noise, self.random, feet, self._dt)
+            noise = Noise(load_noise(), scene.sensor_noise, self.random, self._ankles, self._dt)
         return Imperfection(noise, Delay(ticks))
 
     def _reckon(self, positions: Sequence[float], imu: Imu, contacts: Sequence[Contact]) -> Pose:
         if self._odometry is None:
-            ankles = [self._physics.links[name] for name in ANKLES]
-            self._odometry = Odometry(self.model, ankles, positions, imu.angles)
+            self._odometry = Odometry(self.model, self._ankles, positions, imu.angles)
         return self._odometry.update(positions, imu.angles, contacts)
 
     def _pose_of(self, link: int, torso: Pose) -> Pose:

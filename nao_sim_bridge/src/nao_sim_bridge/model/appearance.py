@@ -19,7 +19,7 @@ from nao_sim_bridge.model.kinematics import matrix_rpy, rpy_matrix
 from nao_sim_bridge.model.leds_layout import Lamp, load_leds
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.robot_model import frozen_mapping
-from nao_sim_bridge.model.shapes import SEEN_KINDS, Shape, read_shape
+from nao_sim_bridge.model.shapes import SEEN_KINDS, Shape, read_shape, with_right_side
 
 FILE = "appearance.json"
 PHALANX = "Phalanx"
@@ -82,15 +82,10 @@ def load_appearance(version: str = "V6") -> Appearance:
     unknown = sorted(set(authored) - links)
     if unknown:
         raise ConfigError(f"{FILE}: links", f"no link {unknown[0]!r}")
-    mirrored = {
-        "R" + name[1:]: tuple(shape.mirrored() for shape in shapes)
-        for name, shapes in authored.items()
-        if name.startswith("L")
-    }
     lamps = _lamp_figures(tables["lamps"], load_leds(version).lamps)
     return Appearance(
         materials=frozen_mapping(materials),
-        shapes=frozen_mapping({**authored, **mirrored}),
+        shapes=frozen_mapping(with_right_side(authored)),
         phalanx=phalanx,
         lamps=tuple(lamps),
     )

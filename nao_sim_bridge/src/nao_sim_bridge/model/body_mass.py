@@ -66,15 +66,7 @@ Point = Tuple[float, float]
 
 
 def outside(corners: Sequence[Point], point: Point) -> tuple[float, Point]:
-    """How far a point is outside a convex polygon.
-
-    Args:
-        corners: Of the polygon, counter-clockwise, at least three, m.
-        point: m.
-
-    Returns:
-        Distance in m, negative inside, and the unit vector that leads out on the shortest way.
-    """
+    """How far a point is outside a convex polygon (counter-clockwise), m, negative inside, and the unit vector out."""
     x, y = point
     deepest, way = -math.inf, (0.0, 0.0)
     nearest, direction = math.inf, (0.0, 0.0)

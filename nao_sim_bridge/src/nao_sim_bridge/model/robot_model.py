@@ -9,9 +9,11 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Mapping, Sequence
+from typing import Any, Mapping, Sequence
 
 import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 
 FILE = "nao_h25.json"
 VERSIONS = ("V6", "V5")
@@ -286,3 +288,27 @@ class RobotModel:
 def frozen_mapping(entries: Mapping) -> Mapping:
     """A read-only view of a copy of the mapping."""
     return MappingProxyType(dict(entries))
+
+
+def joint_names(names: Any, model: RobotModel) -> list[str]:
+    """Joint names behind a joint, a chain, or a list of both, in order.
+
+    Raises:
+        UnknownName: A name is neither a joint nor a chain.
+        BadValue: `names` is no string and no list, or empty, or holds something else than strings.
+    """
+    if isinstance(names, str):
+        names = [names]
+    if not isinstance(names, (list, tuple)) or not names:
+        raise BadValue("names", names, "a joint, a chain, or a list of them")
+    found: list[str] = []
+    for name in names:
+        if not isinstance(name, str):
+            raise BadValue("names", name, "the name of a joint or of a chain")
+        if name in model.joint_index:
+            found.append(name)
+        elif name in model.chains and all(n in model.joint_index for n in model.chains[name]):
+            found.extend(model.chains[name])
+        else:
+            raise UnknownName("joint or chain", name, [*model.joint_index, *model.chains])
+    return found

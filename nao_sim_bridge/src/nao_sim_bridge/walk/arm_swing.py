@@ -40,7 +40,7 @@ class ArmSwing:
             arm: {
                 model.joint_index[name]: home[model.joint_index[name]]
                 for name in model.chains[arm]
-                if not model.joints[model.joint_index[name]].is_hand
+                if not model.joint(name).is_hand
             }
             for arm in ARMS
         }

@@ -66,8 +66,6 @@ def swing(start: FootPose, end: FootPose, share: float, lift: float) -> FootInAi
     It goes forward with the least jerk and up and down as a cosine, at rest at both ends.
 
     Args:
-        start: Where it took off.
-        end: Where it lands.
         share: Of its time in the air, 0..1.
         lift: Peak, m.
     """

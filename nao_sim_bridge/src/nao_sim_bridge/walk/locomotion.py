@@ -83,7 +83,7 @@ class Locomotion:
         self._joints = joints
         self._motion = motion
         self._stability = stability
-        self._waits = WalkWaits(task_ids, self._drop_goal)
+        self._waits = WalkWaits(task_ids, self._stop_course)
         self._snapshot = snapshot
         self._settings = load_walk_settings()
         self.body = WalkingBody(model)
@@ -113,11 +113,8 @@ class Locomotion:
             return self.until_finished()
         now = self._now()
         feet = [foot_on_ground(self.body, now.odometry, self._joints.commands, side) for side in (LEFT, RIGHT)]
-        course = None
-        if not side_by_side(feet[0], feet[1], self._settings.foot_separation):
-            course = VelocityCourse(self._settings, FeetGait(), STANDSTILL)
-            course.end()
-        self._begin("moveInit", course)
+        stands = side_by_side(feet[0], feet[1], self._settings.foot_separation)
+        self._begin("moveInit", None if stands else self._ending(STANDSTILL))
         return self.until_finished("moveInit")
 
     def move(self, x: float, y: float, theta: float, gait: FeetGait) -> None:
@@ -180,8 +177,7 @@ class Locomotion:
 
     def stop(self) -> Task:
         """End the walk as soon as both feet can stand; the task ends then."""
-        if self.active:
-            self._stop_course()
+        self._stop_course()
         return self.until_finished("stopMove")
 
     def kill(self) -> None:
@@ -276,22 +272,16 @@ class Locomotion:
         return now
 
     def _go(self, name: str, rate: Rate, gait: FeetGait) -> None:
-        if not any(rate):
-            if self.active:
-                self._stop_course()
-            return
-        self._start(name, VelocityCourse(self._settings, gait, rate, self._rate()))
+        if any(rate):
+            self._start(name, VelocityCourse(self._settings, gait, rate, self._rate()))
+        else:
+            self._stop_course()
 
     def _set_goal(self, name: str, course: Course) -> Task:
         goal = self._waits.make_goal(name)
         self._start(name, course)
         self._waits.goal = goal
         return goal
-
-    def _drop_goal(self) -> None:
-        """Somebody has cancelled what the walk was for: it ends on two feet."""
-        if self.active:
-            self._stop_course()
 
     def _start(self, name: str, course: Course) -> None:
         if not self.active:
@@ -301,14 +291,19 @@ class Locomotion:
         self._change_course(course)
 
     def _stop_course(self) -> None:
+        """End a walk, if any, on two feet; also when somebody has cancelled what it was for."""
+        if not self.active:
+            return
         self._waits.end_goal(False)
         if self._walker is None or not self._walker.plan.walking:
             self._to_begin = False  # it has not made a step yet, or makes none any more
             return
-        gait = FeetGait()
-        ending = VelocityCourse(self._settings, gait, STANDSTILL, self._rate())
-        ending.end()
-        self._change_course(ending)
+        self._change_course(self._ending(self._rate()))
+
+    def _ending(self, rate: Rate) -> VelocityCourse:
+        course = VelocityCourse(self._settings, FeetGait(), STANDSTILL, rate)
+        course.end()
+        return course
 
     def _change_course(self, course: Course) -> None:
         if self._course is not None:
@@ -342,9 +337,9 @@ class Locomotion:
         if cause:
             self._fail(cause, started=False)
             self._hindered = True
-            return {i: _LegCurve(self, i) for i in self._legs}
-        self._walker = walker = Walker(self.body, self._settings, self._gravity, commands)
-        self._stability.walk = lambda: walker.feedback.error
+        else:
+            self._walker = walker = Walker(self.body, self._settings, self._gravity, commands)
+            self._stability.walk = lambda: walker.feedback.error
         return {i: _LegCurve(self, i) for i in self._legs}
 
     def _begin_course(self, walker: Walker, course: Course, now: Snapshot) -> None:

@@ -98,8 +98,7 @@ class WalkPlan:
 
     def rest(self) -> Point:
         """Where the body is at rest over both feet."""
-        (ax, ay), (bx, by) = self._pressed(self.feet[LEFT], LEFT), self._pressed(self.feet[RIGHT], RIGHT)
-        return ((ax + bx) / 2.0, (ay + by) / 2.0)
+        return self._between(self.feet)
 
     @property
     def robot(self) -> FootPose:
@@ -231,8 +230,7 @@ class WalkPlan:
             segments += [Segment(double, pressed, after), Segment(step.period - double, after, after)]
             pressed = after
             feet[step.side] = step.landing
-        (ax, ay), (bx, by) = self._pressed(feet[LEFT], LEFT), self._pressed(feet[RIGHT], RIGHT)
-        end = ((ax + bx) / 2.0, (ay + by) / 2.0)
+        end = self._between(feet)
         over = len(steps) <= self._settings.steps_ahead
         last = self._settings.settle_time if over else 0.5 * self._double(steps[-1])
         return divergent_component([*segments, Segment(last, pressed, end)], end, self.omega)
@@ -240,6 +238,10 @@ class WalkPlan:
     def _double(self, step: Step) -> float:
         """Time of a step in which both feet carry, s."""
         return max(self._settings.double_support_share * step.period, step.period - LONGEST_SWING)
+
+    def _between(self, feet: Mapping[int, FootPose]) -> Point:
+        (ax, ay), (bx, by) = self._pressed(feet[LEFT], LEFT), self._pressed(feet[RIGHT], RIGHT)
+        return ((ax + bx) / 2.0, (ay + by) / 2.0)
 
     def _pressed(self, foot: FootPose, side: int) -> Point:
         at = foot.moved(self._settings.pressure_ahead, -side * self._settings.pressure_inward)
@@ -265,10 +267,10 @@ class WalkPlan:
                 piece = Segment(left, (ax + (bx - ax) * share, ay + (by - ay) * share), piece.end)
             remaining.append(piece)
         self.divergent = divergent_component(remaining, self._after, self.omega)
-        self.pressure = remaining[0].start if remaining else self._pressure_at_end()
+        if remaining:
+            self.pressure = remaining[0].start
+        else:
+            self.pressure = self._pieces[-1][1].end if self._pieces else self.rest()
         (x, y), (dx, dy) = self.com, self.divergent
         step = dt * self.omega
         self.com = (x + step * (dx - x), y + step * (dy - y))
-
-    def _pressure_at_end(self) -> Point:
-        return self._pieces[-1][1].end if self._pieces else self.rest()

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import cross, from_roll_pitch_yaw, multiply, roll_pitch_yaw, rotate, rotate_back
-from nao_sim_bridge.body.glide import Glide, slerp
 from nao_sim_bridge.control.balance.stance import StanceReader
 from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
 from nao_sim_bridge.control.whole_body.grounded_pose import Footing, GroundedPose
+from nao_sim_bridge.core.things import Glide, slerp
 from nao_sim_bridge.model.body_mass import center_of_links
 from nao_sim_bridge.model.frames import frame_of
 from nao_sim_bridge.model.kinematics import (

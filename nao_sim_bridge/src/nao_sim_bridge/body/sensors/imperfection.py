@@ -104,7 +104,6 @@ class Noise:
     Args:
         settings: Sizes of the errors at a scale of 1.
         scale: Multiplies all of them; 1 is a real robot.
-        stream: Where chance comes from.
         feet: Link indices of the feet, whose force sensors have errors of their own.
         dt: Length of a tick, s.
     """

@@ -107,10 +107,6 @@ class PowerSystem:
         temperatures: (26,) motor temperatures, degC.
         head: Temperature of the computer in the head, degC.
         battery: The battery.
-
-    Args:
-        heat_capacities: (26,) of the motors, J/K.
-        tells_plugged: Whether the battery's board reports that a charger is there.
     """
 
     def __init__(self, heat_capacities: Sequence[float], settings: Settings, tells_plugged: bool = False) -> None:

@@ -35,7 +35,7 @@ class BodyKinematics:
         # The torso is the row after the joints; a link has the row of its parent joint.
         self.row = {**model.joint_index, "Torso": count}
         self.axes = np.array([j.axis for j in model.joints])
-        self.skews = np.array([_skew(axis) for axis in self.axes])
+        self.skews = np.array([[[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]] for x, y, z in self.axes])
         self.squares = self.skews @ self.skews
         self.origins = np.array([j.origin for j in model.joints])
         parents = np.array([self.row[j.parent_link] for j in model.joints])
@@ -143,11 +143,6 @@ def cross_rows(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     result[:, 1] = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
     result[:, 2] = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     return result
-
-
-def _skew(axis: Sequence[float]) -> np.ndarray:
-    x, y, z = axis
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _levels(parents: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -27,7 +27,7 @@ CORE = 0.4
 
 @dataclass(frozen=True, eq=False)
 class BalanceRegion:
-    """A convex region of the ground, as half planes: `normals @ point <= limits`.
+    """A convex region of the ground, over which the centre of mass stays: half planes, `normals @ point <= limits`.
 
     Attributes:
         normals: (n, 2) unit vectors that point out.

@@ -94,7 +94,6 @@ def joint_freedom(
         posture: (26,) where they should be, rad.
         moved: Joints that go there with all their speed; the others drift.
         mobility: (26,) how readily a joint helps.
-        dt: s.
     """
     away = posture - angles
     preferred = np.clip(away * min(1.0, RETURN_RATE * dt), -RETURN_SPEED * dt, RETURN_SPEED * dt)

@@ -38,7 +38,10 @@ def full_urdf(model: RobotModel, appearance: Appearance) -> str:
     `RHand` take hand values in 0..1.
     """
     alt_name = {link.name: link.alt_name for link in model.links}
-    lines = [line for name, color in appearance.materials.items() for line in _material(name, color)]
+    lines = [
+        f'  <material name="{name}"><color rgba="{xml.triple(color)} 1"/></material>'
+        for name, color in appearance.materials.items()
+    ]
     # The root stays without an inertial element: robot_state_publisher warns of one at every start.
     lines += xml.link(ROOT)
     lines += xml.fixed_joint(f"{ROOT}_fixedjoint", ROOT, alt_name["Torso"], (0.0, 0.0, 0.0))
@@ -134,7 +137,7 @@ def _links(model: RobotModel, appearance: Appearance) -> list[str]:
     for link in model.links:
         body = Body(link.mass, link.com, link.inertia)
         if link.name in hands:
-            body = without_bodies(body, [_actuator(), *(placed for _, _, placed in _phalanges(model))])
+            body = without_bodies(body, [_actuator(), *_phalanges(model)])
         looks = [line for shape in appearance.shapes.get(link.name, ()) for line in _visual(shape)]
         touch = [
             line
@@ -157,8 +160,8 @@ def _hand(model: RobotModel, appearance: Appearance, joint_name: str, wrist: str
     looks = [line for shape in appearance.phalanx for line in _visual(shape)]
     for finger in model.fingers:
         parent, xyz, rpy = wrist, finger.base.position, finger.base.rpy
+        own = _phalanx_body(model, finger)
         for phalanx in finger.phalanges:
-            own = _phalanx_body(model, finger)
             name = f"{side}{phalanx}"
             lines += xml.link(f"{name}_link", xml.inertial(own.mass, own.com, own.inertia), looks)
             lines += xml.revolute_joint(
@@ -187,15 +190,14 @@ def _phalanx_body(model: RobotModel, finger: Finger) -> Body:
     return Body(mass, np.array((length / 2.0, 0.0, 0.0)), np.diag((along, across, across)))
 
 
-def _phalanges(model: RobotModel) -> Iterator[tuple[Finger, str, Body]]:
+def _phalanges(model: RobotModel) -> Iterator[Body]:
     """All phalanges of a hand at joint angle zero, as bodies in the frame of the wrist."""
     for finger in model.fingers:
         pose = transform(rpy_matrix(finger.base.rpy), finger.base.position)
-        for phalanx in finger.phalanges:
-            own = _phalanx_body(model, finger)
+        own = _phalanx_body(model, finger)
+        for _ in finger.phalanges:
             rotation = pose[:3, :3]
-            com = pose[:3, 3] + rotation @ own.com
-            yield finger, phalanx, Body(own.mass, com, rotation @ own.inertia @ rotation.T)
+            yield Body(own.mass, pose[:3, 3] + rotation @ own.com, rotation @ own.inertia @ rotation.T)
             pose = pose @ transform(np.eye(3), (finger.length, 0.0, 0.0))
 
 
@@ -212,7 +214,3 @@ def _standard(shape: Shape) -> list[Shape]:
     ends = [np.array(shape.xyz) + sign * axis for sign in (1.0, -1.0)]
     spheres = [Shape("sphere", (radius,), tuple(end.tolist()), material=shape.material) for end in ends]
     return [Shape("cylinder", (radius, length), shape.xyz, shape.rpy, shape.material), *spheres]
-
-
-def _material(name: str, color: tuple[float, float, float]) -> list[str]:
-    return [f'  <material name="{name}"><color rgba="{xml.triple(color)} 1"/></material>']
