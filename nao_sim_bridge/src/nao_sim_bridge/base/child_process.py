@@ -125,7 +125,6 @@ class ChildProcess:
         return self.receive(timeout, what)
 
     def last_words(self) -> str:
-        """How the process ended."""
         try:
             return f"the {self._name} ended with status {self.process.wait(STOP_TIMEOUT)}"
         except subprocess.TimeoutExpired:

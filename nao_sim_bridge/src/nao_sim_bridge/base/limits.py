@@ -61,7 +61,6 @@ def kinds() -> Mapping[str, Kind]:
 
 @lru_cache(maxsize=None)
 def declared() -> Mapping[str, Any]:
-    """What the file holds."""
     content = read_json(config_file(FILE))
     return check_keys(content, FILE, ("_source", "kinds", "parameters", "methods", "fields", "world"))
 

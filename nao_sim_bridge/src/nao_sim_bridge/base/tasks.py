@@ -10,7 +10,7 @@ import itertools
 import threading
 from typing import Any, Callable
 
-from nao_sim_bridge.base.errors import SimulationStopped, TaskKilled
+from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.base.guard import Guard
 
 
@@ -156,11 +156,6 @@ class TaskIds:
     def make(self, name: str, on_kill: Callable[[Task], None] | None = None) -> Task:
         """A new task of the next number; `on_kill` is called in the simulation thread when it is killed: drop work."""
         return Task(name, next(self._count), on_kill, lambda task: self.ask(task) if self.ask else None, self.guard)
-
-
-def killed_error(task: Task) -> TaskKilled:
-    """The error for callers that must know that `task` was killed."""
-    return TaskKilled(f"task {task.name} ({task.task_id}) was killed")
 
 
 def stopped_error() -> SimulationStopped:

@@ -17,7 +17,7 @@ from nao_sim_bridge.body.sensors.battery import BatteryReading
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.temperatures import CRITICAL, VERY_HOT, heat_status
 from nao_sim_bridge.body.temperatures import HOT as LIMITS
-from nao_sim_bridge.control.joints.idle import CHAINS
+from nao_sim_bridge.control.joints.idle import chain_indices
 from nao_sim_bridge.core import sequences
 from nao_sim_bridge.core.robot import SimulatedRobot
 
@@ -85,10 +85,7 @@ class DiagnosisEffect:
 
     def _begin(self, robot: SimulatedRobot) -> None:
         self._robot, self.disabled, self._exhausted = robot, frozenset(), False
-        self._chains = {
-            name: [robot.model.joint_index[joint] for part in parts for joint in robot.model.chains[part]]
-            for name, parts in CHAINS.items()
-        }
+        self._chains = chain_indices(robot.model)
 
     def _reason(self, bad: set, broken: set) -> str:
         if self._exhausted:

@@ -41,8 +41,6 @@ class PostureChange:
         misses: Moves that led somewhere else than they should.
 
     Args:
-        snapshot: Gives what it senses now.
-        goal: Name of a predefined posture.
         fraction: Share of the joints' top speeds, above 0 to 1, for moves that may be slow.
         tries: How many moves may miss before it gives up.
         moves: The moves with key frames that it may take.

@@ -38,7 +38,6 @@ def path_to(
     A robot that is in its goal already is still moved to it exactly.
 
     Args:
-        goal: Name of the posture.
         angles: (26,) command angles, rad.
         fraction: Share of the joints' top speeds for direct moves, above 0 to 1.
     """

@@ -125,12 +125,9 @@ def moves_of(content: Any) -> Tuple[Move, ...]:
 
 
 def play(robot: SimulatedRobot, name: str, move: Move) -> Task:
-    """Run a move on the whole body: one smooth curve for each joint through all key frames.
+    """Run a move on the whole body, which must be stiff: one smooth curve for each joint through all key frames.
 
-    Args:
-        robot: Whose joints move; they must be stiff.
-        name: NAOqi name of the task.
-        move: What to play. A joint that no frame names stays where it is told to be.
+    A joint that no frame names stays where it is told to be.
     """
     body = range(len(robot.model.joints))
 
@@ -145,8 +142,6 @@ def direct(model: RobotModel, start: str, goal: str, angles: Sequence[float], fr
     """The straight move to a posture.
 
     Args:
-        start: Posture or family it begins in.
-        goal: Posture it ends in.
         angles: (26,) command angles it begins at, rad.
         fraction: Share of the joints' top speeds, above 0 to 1.
         ground: What makes the move safe.

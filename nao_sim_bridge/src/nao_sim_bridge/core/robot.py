@@ -267,11 +267,9 @@ class SimulatedRobot:
         return () if self._torques is None else (partial(self._physics.turn_joints, self._torques),)
 
     def sense(self, tick: int, now: float, landed: bool = True, ticks: int = 1) -> Snapshot:
-        """Second half of a tick: read every sensor.
+        """Second half of a tick: read every sensor, for a snapshot of `tick` and `now`, s.
 
         Args:
-            tick: For the snapshot.
-            now: The same, s.
             landed: False at the start, when nothing has pressed on the robot yet.
             ticks: How many have passed since the last time.
         """

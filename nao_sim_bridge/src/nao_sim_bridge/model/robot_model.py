@@ -285,6 +285,11 @@ class RobotModel:
         return polygon
 
 
+def joint_kind(joint: str) -> str:
+    """Name of a joint without its side (`HipPitch`)."""
+    return joint[1:] if joint[0] in "LR" else joint
+
+
 def frozen_mapping(entries: Mapping) -> Mapping:
     """A read-only view of a copy of the mapping."""
     return MappingProxyType(dict(entries))

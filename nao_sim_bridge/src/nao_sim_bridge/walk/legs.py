@@ -136,11 +136,7 @@ class Legs:
         return (roll, pitch, knee, ankle_pitch, ankle_roll), atan2(off_y, off_x)
 
     def state(self, side: int, hip_yaw: float, angles: LegAngles) -> tuple[Vector, Vector, Matrix]:
-        """Forward kinematics of one leg in the torso frame.
-
-        Returns:
-            Mass times centre of mass of the leg (kg m), position of the ankle (m), rotation of the foot.
-        """
+        """Mass moment (kg m), place of the ankle (m) and rotation of the foot of one leg in the torso frame."""
         roll, pitch, knee, ankle_pitch, ankle_roll = angles
         yaw_turn = hip_rotation(side, hip_yaw)
         roll_turn = then_about_x(yaw_turn, roll)

@@ -62,10 +62,6 @@ class Locomotion:
         arms: Swing of the arms.
         failures: Called when a move cannot begin or ends before time, with the cause, whether the walk had begun, and
             the place of the obstacle in the world of the robot's odometry, m, if one was the cause.
-
-    Args:
-        stability: What keeps it on its feet while it does not walk, and watches for falls.
-        snapshot: What was sensed at the last tick; None before the first one.
     """
 
     def __init__(
@@ -136,11 +132,7 @@ class Locomotion:
         self._go("moveToward", (x * longest, y * aside, theta * turn), gait)
 
     def move_to(self, points: Sequence[FootPose], gait: FeetGait, time: float | None = None) -> Task:
-        """Walk to a pose through others, all as seen from the robot now.
-
-        Args:
-            points: The last one is where the walk ends.
-            time: Take so long at least, s.
+        """Walk to the last of `points` through the others, all as seen from the robot now, in `time` s or more.
 
         Returns:
             Ends when the robot stands, with whether it is there.
@@ -161,10 +153,7 @@ class Locomotion:
         return self._set_goal("moveTo", course)
 
     def set_steps(self, steps: Sequence[Placement], gait: FeetGait, clear: bool) -> Task:
-        """Make planned steps, after those that are planned already or instead of them.
-
-        Returns:
-            Ends when the last of them is made and the robot stands, with whether all were made.
+        """Make planned steps, after those planned or instead; ends when the robot stands, with whether all are made.
 
         Raises:
             MoveRefused: The robot cannot walk now.

@@ -10,6 +10,19 @@ from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.body.sensors.power import Motors
 from nao_sim_bridge.model.robot_model import Place, RobotModel
 
+# Share of a push along the Z axis from which on it comes from below.
+FROM_BELOW = 0.5
+
+# A contact this near to the middle of a sensor presses it, in m: the sensors are about 4 cm wide.
+REACH = 0.022
+# A finger between two sensors of one part touches both when it is this much nearer to one of them at most, in m.
+OVERLAP = 0.001
+# Bumpers are pressed from the front or the side, not by the floor under the sole.
+BUMPER_MAX_UPWARD = 0.5
+# The two bumpers of a foot meet at the tip: what hits less than this beside it, in m, presses both.
+BUMPER_OVERLAP = 0.008
+UNLOADED = FootForces()
+
 
 class Press(NamedTuple):
     """One contact, in the frame of the link that it presses on.
@@ -29,10 +42,8 @@ class Press(NamedTuple):
     force: float
 
 
-# Share of a push along the Z axis from which on it comes from below.
-FROM_BELOW = 0.5
-
 Presses = Dict[int, List[Press]]
+Felt = Callable[[Press], Iterable[str]]
 
 
 def in_link_frames(contacts: Sequence[Contact], poses: Mapping[int, Pose]) -> Presses:
@@ -83,19 +94,6 @@ def _axes(pose: Pose) -> tuple:
         (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
         (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)),
     )
-
-
-# A contact this near to the middle of a sensor presses it, in m: the sensors are about 4 cm wide.
-REACH = 0.022
-# A finger between two sensors of one part touches both when it is this much nearer to one of them at most, in m.
-OVERLAP = 0.001
-# Bumpers are pressed from the front or the side, not by the floor under the sole.
-BUMPER_MAX_UPWARD = 0.5
-# The two bumpers of a foot meet at the tip: what hits less than this beside it, in m, presses both.
-BUMPER_OVERLAP = 0.008
-UNLOADED = FootForces()
-
-Felt = Callable[[Press], Iterable[str]]
 
 
 class TouchSensors:

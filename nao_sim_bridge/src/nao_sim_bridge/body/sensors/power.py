@@ -7,7 +7,10 @@ from typing import Callable, Sequence, Tuple
 
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.body.sensors.battery import Battery
-from nao_sim_bridge.model.robot_model import Motor, RobotModel
+from nao_sim_bridge.model.robot_model import Motor, RobotModel, joint_kind
+
+# Heat and charge change slowly: the currents are looked at this often, in s.
+PERIOD = 0.1
 
 
 @dataclass(frozen=True)
@@ -89,15 +92,11 @@ def motor_of(model: RobotModel, joint: str) -> Tuple[Motor, float]:
     Raises:
         KeyError: No motor does.
     """
-    kind = joint[1:] if joint[0] in "LR" else joint
+    kind = joint_kind(joint)
     for motor in model.motors:
         if kind in motor.gear_ratio_of:
             return motor, motor.gear_ratio_of[kind]
     raise KeyError(f"no motor drives {joint}")
-
-
-# Heat and charge change slowly: the currents are looked at this often, in s.
-PERIOD = 0.1
 
 
 class PowerSystem:

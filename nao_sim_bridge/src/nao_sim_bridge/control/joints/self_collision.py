@@ -11,7 +11,7 @@ from typing import AbstractSet, Sequence
 import numpy as np
 
 from nao_sim_bridge.model.kinematics import link_transforms, rpy_matrix
-from nao_sim_bridge.model.robot_model import CollisionShape, RobotModel
+from nao_sim_bridge.model.robot_model import CollisionShape, RobotModel, joint_kind
 
 ARMS = ("LArm", "RArm")
 # The shapes are wider than the limbs: with the elbows on the knees, in the posture Crouch, they overlap by 4 mm.
@@ -124,12 +124,8 @@ class SelfCollision:
 
 def _movers(model: RobotModel, chain: str) -> list[tuple[int, float]]:
     """Joints of a chain that move shapes, by index, and how far for each rad, m."""
-    joints = ((model.joint_index[name], REACH.get(_kind(name), 0.0)) for name in model.chains[chain])
+    joints = ((model.joint_index[name], REACH.get(joint_kind(name), 0.0)) for name in model.chains[chain])
     return [(index, reach) for index, reach in joints if reach]
-
-
-def _kind(joint: str) -> str:
-    return joint if joint.startswith("Head") else joint[1:]
 
 
 def _link(shape: CollisionShape) -> str:

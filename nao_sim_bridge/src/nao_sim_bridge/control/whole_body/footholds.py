@@ -23,6 +23,10 @@ MARGIN = 0.035
 FRONT = 0.08
 # A small polygon keeps at least this share of the way from its centre to its nearest edge.
 CORE = 0.4
+# A sole this much above the lowest one, m, is in the air.
+LIFTED = 0.008
+# The cosine of how much a sole may lean while it still presses on the ground: postures are not exact.
+NEARLY_UPRIGHT = math.cos(0.07)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,12 +77,6 @@ def _centroid(hull: np.ndarray) -> np.ndarray:
     following = np.roll(hull, -1, axis=0)
     areas = hull[:, 0] * following[:, 1] - following[:, 0] * hull[:, 1]
     return ((hull + following) * areas[:, None]).sum(axis=0) / (3.0 * areas.sum())
-
-
-# A sole this much above the lowest one, m, is in the air.
-LIFTED = 0.008
-# The cosine of how much a sole may lean while it still presses on the ground: postures are not exact.
-NEARLY_UPRIGHT = math.cos(0.07)
 
 
 class FootState(Enum):

@@ -61,10 +61,6 @@ class GroundedPose:
         turn = self.torso[:3, :3]
         return np.concatenate((turn @ rows[:3], turn @ rows[3:]))
 
-    def torso_jacobian(self) -> np.ndarray:
-        """(6, 26) velocity of the torso's origin and its rotation, along the ground's axes."""
-        return self.jacobian(TORSO)
-
     def center_of_mass(self) -> np.ndarray:
         """(3,) in the ground frame, m."""
         return self.torso[:3, :3] @ self.body.center_of_mass() + self.torso[:3, 3]

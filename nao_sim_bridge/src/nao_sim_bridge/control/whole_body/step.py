@@ -14,7 +14,7 @@ import numpy as np
 
 from nao_sim_bridge.control.whole_body.body_kinematics import BodyKinematics
 from nao_sim_bridge.control.whole_body.footholds import BalanceRegion
-from nao_sim_bridge.control.whole_body.grounded_pose import GroundedPose
+from nao_sim_bridge.control.whole_body.grounded_pose import TORSO, GroundedPose
 from nao_sim_bridge.control.whole_body.inverse_kinematics import Goal
 from nao_sim_bridge.control.whole_body.task_solver import Wish, ranked_step
 
@@ -163,7 +163,7 @@ def _upright(demands: Demands, reach: float) -> Wish:
     up, wanted = demands.now.torso[:3, 2], demands.upright[:, 2]
     turn = np.array([up[1] * wanted[2] - up[2] * wanted[1], up[2] * wanted[0] - up[0] * wanted[2]])
     axes = list(demands.lean_axes)
-    rows = demands.now.torso_jacobian()[3:5]
+    rows = demands.now.jacobian(TORSO)[3:5]
     return Wish(rows[axes], _at_most(turn[axes], reach), TORSO_DAMPING)
 
 

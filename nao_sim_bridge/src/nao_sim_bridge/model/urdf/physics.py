@@ -42,7 +42,6 @@ def physics_urdf(model: RobotModel) -> str:
 
 
 def body_joint(joint: Joint, alt_name: dict[str, str]) -> list[str]:
-    """A joint between two links of the tables."""
     if joint.child_link is None:
         raise ValueError(f"{joint.name} moves no link of the tables")
     parent, child = alt_name[joint.parent_link], alt_name[joint.child_link]
