@@ -163,7 +163,7 @@ class ChildProcess:
 
 
 def pipe_to_parent(descriptors: str, completes: bool = False) -> Connection:
-    """The pipe that the process was given by its first argument; one that `completes` its work ends by itself."""
+    """The pipe that the process was given by its first argument; one that `completes` something ends by itself."""
     # Ctrl-C in a terminal goes to all processes; the owner of the pipe decides when this one ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     pipe, life = map(int, descriptors.split(","))

@@ -154,7 +154,7 @@ class TaskIds:
         self.guard = Guard()
 
     def make(self, name: str, on_kill: Callable[[Task], None] | None = None) -> Task:
-        """A new task of the next number; `on_kill` is called in the simulation thread when it is killed: drop work."""
+        """A new task of the next number; `on_kill` drops its work, in the simulation thread, when it is killed."""
         return Task(name, next(self._count), on_kill, lambda task: self.ask(task) if self.ask else None, self.guard)
 
 

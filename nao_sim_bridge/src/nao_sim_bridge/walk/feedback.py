@@ -47,6 +47,7 @@ class WalkFeedback:
         """Take in the readings of a tick.
 
         Args:
+            plan: Advanced to now.
             pose: Measured angles of the legs, rad.
             upper: Mass moment of what is above them, kg m.
             tilt: Roll and pitch of the torso by the inertial unit, rad.

@@ -97,6 +97,7 @@ class Walker:
         """Advance by one tick of `dt` s; joint index to command, rad, of both legs.
 
         Args:
+            readings: Of the last tick.
             commands: (26,) commanded angles, rad: where arms and head are.
         """
         plan, body = self.plan, self._body

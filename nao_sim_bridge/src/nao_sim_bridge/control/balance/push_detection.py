@@ -41,7 +41,7 @@ class PushDetector:
         self._at_rest_since: float | None = None
 
     def look(self, snapshot: Snapshot, stands_still: Callable[[], bool]) -> Push | None:
-        """The push that has ended by now, if any; `stands_still` (no joint moves, on its feet) is asked when needed."""
+        """The push that has ended by now, if any; `stands_still` (no joint moves) is asked only when needed."""
         x, y, _ = snapshot.linear_velocity
         speed = math.hypot(x, y)
         if self._since is not None:
