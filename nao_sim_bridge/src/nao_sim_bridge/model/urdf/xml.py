@@ -71,14 +71,14 @@ def mesh_name(shape: Shape) -> str:
     return f"arc_{inner * 1e4:.0f}_{outer * 1e4:.0f}_{thickness * 1e4:.0f}_{degrees:.0f}.stl"
 
 
-def collision(shape: Shape) -> list[str]:
-    return [f"    <collision>{origin(shape.xyz, shape.rpy)}{geometry(shape)}</collision>"]
+def collision(shape: Shape) -> str:
+    return f"    <collision>{origin(shape.xyz, shape.rpy)}{geometry(shape)}</collision>"
 
 
-def visual(shape: Shape) -> list[str]:
+def visual(shape: Shape) -> str:
     """A visual element with the colour its shape names."""
     material = f"<material name={_quoted(shape.material)}/>" if shape.material else ""
-    return [f"    <visual>{origin(shape.xyz, shape.rpy)}{geometry(shape)}{material}</visual>"]
+    return f"    <visual>{origin(shape.xyz, shape.rpy)}{geometry(shape)}{material}</visual>"
 
 
 def link(name: str, *parts: Iterable[str]) -> list[str]:
