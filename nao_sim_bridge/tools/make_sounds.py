@@ -16,7 +16,7 @@ import numpy as np
 import soundfile
 from dance_music import dance_music
 
-from nao_sim_bridge.base.paths import sounds_directory
+from nao_sim_bridge.base.config import sounds_directory
 
 RATE = 24000
 SET = "nao_library"

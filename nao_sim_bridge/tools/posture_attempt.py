@@ -21,9 +21,8 @@ from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.postures import posture, start_pitch
 from nao_sim_bridge.model.robot_model import Joint
-from nao_sim_bridge.model.start_lean import start_pitch
 from nao_sim_bridge.world.reader import load_world
 
 # How long the robot comes to rest before and after a move, s.

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.config import config_file
 from nao_sim_bridge.core.posture_moves import FILE, Move
 from nao_sim_bridge.model.robot_model import RobotModel
 

@@ -12,10 +12,9 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import load_moves
 from nao_sim_bridge.core.simulation import Scene, Simulation
-from nao_sim_bridge.walk.body import WalkingBody
+from nao_sim_bridge.walk.body import WalkingBody, robot_on_ground
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import feet_gait
-from nao_sim_bridge.walk.whereabouts import robot_on_ground
 
 # A robot that nobody has idealised: errors of its sensors and their delay, s.
 REAL = {"sensor_noise": 1.0, "sensor_delay": 0.016}

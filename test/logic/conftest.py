@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.config import config_file
 
 
 @pytest.fixture

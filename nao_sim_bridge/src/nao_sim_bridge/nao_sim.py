@@ -35,10 +35,10 @@ from nao_sim_bridge.core.robot import SimulatedRobot
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.model.joint_names import joint_names
+from nao_sim_bridge.model.robot_model import joint_names
+from nao_sim_bridge.walk.body import foot_on_ground, robot_on_ground
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
-from nao_sim_bridge.walk.whereabouts import foot_on_ground, robot_on_ground
 from nao_sim_bridge.world.places import RobotPlace, checked_places, on_circle
 
 if TYPE_CHECKING:

@@ -8,10 +8,9 @@ import re
 
 import pytest
 
-from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.limits import check, declared, kinds
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.naoqi.binding import limits
 from nao_sim_bridge.naoqi.binding.api import FILE, module_methods
 from nao_sim_bridge.naoqi.binding.wire_types import fitted

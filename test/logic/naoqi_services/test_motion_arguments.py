@@ -7,8 +7,8 @@ import struct
 import pytest
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
-from nao_sim_bridge.model.joint_names import joint_names
 from nao_sim_bridge.model.model_reader import load_model
+from nao_sim_bridge.model.robot_model import joint_names
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.body.dcm_arguments import timed_points
 from nao_sim_bridge.naoqi.motion.arguments import joint_indices, key_frames

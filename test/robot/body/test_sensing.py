@@ -8,7 +8,7 @@ import pytest
 
 from nao_sim_bridge.base.errors import NotAllowed
 from nao_sim_bridge.base.rotations import roll_pitch_yaw
-from nao_sim_bridge.body.hand_path import AWAY
+from nao_sim_bridge.body.hand import AWAY
 from nao_sim_bridge.body.sensors.sonar import NO_ECHO
 from nao_sim_bridge.core.hands import COME_TIME, LEAVE_TIME
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform

@@ -11,12 +11,14 @@ import pybullet
 import pytest
 
 from nao_sim_bridge.model.appearance import load_appearance
+from nao_sim_bridge.model.body_mass import center_of_links
 from nao_sim_bridge.model.collision import LOAD_FLAGS
-from nao_sim_bridge.model.kinematics import center_of_mass, link_transforms, quaternion_matrix
+from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.urdf.document import full_urdf, mesh_files, physics_urdf
+from nao_sim_bridge.model.urdf.full import full_urdf, mesh_files
+from nao_sim_bridge.model.urdf.physics import physics_urdf
 
 PACKAGE = Path(__file__).resolve().parents[3] / "nao_sim_bridge"
 MODEL = load_model()
@@ -109,7 +111,8 @@ def test_masses_and_frames_in_the_engine_are_those_of_the_tables(physics):
     physics.pose("Crouch")
     for hand in ("LHand", "RHand"):
         physics.put(hand, 0.0)  # the finger body meets the tables where the tables have it: open
-    assert physics.center_of_mass() == pytest.approx(center_of_mass(MODEL, posture(MODEL, "Crouch")), abs=1e-6)
+    by_tables = center_of_links(MODEL, MODEL.links, posture(MODEL, "Crouch"))
+    assert physics.center_of_mass() == pytest.approx(by_tables, abs=1e-6)
 
 
 def test_the_full_urdf_is_one_tree_with_every_frame_that_clients_know_and_a_link_for_every_lamp():

@@ -5,8 +5,7 @@ import re
 import pytest
 from simulator import PATIENCE
 
-from nao_sim_bridge.base.config import read_json
-from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.naoqi.memory import live_keys
 
 TABLES = read_json(config_file(live_keys.FILE))

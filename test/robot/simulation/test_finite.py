@@ -5,7 +5,7 @@ import math
 import pybullet
 import pytest
 
-from nao_sim_bridge.base.finite import NotFinite, check_finite
+from nao_sim_bridge.base.errors import NotFinite, check_finite
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 

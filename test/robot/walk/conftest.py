@@ -4,11 +4,10 @@ import math
 
 import pytest
 
-from nao_sim_bridge.walk.body import WalkingBody
+from nao_sim_bridge.walk.body import WalkingBody, foot_on_ground
 from nao_sim_bridge.walk.footsteps import FootPose, middle
 from nao_sim_bridge.walk.gait import FeetGait
 from nao_sim_bridge.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.walk.whereabouts import foot_on_ground
 
 
 class Walking:

@@ -23,7 +23,6 @@ class Archive:
     """A ZIP archive. Its members are stored or deflated, as other ways of packing cannot be unpacked bit by bit.
 
     Args:
-        path: Its file.
         sizes: What is allowed; that of `sizes.json` when None.
 
     Raises:
@@ -55,12 +54,10 @@ class Archive:
         self.close()
 
     def close(self) -> None:
-        """Close its file."""
         self._archive.close()
 
     @property
     def names(self) -> list[str]:
-        """Names of its members."""
         return list(self._members)
 
     def read(self, name: str) -> bytes:

@@ -40,7 +40,6 @@ class ChildProcess:
 
     Args:
         module: Full name of the module that is run; its first argument is for `pipe_to_parent`.
-        arguments: What else it gets.
         name: What error texts call it, for example "picture process".
         failed: Class of the error for a process that died or is late.
         refused: Class of the error for a process that is well and answers with an error.
@@ -80,8 +79,6 @@ class ChildProcess:
         """Send a request.
 
         Args:
-            kind: Of the request.
-            content: Of the request.
             what: What it is about, for error texts; here and below.
 
         Raises:
@@ -128,7 +125,6 @@ class ChildProcess:
         return self.receive(timeout, what)
 
     def last_words(self) -> str:
-        """How the process ended."""
         try:
             return f"the {self._name} ended with status {self.process.wait(STOP_TIMEOUT)}"
         except subprocess.TimeoutExpired:
@@ -149,7 +145,6 @@ class ChildProcess:
         self._life.close()
 
     def kill(self) -> None:
-        """End it by force."""
         self.leave()
         self.process.kill()
         self.process.wait()
@@ -168,12 +163,7 @@ class ChildProcess:
 
 
 def pipe_to_parent(descriptors: str, completes: bool = False) -> Connection:
-    """The pipe that the process was given.
-
-    Args:
-        descriptors: Its first argument.
-        completes: It ends by itself when its pipe is closed, as it has something to complete.
-    """
+    """The pipe that the process was given by its first argument; one that `completes` something ends by itself."""
     # Ctrl-C in a terminal goes to all processes; the owner of the pipe decides when this one ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     pipe, life = map(int, descriptors.split(","))

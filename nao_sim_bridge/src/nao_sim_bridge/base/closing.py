@@ -24,14 +24,7 @@ Step = Callable[[], object]
 
 
 def wait_for_end(server: Any) -> int:
-    """Wait until a simulator ends.
-
-    Args:
-        server: A `SimulatorServer` or a `RobotsServer` that has been started.
-
-    Returns:
-        Exit status: 0, or `FAILED` when its simulation has failed.
-    """
+    """Exit status of a started `SimulatorServer` or `RobotsServer` at its end: 0, or `FAILED` when it failed."""
     while not server.ended.wait(LOOK_PERIOD):
         if not server.runner.running:
             return FAILED

@@ -1,4 +1,4 @@
-"""Strict reading of data files: an unknown or missing key is an error that names what is allowed."""
+"""Where the data files of this package are, and strict reading of them: an error names the key and what is allowed."""
 
 from __future__ import annotations
 
@@ -10,12 +10,44 @@ from typing import Any, TypeVar, get_origin, get_type_hints
 
 import numpy as np
 
-from nao_sim_bridge.base.bounded_files import read_bounded
 from nao_sim_bridge.base.errors import ConfigError, did_you_mean
 
 T = TypeVar("T")
+_PACKAGE = Path(__file__).resolve().parents[1]
 LARGEST_FILE = 20_000_000
 """Bytes of a data file; clients bring some, too."""
+
+
+def config_file(name: str) -> Path:
+    """Path of a file in `config`."""
+    return _PACKAGE / "config" / name
+
+
+def world_directory() -> Path:
+    return _PACKAGE / "worlds"
+
+
+def sounds_directory() -> Path:
+    """Directory of the sounds that come with the package, a folder a sound set."""
+    return _PACKAGE / "sounds"
+
+
+class TooLarge(ValueError):
+    """A file that is larger than what is allowed; the text says what is."""
+
+
+def read_bounded(path: Path, largest: int) -> bytes:
+    """All of a file that others bring: counted while reading, whatever its folder says.
+
+    Raises:
+        TooLarge: It has more than `largest` bytes.
+        OSError: It cannot be read.
+    """
+    with open(path, "rb") as file:
+        content = file.read(largest + 1)
+    if len(content) > largest:
+        raise TooLarge(f"has more than {largest} bytes")
+    return content
 
 
 def read_json(path: Path) -> dict:
@@ -39,11 +71,7 @@ def check_keys(
     """Return `entry` if it is a mapping that has every required key and none that is unknown.
 
     Args:
-        entry: What the file holds at this place.
         where: File and path of the entry, for the error text.
-        required: Keys that must be there.
-        optional: Keys that may be there.
-        error: Class of the error raised.
 
     Raises:
         ConfigError: Naming the offending keys and the closest allowed ones.
@@ -75,7 +103,6 @@ def section(cls: type[T], entry: Any, where: str, notes: Sequence[str] = ()) -> 
 
     Args:
         cls: The dataclass; a field that is one itself is a section of the entry, one that is a tuple is a list there.
-        entry: What the file holds at this place.
         where: File and path of the entry, for the error text.
         notes: Key that the entry may have for its readers only, then that of its sections.
 
@@ -94,7 +121,16 @@ def _value(kind: Any, value: Any, where: str, notes: Sequence[str]) -> Any:
         if not isinstance(value, list):
             raise ConfigError(where, f"is {value!r}, not a list")
         return tuple(value)
-    if kind in (int, float) and (isinstance(value, bool) or not isinstance(value, (int, float))):
+    return number(value, where) if kind in (int, float) else value
+
+
+def number(value: Any, where: str) -> float:
+    """A number, and no truth value.
+
+    Raises:
+        ConfigError: It is none.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise ConfigError(where, f"is {value!r}, not a number")
     return value
 

@@ -46,12 +46,7 @@ class Guard:
             return None
 
     def caught(self, culprit: Any, error: Exception) -> None:
-        """Remember an error, and tell it to the log.
-
-        Args:
-            culprit: What raised it: a function, or a text that names it.
-            error: It.
-        """
+        """Remember an error of a culprit (a function, or a text that names it), and tell it to the log."""
         name = culprit if isinstance(culprit, str) else name_of(culprit)
         with self._lock:
             before = self._failures.get((name, type(error)))

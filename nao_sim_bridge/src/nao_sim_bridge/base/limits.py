@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Mapping
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import BadValue, ConfigError
-from nao_sim_bridge.base.paths import config_file
 
 FILE = "limits.json"
 
@@ -40,13 +39,11 @@ class Kind:
         return self.lowest == -math.inf and self.highest == math.inf
 
     def fits(self, number: float) -> bool:
-        """Whether a number is within the bounds."""
         if self.lowest <= number <= self.highest:
             return number == 0.0 or abs(number) >= self.smallest
         return self.anything or (self.infinite and number == math.inf)
 
     def __str__(self) -> str:
-        """The bounds as a person reads them."""
         unit = "" if self.unit == "none" else f" {self.unit}"
         least = f", and 0 or at least {self.smallest:g} away from it" if self.smallest else ""
         endless = ", or infinity" if self.infinite else ""
@@ -55,7 +52,6 @@ class Kind:
 
 @lru_cache(maxsize=None)
 def kinds() -> Mapping[str, Kind]:
-    """All kinds, by name."""
     fields = ("lowest", "highest", "smallest", "infinite")
     return {
         name: Kind(name, **check_keys(entry, f"{FILE}: kinds.{name}", ("unit",), fields))
@@ -65,7 +61,6 @@ def kinds() -> Mapping[str, Kind]:
 
 @lru_cache(maxsize=None)
 def declared() -> Mapping[str, Any]:
-    """What the file holds."""
     content = read_json(config_file(FILE))
     return check_keys(content, FILE, ("_source", "kinds", "parameters", "methods", "fields", "world"))
 
@@ -98,10 +93,6 @@ def world_kind(key: str) -> Kind:
 def check_world(content: Any, where: str) -> None:
     """Look at every number of a world file, or of a part of it.
 
-    Args:
-        content: What the file holds.
-        where: Its place, for error texts.
-
     Raises:
         BadValue: One of the numbers is out of the bounds of its key.
     """
@@ -118,11 +109,6 @@ def check_world(content: Any, where: str) -> None:
 
 def check(value: Any, field: str, wanted: Kind) -> None:
     """Look at every number in a value, also in lists and mappings.
-
-    Args:
-        value: From outside.
-        field: What it is called.
-        wanted: What its numbers are.
 
     Raises:
         BadValue: One of them is out of bounds.

@@ -77,12 +77,7 @@ class ClientFiles:
                     break
 
     def to_keep(self, name: str) -> Path:
-        """As `to_write`, for who runs the simulator: `forget` leaves it.
-
-        Raises:
-            OutsideRecordDir: The name leads out of the folder.
-            UnusableName: It is too long, or something else than a file is there.
-        """
+        """As `to_write`, for who runs the simulator: `forget` leaves it."""
         path = inside(self.folder, relative_to_home(name))
         if path.exists() and not path.is_file():
             raise UnusableName(f"{name!r} cannot be written: {'Is a directory' if path.is_dir() else 'it is no file'}")
@@ -113,7 +108,6 @@ def world_of_client(name: str, files: ClientFiles, first: str) -> str:
 
     Args:
         name: Of the world, or path of its file, in full or from one of these folders.
-        files: Files of the client.
         first: The world in which the simulator was started, which may be elsewhere.
 
     Raises:

@@ -3,10 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import Sequence, Tuple
+from typing import Iterable, Sequence, Tuple
 
 Vector3 = Tuple[float, float, float]
 Quaternion = Tuple[float, float, float, float]
+
+
+def vector3(values: Iterable[float]) -> Vector3:
+    """Three numbers of any kind as plain floats."""
+    x, y, z = (float(value) for value in values)
+    return (x, y, z)
+
+
+def plus(a: Sequence[float], b: Sequence[float]) -> Vector3:
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 def rotate(quaternion: Sequence[float], vector: Sequence[float]) -> Vector3:
@@ -58,5 +68,4 @@ def from_roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Quaternion:
 
 
 def cross(a: Sequence[float], b: Sequence[float]) -> Vector3:
-    """Cross product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

@@ -23,7 +23,6 @@ class Sound:
 
     Args:
         samples: (frames,) or (frames, channels); floats are taken as they are, 16 bit integers are scaled to -1..1.
-        rate: Frames per second.
 
     Raises:
         BadValue: The samples have no such shape or are not finite, or the rate is none.
@@ -50,12 +49,10 @@ class Sound:
 
     @property
     def frames(self) -> int:
-        """Number of frames."""
         return len(self.samples)
 
     @property
     def channels(self) -> int:
-        """Number of channels."""
         return self.samples.shape[1]
 
     @property
@@ -64,7 +61,6 @@ class Sound:
         return self.frames / self.rate
 
     def mono(self) -> Sound:
-        """The mean of the channels."""
         if self.channels == 1:
             return self
         return Sound(self.samples.mean(axis=1, dtype=np.float32), self.rate)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Tuple
 
-from nao_sim_bridge.base.config import read_settings
-from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.config import config_file, read_settings
 
 FILE = "physics.json"
 

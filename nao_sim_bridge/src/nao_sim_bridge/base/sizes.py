@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 
-from nao_sim_bridge.base.config import read_settings
+from nao_sim_bridge.base.config import config_file, read_settings
 from nao_sim_bridge.base.errors import BadValue, ConfigError
-from nao_sim_bridge.base.paths import config_file
 
 FILE = "sizes.json"
 _UNITS = {"bytes": "bytes", "s": "s", "hz": "Hz", "pixels": "pixels", "side": "pixels", "characters": "characters"}
@@ -248,12 +247,7 @@ def load_sizes() -> Sizes:
 
 
 def require_few(field: str, count: int, what: str) -> None:
-    """See that a list is not too long.
-
-    Args:
-        field: Name of what holds it.
-        count: How long it is, with what it is added to.
-        what: Which of `ListSizes` bounds it.
+    """See that a list is not too long: `count` with what it is added to; `what` of `ListSizes` bounds it.
 
     Raises:
         BadValue: It is too long.

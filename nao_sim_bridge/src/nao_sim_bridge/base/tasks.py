@@ -10,7 +10,7 @@ import itertools
 import threading
 from typing import Any, Callable
 
-from nao_sim_bridge.base.errors import SimulationStopped, TaskKilled
+from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.base.guard import Guard
 
 
@@ -21,10 +21,10 @@ class Task:
         name: NAOqi name of the call that made it, for example "angleInterpolation".
         task_id: Positive number, unique within its `TaskIds`.
         killed: True when it ended by `kill` and not by itself.
+        value: The result of a finished task; None before, and after an error.
+        error: The error that ended the task, None when there was none.
 
     Args:
-        name: See above.
-        task_id: See above.
         on_kill: Called in the simulation thread when the task is killed, to drop the work.
         ask: Called with the task when another thread requests its end.
         guard: Calls what is called at its end; None for one of its own.
@@ -47,25 +47,20 @@ class Task:
         self._lock = threading.Lock()
         self._finished = threading.Event()
         self._callbacks: list[Callable[[Task], None]] = []
-        self._result: Any = None
-        self._error: Exception | None = None
+        self.value: Any = None
+        self.error: Exception | None = None
 
     @property
     def finished(self) -> bool:
         """True once the task has ended, in whatever way."""
         return self._finished.is_set()
 
-    @property
-    def error(self) -> Exception | None:
-        """The error that ended the task, None when there was none."""
-        return self._error
-
     def finish(self, result: Any = None, error: Exception | None = None) -> bool:
         """End the task. Returns False when it had ended before."""
         with self._lock:
             if self._finished.is_set():
                 return False
-            self._result, self._error = result, error
+            self.value, self.error = result, error
             self._finished.set()
             callbacks, self._callbacks = self._callbacks, []
             # Its owner mostly keeps the task, too: such a cycle would keep long sounds in memory for a while.
@@ -74,10 +69,14 @@ class Task:
             self._guard.call(callback, self)
         return True
 
-    @property
-    def value(self) -> Any:
-        """The result of a finished task; None before, and after an error."""
-        return self._result
+    def finish_with(self, command: Callable[[], Any]) -> None:
+        """End the task with what `command()` returns or raises."""
+        try:
+            result = command()
+        except Exception as error:
+            self.finish(error=error)
+        else:
+            self.finish(result)
 
     def request_kill(self) -> None:
         """Ask for the end of the task, and of the one it leads to, from any thread; `TaskIds.ask` hears it."""
@@ -120,13 +119,8 @@ class Task:
             after.killed = done.killed
             if done.error is not None:
                 after.finish(error=done.error)
-                return
-            try:
-                result = change(done.value)
-            except Exception as error:
-                after.finish(error=error)
             else:
-                after.finish(result)
+                after.finish_with(lambda: change(done.value))
 
         self.add_done_callback(settle)
         return after
@@ -140,9 +134,9 @@ class Task:
         """
         if not self._finished.wait(timeout):
             raise TimeoutError(f"task {self.name} ({self.task_id}) has not ended within {timeout} s")
-        if self._error is not None:
-            raise self._error
-        return self._result
+        if self.error is not None:
+            raise self.error
+        return self.value
 
 
 class TaskIds:
@@ -160,18 +154,8 @@ class TaskIds:
         self.guard = Guard()
 
     def make(self, name: str, on_kill: Callable[[Task], None] | None = None) -> Task:
-        """A new task of the next number.
-
-        Args:
-            name: NAOqi name of the call.
-            on_kill: Called in the simulation thread when the task is killed, to drop the work.
-        """
+        """A new task of the next number; `on_kill` drops its work, in the simulation thread, when it is killed."""
         return Task(name, next(self._count), on_kill, lambda task: self.ask(task) if self.ask else None, self.guard)
-
-
-def killed_error(task: Task) -> TaskKilled:
-    """The error for callers that must know that `task` was killed."""
-    return TaskKilled(f"task {task.name} ({task.task_id}) was killed")
 
 
 def stopped_error() -> SimulationStopped:

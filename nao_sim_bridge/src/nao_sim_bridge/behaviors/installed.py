@@ -6,8 +6,8 @@ import threading
 from functools import lru_cache
 from typing import Iterable, Mapping
 
+from nao_sim_bridge.base.config import config_file
 from nao_sim_bridge.base.errors import BadValue, ConfigError, NotAllowed, UnknownName
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.behaviors.reader import read_behaviors
 from nao_sim_bridge.behaviors.steps import Behavior, Gesture
@@ -21,11 +21,7 @@ PACKAGE_END = "/."
 
 
 class InstalledBehaviors:
-    """Behaviours by name: those that come with the robot, and those of its users.
-
-    Args:
-        gestures: The animations of arms and head, each of which is a behaviour, too.
-    """
+    """Behaviours by name: those that come with the robot, each gesture of arms and head too, and those of its users."""
 
     def __init__(self, gestures: AnimationLibrary) -> None:
         self._lock = threading.Lock()
@@ -49,7 +45,6 @@ class InstalledBehaviors:
 
     @property
     def all(self) -> dict[str, Behavior]:
-        """All of them, sorted by name."""
         return dict(sorted({**self.system, **self.user}.items()))
 
     def knows(self, name: str) -> bool:
@@ -77,10 +72,7 @@ class InstalledBehaviors:
         raise UnknownName("behavior", name, known)
 
     def install(self, behaviors: Iterable[Behavior], overwrite: bool = True) -> tuple[list[str], list[str]]:
-        """Add behaviours.
-
-        Returns:
-            Names of those that are new, and of those that have replaced others.
+        """Add behaviours; names of those that are new, and of those that have replaced others.
 
         Raises:
             BadValue: A name is that of a behaviour of the system, or, without `overwrite`, of any other.
@@ -99,10 +91,7 @@ class InstalledBehaviors:
         return [name for name in new if name not in replaced], replaced
 
     def remove(self, name: str) -> list[str]:
-        """Take a behaviour of a user away, or all of a package.
-
-        Returns:
-            Their names.
+        """Take a behaviour of a user away, or all of a package; their names.
 
         Raises:
             BadValue: It comes with the robot.

@@ -12,7 +12,7 @@ from typing import Callable
 from xml.etree.ElementTree import Element
 
 from nao_sim_bridge.base.archives import Archive, BadArchive
-from nao_sim_bridge.base.bounded_files import TooLarge, read_bounded
+from nao_sim_bridge.base.config import TooLarge, read_bounded
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.behaviors.reader import NATURES, checked_name, read_behaviors
 from nao_sim_bridge.behaviors.steps import NO_NATURE, Behavior

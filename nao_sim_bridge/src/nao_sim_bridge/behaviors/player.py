@@ -47,13 +47,6 @@ class BehaviorPlayer:
 
     What a behaviour has done to the LEDs ends with it: they show again what they showed before, but for those that
     somebody else has changed meanwhile. Joints stay where it has left them, gestures are brought back.
-
-    Args:
-        simulation: Whose robot it is.
-        animator: Who moves arms and head through gestures.
-        library: The gestures.
-        speak: How it speaks.
-        go_to: How it goes to postures.
     """
 
     def __init__(
@@ -84,7 +77,6 @@ class BehaviorPlayer:
         return task
 
     def stop_all(self) -> None:
-        """Stop every behaviour."""
         for run in list(self._runs):
             run.task.kill()
 

@@ -23,8 +23,7 @@ from typing import Any, Callable, Mapping, Tuple
 
 import yaml
 
-from nao_sim_bridge.base.bounded_files import read_bounded
-from nao_sim_bridge.base.config import array, check_keys
+from nao_sim_bridge.base.config import array, check_keys, number, read_bounded
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.yaml_values import load_yaml
 from nao_sim_bridge.behaviors.steps import (
@@ -231,7 +230,7 @@ def _way(joint: Any, frames: list, where: str) -> JointWay:
     model = load_model()
     if joint not in model.joint_index:
         raise ConfigError(where, "is no joint of the robot")
-    limits = model.joints[model.joint_index[joint]]
+    limits = model.joint(joint)
     times = [time for time, _ in frames]
     if not times or any(b <= a for a, b in zip((0.0, *times), times)) or times[-1] > LONGEST_STEP:
         raise ConfigError(where, f"times {times} do not rise from above 0 to at most {LONGEST_STEP:g} s")
@@ -240,7 +239,7 @@ def _way(joint: Any, frames: list, where: str) -> JointWay:
 
 
 def _number(value: Any, where: str, low: float, high: float) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    if not math.isfinite(number(value, where)):
         raise ConfigError(where, f"is {value!r}, not a number")
     if not low <= value <= high:
         raise ConfigError(where, f"is {value:g}, allowed is {low:g} to {high:g}")

@@ -18,11 +18,6 @@ class BehaviorRun:
     Attributes:
         behavior: Which it is.
         task: Ends with it.
-
-    Args:
-        behavior: See above.
-        task: See above.
-        leds: Of the robot.
     """
 
     def __init__(self, behavior: Behavior, task: Task, leds: LedBank) -> None:
@@ -38,19 +33,15 @@ class BehaviorRun:
 
     @property
     def over(self) -> bool:
-        """Whether it has ended."""
         return self._stopped or self.task.finished
 
     def watch(self, task: Task, end: Callable[[], object] | None = None, needed: bool = True) -> Task:
-        """Have a task end with the behaviour.
+        """Have a task end with the behaviour; the task.
 
         Args:
             task: What the behaviour has begun.
             end: How it is ended; by killing it when None.
             needed: Whether the behaviour ends when somebody else kills the task.
-
-        Returns:
-            The task.
         """
         self._ends[task] = end or task.kill
 
@@ -65,14 +56,10 @@ class BehaviorRun:
         return task
 
     def watch_command(self, command: Task, settled: Callable[..., None]) -> Task:
-        """As `watch`, for a command whose result may be a further task, and so on.
+        """As `watch`, for a command whose result may be a further task, and so on; a task that ends when all have.
 
         Args:
-            command: What was asked for.
             settled: Called at its end with the error or None, and with the result if there is one.
-
-        Returns:
-            A task that ends when all of it has.
         """
         over = Task(command.name, 0)
         now = [command]

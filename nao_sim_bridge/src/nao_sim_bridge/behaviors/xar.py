@@ -16,7 +16,7 @@ from typing import Iterator
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from nao_sim_bridge.base.bounded_files import TooLarge, read_bounded
+from nao_sim_bridge.base.config import TooLarge, read_bounded
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.behaviors.steps import GoToPosture, InTurn, Joints, JointWay, Say, Step, Together, Wait
@@ -98,13 +98,7 @@ class _Xar:
         self._boxes = self._elements = self._keys = 0
 
     def box(self, box: Element, text: str, depth: int) -> Step:
-        """What a box does.
-
-        Args:
-            box: Which.
-            text: That it gets from the box before it.
-            depth: In how many others it is.
-        """
+        """What a box does that gets `text` from the box before it and is in `depth` others."""
         self._count(box, depth)
         timeline = box.find("Timeline")
         if timeline is None or not _holds_anything(timeline):
@@ -227,7 +221,7 @@ class _Xar:
             if joint not in model.joint_index:
                 raise ConfigError(self._file, f"a curve moves {joint!r}, which is no joint of a NAO")
             factor = math.radians(1.0) if curve.get("unit", DEGREES) == DEGREES else 1.0
-            limits = model.joints[model.joint_index[joint]]
+            limits = model.joint(joint)
             points = [self._key(key, fps, factor, joint) for key in curve.findall("Key")]
             points.sort(key=lambda point: point.time)
             kept = [p for p, after in zip(points, [*points[1:], None]) if after is None or after.time > p.time]

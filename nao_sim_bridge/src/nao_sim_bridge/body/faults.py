@@ -8,8 +8,7 @@ from typing import Any, Iterable, Tuple
 
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.readings import FootForces
-from nao_sim_bridge.body.sensors.body import BodySensors
-from nao_sim_bridge.body.sensors.contacts import Presses
+from nao_sim_bridge.body.sensors.body import BodySensors, Presses
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.model.robot_model import RobotModel
 
@@ -41,10 +40,6 @@ class Faults:
         sensors: Names of the sensors that tell nothing.
         found: Those of `motors` that the robot has found.
         known: Names of all devices that can break.
-
-    Args:
-        model: The robot.
-        touch_names: Names of its touch sensors, bumpers and buttons.
     """
 
     def __init__(self, model: RobotModel, touch_names: Iterable[str]) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from typing import Callable, Collection, Container, Mapping, Sequence
 
-from nao_sim_bridge.model.coupled import couplings
 from nao_sim_bridge.model.robot_model import RobotModel
 
 # How far a limp joint is moved before the friction of its gears slips, in rad: teeth give a little, then slide.
@@ -57,7 +56,7 @@ class JointCommands:
         self.guard: Guard | None = None
         self.blocked: Collection[int] = ()
         self.kept_limp: frozenset[int] = frozenset()
-        self._couplings = couplings(model)
+        self._couplings = tuple(model.coupled_limits.values())
         self._coupling_of = {coupling.joint: coupling for coupling in self._couplings}
         # Joints that the speed of their motor keeps out of a limit which has moved.
         self._late: set[int] = set()

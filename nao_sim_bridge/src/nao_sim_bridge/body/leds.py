@@ -49,10 +49,6 @@ class LedBank:
 
     Attributes:
         values: (89,) intensities 0..1 in the order of the LED layout's device names.
-
-    Args:
-        count: Number of devices.
-        task_ids: Source of the tasks' numbers.
     """
 
     def __init__(self, count: int, task_ids: TaskIds) -> None:
@@ -75,9 +71,6 @@ class LedBank:
             keyframes: In rising order of time.
             now: Present time of the simulation, s.
             step: Jump at each key frame instead of fading towards it.
-
-        Returns:
-            The task, which ends at the time of the last key frame.
         """
         task = self._ids.make(name, on_kill=self._stop)
         end = now + (keyframes[-1].time if keyframes else 0.0)
@@ -87,7 +80,6 @@ class LedBank:
         return task
 
     def busy(self, indices: Iterable[int]) -> bool:
-        """Whether an animation runs on one of the devices."""
         return any(index in self._fades for index in indices)
 
     def tick(self, now: float) -> None:

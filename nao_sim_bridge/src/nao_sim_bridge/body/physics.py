@@ -11,7 +11,7 @@ from typing import Callable, Mapping, Sequence
 
 import pybullet
 
-from nao_sim_bridge.base.finite import check_finite
+from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.readings import BodyReadings, Contact, JointReadings, Pose
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.settings import Settings
@@ -52,15 +52,13 @@ class Physics:
         robot: PyBullet's body id of the NAO.
         start: Where on the floor it starts.
         links: Link name to PyBullet's index; the torso is -1.
+        torque_limits: (26,) most that the motors give, N m.
 
     Args:
-        model: The robot.
         world: What else there is; or a world that there is already, and that others may be in.
-        settings: Time step, gains, friction.
         angles: (26,) joint angles to start with, rad (hands 0..1).
         pitch: Of the torso at the start, rad, for a robot that is not on its feet; see `place`.
         payload: Mass that the torso carries besides its own, at its centre of mass, kg.
-        place: Where on the floor it starts.
     """
 
     def __init__(
@@ -86,9 +84,9 @@ class Physics:
         self._indices = [joints[j.name] for j in model.joints]
         self._travel = model.simulated_hand.travel
         self._hands = [i for i, j in enumerate(model.joints) if j.is_hand]
-        self._torques = [float(j.max_torque) for j in model.joints]
-        self._position_gains = [settings.motor.position_gain] * len(self._indices)
-        self._velocity_gains = [settings.motor.velocity_gain] * len(self._indices)
+        self.torque_limits = [float(j.max_torque) for j in model.joints]
+        gains = {"positionGains": settings.motor.position_gain, "velocityGains": settings.motor.velocity_gain}
+        self._gains = {name: [gain] * len(self._indices) for name, gain in gains.items()}
         self._forget_efforts()
         keep_apart(self.client, self.robot, model, self.links)
         set_friction(self.client, self.robot, settings.contact, self.links)
@@ -104,11 +102,7 @@ class Physics:
         self.restart(angles, pitch)
 
     def forget(self, payload: float) -> None:
-        """The world was put to its start: what the motors were told before counts no more.
-
-        Args:
-            payload: As for the constructor.
-        """
+        """The world was put to its start: what the motors were told before counts no more."""
         self._forget_efforts()
         self._carry(payload)
 
@@ -193,20 +187,15 @@ class Physics:
             for index in self._limp:
                 targets[index], velocities[index] = rests[index], 0.0
         check_finite("targets, speeds and torques of the motors", [*targets, *velocities, *self._forces])
-        pybullet.setJointMotorControlArray(
-            self.robot,
-            self._indices,
+        self._control(
             pybullet.POSITION_CONTROL,
             targetPositions=targets,
             targetVelocities=velocities,
             forces=self._forces,
-            positionGains=self._position_gains,
-            velocityGains=self._velocity_gains,
-            physicsClientId=self.client,
+            **self._gains,
         )
 
     def scale_friction(self, share: float) -> None:
-        """Let body and soles have this share of their friction."""
         contact = self._settings.contact
         scaled = replace(
             contact, body_friction=share * contact.body_friction, sole_friction=share * contact.sole_friction
@@ -216,50 +205,26 @@ class Physics:
     def drive_positions(self, angles: Sequence[float]) -> None:
         """Send all joints to (26,) angles, rad (hands 0..1), with the full torque and the gains of their motors."""
         self._efforts = ()  # `drive` has to tell forces anew
-        pybullet.setJointMotorControlArray(
-            self.robot,
-            self._indices,
-            pybullet.POSITION_CONTROL,
-            targetPositions=self._to_engine(angles),
-            forces=self._torques,
-            positionGains=self._position_gains,
-            velocityGains=self._velocity_gains,
-            physicsClientId=self.client,
-        )
+        targets = self._to_engine(angles)
+        self._control(pybullet.POSITION_CONTROL, targetPositions=targets, forces=self.torque_limits, **self._gains)
 
     def drive_velocities(self, speeds: Sequence[float]) -> None:
         """Let all joints turn at (26,) speeds, rad/s (hands 1/s), with at most the torque of their motors."""
         self._efforts = ()
-        pybullet.setJointMotorControlArray(
-            self.robot,
-            self._indices,
-            pybullet.VELOCITY_CONTROL,
-            targetVelocities=self._to_engine_speeds(speeds),
-            forces=self._torques,
-            physicsClientId=self.client,
-        )
+        targets = self._to_engine_speeds(speeds)
+        self._control(pybullet.VELOCITY_CONTROL, targetVelocities=targets, forces=self.torque_limits)
 
     def free_joints(self) -> None:
         """Let nothing but `turn_joints` turn the joints; their gears have no friction then."""
         self._efforts = ()
-        pybullet.setJointMotorControlArray(
-            self.robot,
-            self._indices,
-            pybullet.VELOCITY_CONTROL,
-            forces=[0.0] * len(self._indices),
-            physicsClientId=self.client,
-        )
+        self._control(pybullet.VELOCITY_CONTROL, forces=[0.0] * len(self._indices))
 
     def turn_joints(self, torques: Sequence[float]) -> None:
         """Apply (26,) torques, N m (hands N m of their simulated finger), in the coming step of the engine alone."""
-        pybullet.setJointMotorControlArray(
-            self.robot, self._indices, pybullet.TORQUE_CONTROL, forces=torques, physicsClientId=self.client
-        )
+        self._control(pybullet.TORQUE_CONTROL, forces=torques)
 
-    @property
-    def torque_limits(self) -> Sequence[float]:
-        """(26,) most that the motors give, N m."""
-        return self._torques
+    def _control(self, mode: int, **wanted: Sequence[float]) -> None:
+        pybullet.setJointMotorControlArray(self.robot, self._indices, mode, physicsClientId=self.client, **wanted)
 
     def _forget_efforts(self) -> None:
         self._efforts: Sequence[float] = ()
@@ -271,7 +236,7 @@ class Physics:
         self._efforts = efforts
         self._limp = [index for index, effort in enumerate(efforts) if effort <= 0.0]
         least = self._settings.motor.limp_friction
-        self._forces = [torque * max(effort, least) for torque, effort in zip(self._torques, efforts)]
+        self._forces = [torque * max(effort, least) for torque, effort in zip(self.torque_limits, efforts)]
 
     def step(self, pushes: Mapping[str, Vector3] = NO_PUSHES) -> None:
         """Advance the world by one tick while `pushes` act on links of this robot; see `pushing`."""

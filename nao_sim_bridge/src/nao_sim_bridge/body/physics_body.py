@@ -10,7 +10,7 @@ from nao_sim_bridge.base.settings import ContactSettings
 from nao_sim_bridge.base.whole_file import memory_file
 from nao_sim_bridge.model.collision import LOAD_FLAGS, apart
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.model.urdf.document import physics_urdf
+from nao_sim_bridge.model.urdf.physics import physics_urdf
 
 # Columns of PyBullet's joint info.
 JOINT_NAME, LINK_NAME = 1, 12
@@ -26,7 +26,6 @@ def index_by(client: int, robot: int, column: int) -> dict[str, int]:
     """PyBullet's index of every joint and of the link behind it, by one of their names.
 
     Args:
-        client: PyBullet's physics client.
         robot: Body id.
         column: JOINT_NAME or LINK_NAME.
     """
@@ -80,7 +79,6 @@ def limit_speeds(client: int, robot: int, speeds: Mapping[int, float]) -> None:
     Only the call for one joint takes a limit; the engine keeps it when everything else is set anew for all of them.
 
     Args:
-        client: PyBullet's physics client.
         robot: Body id.
         speeds: Index of a joint -> its top speed, rad/s or m/s.
     """

@@ -25,10 +25,6 @@ class PhysicsWorld:
         client: PyBullet's physics client.
         bodies: The floor and the things of the world.
         robots: PyBullet's body ids of the robots.
-
-    Args:
-        world: What there is.
-        settings: Time step, gravity.
     """
 
     def __init__(self, world: World, settings: Settings) -> None:
@@ -63,11 +59,7 @@ class PhysicsWorld:
         self._kept = None
 
     def restore(self) -> bool:
-        """Put all bodies, to the last bit, to where they were at `keep`; what motors were told stays.
-
-        Returns:
-            Whether it could; see `WorldBodies.restore`.
-        """
+        """Put all bodies, to the last bit, to where they were at `keep`, if it can; what motors were told stays."""
         if self._kept is None or not self.bodies.restore():
             return False
         self._put_back(self._kept)

@@ -1,20 +1,36 @@
-"""Which devices of the robot are hot, and how badly, from the temperatures of a snapshot. Without state."""
+"""Which devices of the robot are hot, how badly, and the torque that their boards leave hot motors. Without state."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Mapping, Tuple
+from typing import Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.settings import HeadSettings
 from nao_sim_bridge.body import faults
-from nao_sim_bridge.body.sensors.heat import AT_LIMIT, CRITICAL, HOT, NORMAL, VERY_HOT, heat_status
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.model.robot_model import RobotModel
 
-HEAD, BATTERY = "Head", "Battery"
+# Motor temperatures in degC from which the status is 1 (at limit), 2 (very hot) and 3 (critical).
+HOT = (68.0, 74.0, 80.0)
+NORMAL, AT_LIMIT, VERY_HOT, CRITICAL = range(4)
+# Share of the torque that is left at each status: a very hot motor loses more than 30 %, a critical one all of it.
+SHARES = (1.0, 1.0, 0.65, 0.0)
 # Severity of a motor's failure by its status.
 SEVERITY = {AT_LIMIT: faults.NEGLIGIBLE, VERY_HOT: faults.SERIOUS, CRITICAL: faults.CRITICAL}
+HEAD, BATTERY = "Head", "Battery"
 CHAINS = ("Head", "LArm", "LLeg", "RLeg", "RArm")
+
+
+def heat_status(celsius: float) -> int:
+    """Status of a motor at this temperature, 0 (regular) to 3 (critical)."""
+    return sum(celsius >= limit for limit in HOT)
+
+
+def heat_shares(temperatures: Sequence[float]) -> tuple[float, ...]:
+    """Share of the torque that each motor has left; empty while all of them have it all."""
+    if max(temperatures) < HOT[VERY_HOT - 1]:
+        return ()
+    return tuple(SHARES[heat_status(celsius)] for celsius in temperatures)
 
 
 @dataclass(frozen=True)

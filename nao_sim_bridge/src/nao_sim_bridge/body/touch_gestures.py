@@ -1,4 +1,4 @@
-"""Gestures on the three sensors of the head, as ALTactileGesture knows them. Arithmetic only: times are passed in.
+"""Gestures on the three sensors of the head, as ALTactileGesture knows them, and clicks of buttons. Arithmetic only.
 
 What is touched is a pattern of three digits, 1 for each of front, middle and rear that is: `100`. A gesture is a
 sequence of patterns that begins with `000`; one that ends with it is over when the hand has gone, another one is held.
@@ -43,6 +43,11 @@ GESTURES: Mapping[str, Gesture] = {
 MOST_PATTERNS = 32
 SETTLE_TIME, HOLD_TIME, SEQUENCE_TIME = 0.04, 0.8, 0.2
 LONGEST_TIME = 10.0
+LONGEST_CLICK = 1.0
+"""A button that is held longer, s, was no click."""
+LONGEST_PAUSE = 0.5
+"""Clicks that follow each other within this time, s, belong together."""
+MOST_CLICKS = 3
 
 
 class Seen(NamedTuple):
@@ -80,7 +85,6 @@ class GestureBook:
         self._names = {gesture: name for name, gesture in GESTURES.items()}
 
     def all(self) -> dict[str, List[str]]:
-        """The sequence of each gesture."""
         return {name: list(gesture) for gesture, name in self._names.items()}
 
     def name_of(self, sequence: Iterable[str]) -> str | None:
@@ -103,12 +107,7 @@ class GestureBook:
 
 
 class GestureRecogniser:
-    """Finds gestures in what the sensors of one head feel: feed it with every reading.
-
-    Args:
-        book: What it knows.
-        times: May be changed at any moment.
-    """
+    """Finds gestures in what the sensors of one head feel: feed it with every reading. `times` may change meanwhile."""
 
     def __init__(self, book: GestureBook, times: Times) -> None:
         self._book = book
@@ -121,12 +120,7 @@ class GestureRecogniser:
         self._told = False
 
     def feed(self, pattern: str, now: float) -> Seen:
-        """What there is to tell.
-
-        Args:
-            pattern: What is touched now.
-            now: Simulated time, s.
-        """
+        """What there is to tell when `pattern` is touched at simulated time `now`, s."""
         if pattern != self._raw:
             self._raw = pattern
             if self._settling is None:
@@ -185,3 +179,34 @@ def checked(sequence: Sequence[str]) -> Gesture:
     if not right or any(first == second for first, second in zip(gesture, gesture[1:])):
         raise BadValue("sensor sequence", list(gesture)[:MOST_PATTERNS], allowed)
     return gesture
+
+
+class ClickCounter:
+    """Counts the clicks of one button: feed it with every reading.
+
+    NAOqi publishes no figures for its clicks; these are those of usual desktops.
+    """
+
+    def __init__(self) -> None:
+        self._down = False
+        self._since = 0.0
+        self._clicks = 0
+
+    def feed(self, down: bool, now: float) -> int:
+        """How many clicks are over at simulated time `now`, s: 1 to 3, once for each series; else 0."""
+        if down != self._down:
+            held = now - self._since
+            self._down, self._since = down, now
+            if down:
+                return 0
+            # What was held breaks the series: somebody who wants three clicks does not hold the second.
+            self._clicks = self._clicks + 1 if held <= LONGEST_CLICK else 0
+        elif down or not self._clicks or now - self._since < LONGEST_PAUSE:
+            return 0
+        else:
+            return self._end()
+        return self._end() if self._clicks == MOST_CLICKS else 0
+
+    def _end(self) -> int:
+        clicks, self._clicks = self._clicks, 0
+        return clicks

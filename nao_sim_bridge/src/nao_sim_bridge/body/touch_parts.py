@@ -22,11 +22,7 @@ LEAST_STIFFNESS = 0.5
 
 
 class LimbTouch:
-    """Which limbs somebody holds: feed it with every snapshot.
-
-    Args:
-        model: The robot.
-    """
+    """Which limbs somebody holds: feed it with every snapshot."""
 
     def __init__(self, model: RobotModel) -> None:
         self._joints: Dict[str, Tuple[int, ...]] = {
@@ -34,7 +30,7 @@ class LimbTouch:
             limb: tuple(
                 model.joint_index[name]
                 for name in model.chains[limb]
-                if not (model.joints[model.joint_index[name]].is_hand or name.endswith("HipYawPitch"))
+                if not (model.joint(name).is_hand or name.endswith("HipYawPitch"))
             )
             for limb in LIMBS
         }

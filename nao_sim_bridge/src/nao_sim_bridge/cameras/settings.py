@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Callable, Mapping, Tuple
 
-from nao_sim_bridge.base.config import check_keys, read_json, section
+from nao_sim_bridge.base.config import check_keys, config_file, read_json, section
 from nao_sim_bridge.base.errors import BadValue, ConfigError
-from nao_sim_bridge.base.paths import config_file
 
 FILE = "cameras.json"
 CAMERAS = (0, 1)

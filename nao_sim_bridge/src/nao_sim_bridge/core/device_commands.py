@@ -35,11 +35,7 @@ class DeviceCommands:
         self._tasks: dict[str, Task] = {}
 
     def set(self, commands: Mapping[str, Sequence[Point]], update: str) -> None:
-        """Give actuators new commands.
-
-        Args:
-            commands: Actuator -> values at moments in ms.
-            update: See `merged`.
+        """Give actuators new commands, values at moments in ms; for `update` see `merged`.
 
         Raises:
             BadValue: There is no such update, or an actuator would have too many commands.
@@ -109,7 +105,6 @@ def index_of(robot: SimulatedRobot, device: str) -> int:
 
 
 def actuators(robot: SimulatedRobot) -> list[str]:
-    """Names of all actuators that take commands."""
     joints = [joint + suffix for joint in robot.model.joint_index for suffix in (POSITION, HARDNESS)]
     return [*joints, *robot.led_layout.devices]
 

@@ -14,14 +14,12 @@ from typing import Callable, Sequence
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.battery import BatteryReading
-from nao_sim_bridge.body.sensors.heat import CRITICAL, VERY_HOT, heat_status
-from nao_sim_bridge.body.sensors.heat import HOT as LIMITS
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.control.joints.curves import SmoothCurve
-from nao_sim_bridge.control.joints.idle import CHAINS
+from nao_sim_bridge.body.temperatures import CRITICAL, VERY_HOT, heat_status
+from nao_sim_bridge.body.temperatures import HOT as LIMITS
+from nao_sim_bridge.control.joints.idle import chain_indices
 from nao_sim_bridge.core import sequences
 from nao_sim_bridge.core.robot import SimulatedRobot
-from nao_sim_bridge.model.postures import posture
 
 log = logging.getLogger("nao_sim.diagnosis")
 
@@ -87,13 +85,9 @@ class DiagnosisEffect:
 
     def _begin(self, robot: SimulatedRobot) -> None:
         self._robot, self.disabled, self._exhausted = robot, frozenset(), False
-        self._chains = {
-            name: [robot.model.joint_index[joint] for part in parts for joint in robot.model.chains[part]]
-            for name, parts in CHAINS.items()
-        }
+        self._chains = chain_indices(robot.model)
 
     def _reason(self, bad: set, broken: set) -> str:
-        """Why the robot must not wake up."""
         if self._exhausted:
             return EMPTY
         if LEGS not in bad:
@@ -127,20 +121,17 @@ class DiagnosisEffect:
         if name == LEGS:
             sequences.rest(robot, lambda: robot.snapshot or snapshot, goodbye)
             return
+
+        def go_safe() -> Task | None:
+            chain = self._chains[name]
+            return None if at_once else sequences.posture_task(robot, "rest", SAFE_POSTURE, SAFE_TIME, chain)
+
         steps = [
-            lambda: None if at_once else self._safe_posture(robot, name),
+            go_safe,
             lambda: sequences.stiffness_task(robot, "rest", limp, 0.0, sequences.STIFFEN_TIME),
             goodbye,
         ]
         sequences.run_steps(robot, "rest", steps)
-
-    def _safe_posture(self, robot: SimulatedRobot, name: str) -> Task:
-        goal = posture(robot.model, SAFE_POSTURE)
-        return robot.motion.follow(
-            "rest",
-            self._chains[name],
-            lambda now: {i: SmoothCurve((0.0, SAFE_TIME), (now[i], goal[i])) for i in self._chains[name]},
-        )
 
 
 def _exhausted(battery: BatteryReading, before: bool) -> bool:

@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, Dict, Sequence
 
 import pybullet
 
-from nao_sim_bridge.base.errors import BadValue, NotAllowed, SimulationError
-from nao_sim_bridge.base.finite import check_finite
+from nao_sim_bridge.base.errors import BadValue, NotAllowed, SimulationError, check_finite
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.tasks import Task, TaskIds
-from nao_sim_bridge.body.hand_path import AWAY, DEPTH, HandPath
-from nao_sim_bridge.body.hand_shape import TIP_RADIUS, make_hand
+from nao_sim_bridge.body.hand import AWAY, DEPTH, TIP_RADIUS, HandPath, make_hand
 from nao_sim_bridge.model.robot_model import RobotModel
 
 if TYPE_CHECKING:
@@ -69,12 +67,7 @@ class _Hand:
 
 
 class Hands:
-    """All hands that touch one robot. Simulation thread only.
-
-    Args:
-        model: The robot.
-        task_ids: Source of the tasks' numbers.
-    """
+    """All hands that touch one robot. Simulation thread only."""
 
     def __init__(self, model: RobotModel, task_ids: TaskIds) -> None:
         self._model = model

@@ -15,7 +15,7 @@ from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.core.posture_graph import leaves_feet, path_to
 from nao_sim_bridge.core.posture_moves import Ground, Move, direct, play
 from nao_sim_bridge.core.robot import SimulatedRobot
-from nao_sim_bridge.core.sequences import STIFFEN_TIME, Step, run_steps, stiffness_task, stop_walk
+from nao_sim_bridge.core.sequences import Step, run_steps, stiffen, stop_walk
 from nao_sim_bridge.model.postures import load_postures, posture
 
 log = logging.getLogger("nao_sim.posture")
@@ -41,9 +41,6 @@ class PostureChange:
         misses: Moves that led somewhere else than they should.
 
     Args:
-        robot: Who moves.
-        snapshot: Gives what it senses now.
-        goal: Name of a predefined posture.
         fraction: Share of the joints' top speeds, above 0 to 1, for moves that may be slow.
         tries: How many moves may miss before it gives up.
         moves: The moves with key frames that it may take.
@@ -80,7 +77,9 @@ class PostureChange:
         """Take every joint straight to the posture, wherever the robot is; the task ends with whether they did."""
 
         def move() -> Task:
-            return play(self._robot, name, self._direct())
+            robot = self._robot
+            way = direct(robot.model, UNKNOWN, self._goal, robot.joints.commands, self._fraction, STRAIGHT)
+            return play(robot, name, way)
 
         def look() -> None:
             family = load_postures().by_name[self._goal].family
@@ -96,7 +95,7 @@ class PostureChange:
         yield self._stop_walk
         self._clear()
         if min(self._robot.joints.stiffnesses) < 1.0:
-            yield lambda: self._stiffen(name)
+            yield lambda: stiffen(self._robot, name, self._snapshot())
         yield from self._until_still(name)
         seen = self._look()
         there = self._exact()
@@ -128,11 +127,6 @@ class PostureChange:
                     return
         self._give_up(f"not there after {MOST_MOVES} moves, but in {_words(seen)}")
 
-    def _stiffen(self, name: str) -> Task:
-        joints = self._robot.joints
-        joints.hold(self._snapshot().positions, [i for i in self._body if joints.stiffnesses[i] == 0.0])
-        return stiffness_task(self._robot, name, self._body, 1.0, STIFFEN_TIME)
-
     def _until_still(self, name: str) -> Iterator[Step]:
         for _ in range(round(LONGEST_SWAY / LOOK_TIME)):
             yield lambda: self._hold(name)
@@ -146,9 +140,6 @@ class PostureChange:
         )
 
     # --- looking and ending ---------------------------------------------------------------------------------------
-
-    def _direct(self) -> Move:
-        return direct(self._robot.model, UNKNOWN, self._goal, self._robot.joints.commands, self._fraction, STRAIGHT)
 
     def _look(self) -> Recognition:
         return recognise(self._robot.model, self._snapshot())

@@ -38,17 +38,12 @@ def path_to(
     A robot that is in its goal already is still moved to it exactly.
 
     Args:
-        goal: Name of the posture.
-        seen: What the robot is in.
         angles: (26,) command angles, rad.
         fraction: Share of the joints' top speeds for direct moves, above 0 to 1.
-        model: The robot.
-        moves: The moves with key frames there are.
     """
-    start = _Place(seen, angles)
     best: dict[str, float] = {}
     # The counter keeps equal times apart: moves have no order.
-    queue: list[tuple[float, int, _Place, list[Move]]] = [(0.0, 0, start, [])]
+    queue: list[tuple[float, int, _Place, list[Move]]] = [(0.0, 0, _Place(seen, angles), [])]
     count = 0
     while queue:
         time, _, place, path = heapq.heappop(queue)
@@ -59,7 +54,8 @@ def path_to(
             if arrival < best.get(move.goal, float("inf")):
                 best[move.goal] = arrival
                 count += 1
-                heapq.heappush(queue, (arrival, count, _place_of(move.goal, model), [*path, move]))
+                there = _Place(Recognition(move.goal, move.goal_family), posture(model, move.goal))
+                heapq.heappush(queue, (arrival, count, there, [*path, move]))
     return None
 
 
@@ -85,7 +81,3 @@ def _moves_from(place: _Place, fraction: float, model: RobotModel, moves: Sequen
             for entry in postures:
                 if entry.family in ground.families:
                     yield direct(model, begin, entry.name, angles, fraction, ground)
-
-
-def _place_of(name: str, model: RobotModel) -> _Place:
-    return _Place(Recognition(name, load_postures().by_name[name].family), posture(model, name))

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Mapping, Sequence, Tuple
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, number, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.balance.posture_recognition import BACK, BELLY, CROUCHING, FAMILIES, SITTING, STANDING
 from nao_sim_bridge.control.joints.curves import SmoothCurve
@@ -96,11 +95,9 @@ class Move:
 
     @property
     def goal_family(self) -> str:
-        """Family of the posture it ends in."""
         return load_postures().by_name[self.goal].family
 
     def __str__(self) -> str:
-        """As logs name it."""
         return f"{self.start} -> {self.goal}"
 
 
@@ -128,12 +125,9 @@ def moves_of(content: Any) -> Tuple[Move, ...]:
 
 
 def play(robot: SimulatedRobot, name: str, move: Move) -> Task:
-    """Run a move on the whole body: one smooth curve for each joint through all key frames.
+    """Run a move on the whole body, which must be stiff: one smooth curve for each joint through all key frames.
 
-    Args:
-        robot: Whose joints move; they must be stiff.
-        name: NAOqi name of the task.
-        move: What to play. A joint that no frame names stays where it is told to be.
+    A joint that no frame names stays where it is told to be.
     """
     body = range(len(robot.model.joints))
 
@@ -148,9 +142,6 @@ def direct(model: RobotModel, start: str, goal: str, angles: Sequence[float], fr
     """The straight move to a posture.
 
     Args:
-        model: The robot.
-        start: Posture or family it begins in.
-        goal: Posture it ends in.
         angles: (26,) command angles it begins at, rad.
         fraction: Share of the joints' top speeds, above 0 to 1.
         ground: What makes the move safe.
@@ -206,7 +197,7 @@ def _certainty(checked: Any, where: str) -> float:
         return 1.0
     if not isinstance(checked, Mapping):
         raise ConfigError(f"{where}.checked", f"is {checked!r}, not a mapping with runs and reached")
-    runs, reached = (_number(checked.get(key), f"{where}.checked.{key}") for key in ("runs", "reached"))
+    runs, reached = (number(checked.get(key), f"{where}.checked.{key}") for key in ("runs", "reached"))
     if not 0 < reached <= runs:
         raise ConfigError(f"{where}.checked", f"reached is {reached:g} of {runs:g} runs, allowed is above 0 to all")
     return reached / runs
@@ -215,20 +206,14 @@ def _certainty(checked: Any, where: str) -> float:
 def _frame(entry: Any, where: str, model: RobotModel) -> KeyFrame:
     check_keys(entry, where, ["time", "angles"])
     check_keys(entry["angles"], f"{where}.angles", [], model.joint_index)
-    angles = {}
-    for joint, value in entry["angles"].items():
-        index = model.joint_index[joint]
-        angles[index] = _number(value, f"{where}.angles.{joint}")
-    duration = _number(entry["time"], f"{where}.time")
+    angles = {
+        model.joint_index[joint]: float(number(value, f"{where}.angles.{joint}"))
+        for joint, value in entry["angles"].items()
+    }
+    duration = float(number(entry["time"], f"{where}.time"))
     if not duration > 0.0:
         raise ConfigError(f"{where}.time", f"is {duration}, not above 0")
     return KeyFrame(duration, angles)
-
-
-def _number(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ConfigError(where, f"is {value!r}, not a number")
-    return float(value)
 
 
 def _one_of(value: Any, where: str, allowed: Any) -> None:

@@ -7,22 +7,20 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Callable, Iterable, Mapping, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
-from nao_sim_bridge.base.finite import NotFinite, check_finite
+from nao_sim_bridge.base.errors import BadValue, NotFinite, UnknownName, check_finite
 from nao_sim_bridge.base.readings import Contact, Pose
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.body.faults import Faults
+from nao_sim_bridge.body.hand import pointed_at
 from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.body.led_animations import power_on
 from nao_sim_bridge.body.leds import LedBank
 from nao_sim_bridge.body.physics import NO_PUSHES, Physics
-from nao_sim_bridge.body.pointing import pointed_at
 from nao_sim_bridge.body.sensors.body import BodySensors
-from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise
+from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise, load_noise
 from nao_sim_bridge.body.sensors.inertial import InertialUnit
-from nao_sim_bridge.body.sensors.noise_settings import load_noise
 from nao_sim_bridge.body.sensors.power import PowerSystem
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.body.sensors.sonar import Sonars
@@ -70,13 +68,7 @@ class SimulatedRobot:
     Its clock starts at 0 with it: after a reset equal commands must meet equal times, to the last bit.
 
     Args:
-        model: The robot.
-        leds: Layout of its LEDs.
-        settings: Physics settings.
-        physics: The world with the robot in it.
         angles: (26,) joint angles it was placed with, rad (hands 0..1).
-        scene: Seed of the random numbers, noise and delay of the sensors.
-        task_ids: Source of the tasks' numbers.
     """
 
     def __init__(
@@ -106,6 +98,7 @@ class SimulatedRobot:
         self.leds.set(power_on(leds))
         self._sensors = BodySensors(model, settings, physics.links)
         self._physics = physics
+        self._ankles = [physics.links[name] for name in ANKLES]
         self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2, physics.start.yaw)
         self._imperfection = self._imperfect(scene)
         self._odometry: Odometry | None = None
@@ -174,11 +167,7 @@ class SimulatedRobot:
         self._fingers = wanted
 
     def point_at(self, ray: tuple[Vector3, Vector3] | None) -> None:
-        """Touch the sensor that a line of sight meets, and let go of the one before; None: let go.
-
-        Args:
-            ray: Eye (m) and unit vector, in world.
-        """
+        """Touch the sensor that a line of sight (eye in m, unit vector, in world) meets, and no other; None: none."""
         self._pointed = frozenset() if ray is None else pointed_at(self.model, self._physics, *ray)
 
     def drive(self, mode: str, values: Sequence[float]) -> None:
@@ -283,11 +272,9 @@ class SimulatedRobot:
         return () if self._torques is None else (partial(self._physics.turn_joints, self._torques),)
 
     def sense(self, tick: int, now: float, landed: bool = True, ticks: int = 1) -> Snapshot:
-        """Second half of a tick: read every sensor.
+        """Second half of a tick: read every sensor, for a snapshot of `tick` and `now`, s.
 
         Args:
-            tick: For the snapshot.
-            now: The same, s.
             landed: False at the start, when nothing has pressed on the robot yet.
             ticks: How many have passed since the last time.
         """
@@ -349,14 +336,12 @@ class SimulatedRobot:
             return None
         noise = None
         if scene.sensor_noise:
-            feet = [self._physics.links[name] for name in ANKLES]
-            noise = Noise(load_noise(), scene.sensor_noise, self.random, feet, self._dt)
+            noise = Noise(load_noise(), scene.sensor_noise, self.random, self._ankles, self._dt)
         return Imperfection(noise, Delay(ticks))
 
     def _reckon(self, positions: Sequence[float], imu: Imu, contacts: Sequence[Contact]) -> Pose:
         if self._odometry is None:
-            ankles = [self._physics.links[name] for name in ANKLES]
-            self._odometry = Odometry(self.model, ankles, positions, imu.angles)
+            self._odometry = Odometry(self.model, self._ankles, positions, imu.angles)
         return self._odometry.update(positions, imu.angles, contacts)
 
     def _pose_of(self, link: int, torso: Pose) -> Pose:

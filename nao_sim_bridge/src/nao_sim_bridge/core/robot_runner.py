@@ -12,6 +12,11 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 
 
+def _of_the_thread(name: str) -> property:
+    """A property that is the same for all robots; see `SimulationRunner`."""
+    return property(lambda self: getattr(self.thread, name))
+
+
 class RobotRunner:
     """As `SimulationRunner`, for a robot in a world whose thread belongs to all; see there. Any thread.
 
@@ -20,10 +25,6 @@ class RobotRunner:
 
     Attributes:
         thread: Of the world.
-
-    Args:
-        runner: Of the world.
-        simulation: The robot.
     """
 
     def __init__(self, runner: SimulationRunner, simulation: Simulation) -> None:
@@ -32,45 +33,21 @@ class RobotRunner:
         self._lock = threading.RLock()  # held while a command runs
         self._left_behind = self._ended = False
 
+    ticks, speed, paused, running, failed, set_speed, pause, resume = map(
+        _of_the_thread, "ticks speed paused running failed set_speed pause resume".split()
+    )
+
     @property
     def snapshot(self) -> Snapshot:
         """What the robot sensed at the last tick."""
         return self._simulation.snapshot
-
-    @property
-    def ticks(self) -> int:
-        """See `SimulationRunner`."""
-        return self.thread.ticks
-
-    @property
-    def speed(self) -> float:
-        """Simulated seconds per wall second that are asked for."""
-        return self.thread.speed
-
-    @property
-    def paused(self) -> bool:
-        """True while time stands still but for `advance`."""
-        return self.thread.paused
-
-    @property
-    def running(self) -> bool:
-        """True until the thread has ended."""
-        return self.thread.running
-
-    @property
-    def failed(self) -> bool:
-        """See `SimulationRunner`."""
-        return self.thread.failed
 
     def execute(self, command: Callable[[], Any], name: str = "command") -> Task:
         """Run `command()` in the simulation thread; the task ends with what it returns or raises."""
         if not self._left_behind:
             return self.thread.execute(partial(self._run, command), name)
         task = Task(name, 0)
-        try:
-            task.finish(self._run(command))
-        except Exception as error:
-            task.finish(error=error)
+        task.finish_with(partial(self._run, command))
         return task
 
     def call(self, command: Callable[[], Any], timeout: float = 5.0) -> Any:
@@ -93,18 +70,6 @@ class RobotRunner:
             if self._ended:
                 raise stopped_error()
             return command()
-
-    def set_speed(self, speed: float) -> None:
-        """Change the pace, for all robots."""
-        self.thread.set_speed(speed)
-
-    def pause(self) -> None:
-        """Let time stand still, for all robots."""
-        self.thread.pause()
-
-    def resume(self) -> None:
-        """Let time pass again, for all robots."""
-        self.thread.resume()
 
     def advance(self, seconds: float) -> Task:
         """Let `seconds` pass as fast as possible, for all robots; the task ends with what this one senses then."""

@@ -97,7 +97,6 @@ class SimulationRunner:
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Start the thread."""
         self._thread.start()
 
     def stop(self, timeout: float = 5.0) -> None:
@@ -255,7 +254,8 @@ class SimulationRunner:
             if self._stopping:
                 return False
         while self._commands:
-            self._run_command(*self._commands.popleft())
+            task, command = self._commands.popleft()
+            task.finish_with(command)
         with self._wake:
             due = self._delay() <= 0.0
         if due:
@@ -263,14 +263,6 @@ class SimulationRunner:
         if late:
             time.sleep(0.0)  # time that passes without a wait would keep every other thread from the interpreter
         return True
-
-    def _run_command(self, task: Task, command: Callable[[], Any]) -> None:
-        try:
-            result = command()
-        except Exception as error:
-            task.finish(error=error)
-        else:
-            task.finish(result)
 
     def _tick(self) -> None:
         snapshot = self._simulation.tick()

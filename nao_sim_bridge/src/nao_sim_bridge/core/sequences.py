@@ -26,8 +26,6 @@ def run_steps(
     """Run steps one after the other; each returns the task to wait for, or None.
 
     Args:
-        robot: Whose task numbers are used.
-        name: NAOqi name of the whole.
         steps: Called in order, each when the one before has ended; a killed step ends the whole.
         outcome: Called at the end, also at one before time; what it returns is the result of the whole.
     """
@@ -71,18 +69,12 @@ def is_on_feet(robot: SimulatedRobot, snapshot: Snapshot) -> bool:
 
 def wake_up(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
     """Stiffen the body where it is and, when on its feet, stand up; `on_end` is called after the last step."""
-    body = range(len(robot.model.joints))
-
-    def stiffen() -> Task:
-        now = snapshot()
-        limp = [i for i in body if robot.joints.stiffnesses[i] == 0.0]
-        robot.joints.hold(now.positions, limp)
-        return stiffness_task(robot, "wakeUp", body, 1.0, STIFFEN_TIME)
 
     def stand() -> Task | None:
         return posture_task(robot, "wakeUp", AWAKE_POSTURE) if is_on_feet(robot, snapshot()) else None
 
-    return run_steps(robot, "wakeUp", [lambda: stop_walk(robot), stiffen, stand, on_end])
+    steps = [lambda: stop_walk(robot), lambda: stiffen(robot, "wakeUp", snapshot()), stand, on_end]
+    return run_steps(robot, "wakeUp", steps)
 
 
 def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
@@ -104,14 +96,28 @@ def _body_is_stiff(robot: SimulatedRobot) -> bool:
     return all(stiff for stiff, joint in zip(robot.joints.stiffnesses, robot.model.joints) if not joint.is_hand)
 
 
-def posture_task(robot: SimulatedRobot, name: str, target: str, duration: float = POSTURE_TIME) -> Task:
-    """Move the whole body to a posture in `duration` s."""
+def posture_task(
+    robot: SimulatedRobot,
+    name: str,
+    target: str,
+    duration: float = POSTURE_TIME,
+    indices: Sequence[int] | None = None,
+) -> Task:
+    """Move the whole body, or some joints, to a posture in `duration` s."""
     goal = posture(robot.model, target)
+    moved = range(len(goal)) if indices is None else indices
 
     def curves(commands: Sequence[float]) -> dict[int, SmoothCurve]:
-        return {i: SmoothCurve((0.0, duration), (commands[i], angle)) for i, angle in enumerate(goal)}
+        return {i: SmoothCurve((0.0, duration), (commands[i], goal[i])) for i in moved}
 
-    return robot.motion.follow(name, range(len(goal)), curves)
+    return robot.motion.follow(name, moved, curves)
+
+
+def stiffen(robot: SimulatedRobot, name: str, now: Snapshot) -> Task:
+    """Stiffen the body where it is."""
+    body = range(len(robot.model.joints))
+    robot.joints.hold(now.positions, [i for i in body if robot.joints.stiffnesses[i] == 0.0])
+    return stiffness_task(robot, name, body, 1.0, STIFFEN_TIME)
 
 
 def stiffness_task(robot: SimulatedRobot, name: str, indices: Iterable[int], target: float, duration: float) -> Task:

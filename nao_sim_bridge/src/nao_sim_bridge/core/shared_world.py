@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Callable, Iterable, Protocol, Sequence
 
-from nao_sim_bridge.base.finite import NotFinite
+from nao_sim_bridge.base.errors import NotFinite
 from nao_sim_bridge.base.settings import Settings, load_settings
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.body.physics_world import PhysicsWorld
@@ -81,7 +81,6 @@ class SharedWorld:
             who lets time pass.
 
     Args:
-        scene: World, version of all robots, friction.
         settings: None for those of the file.
         renderer: What draws: "auto", "opengl" or "builtin", see `Renderer`; or one that has drawn this world before.
     """
@@ -237,11 +236,7 @@ class SharedWorld:
         return tuple(other.look() for other in self.robots if other is not robot)
 
     def close(self, keep_renderer: bool = False) -> None:
-        """Free the engine; nothing sounds or is heard or seen any more.
-
-        Args:
-            keep_renderer: Leave what draws to another world.
-        """
+        """Free the engine; nothing sounds or is heard or seen any more. `keep_renderer`: leave it to another world."""
         if self._air is not None:
             self._air.stop_all()
         for robot in self.robots:

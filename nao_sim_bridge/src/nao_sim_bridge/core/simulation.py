@@ -15,8 +15,7 @@ from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.start_lean import start_pitch
+from nao_sim_bridge.model.postures import posture, start_pitch
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.world.places import RobotPlace
 from nao_sim_bridge.world.render_state import RenderState, RobotLook
@@ -46,7 +45,6 @@ class Simulation:
             threads without which a fast run would give other results. Asked in the simulation thread.
 
     Args:
-        scene: World, robot, posture, seed.
         settings: Of the physics, for a world of its own; None for those of the file.
         renderer: What draws, for a world of its own; see `SharedWorld`.
         shared: A world that others are in, too; None for one of its own.
@@ -88,7 +86,6 @@ class Simulation:
 
     @property
     def ticks(self) -> int:
-        """Ticks since the start."""
         return self.shared.ticks
 
     @property

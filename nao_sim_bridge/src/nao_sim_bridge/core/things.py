@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Callable, Mapping, Sequence
 
 import numpy as np
@@ -10,16 +11,17 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue, NotAllowed, UnknownName
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import (
+    Quaternion,
     Vector3,
     from_roll_pitch_yaw,
     multiply,
     roll_pitch_yaw,
     rotate,
     rotate_back,
+    vector3,
 )
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task, TaskIds
-from nao_sim_bridge.body.glide import Glide
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.world import FLOOR, MOST_PARTS, World, WorldObject
 
@@ -45,8 +47,6 @@ class Things:
     A reset puts everything to where the world file says: what was placed goes, what was removed is back.
 
     Args:
-        world: The world.
-        task_ids: Source of the tasks' numbers.
         now: Tells simulated time, s.
         changed: Called when something was placed, moved at once or removed.
     """
@@ -71,7 +71,6 @@ class Things:
 
     @property
     def things(self) -> Mapping[str, WorldObject]:
-        """Everything that is there, by name."""
         return self._bodies.things
 
     def begin(self, physics: PhysicsWorld) -> None:
@@ -80,7 +79,6 @@ class Things:
         self._physics = physics
 
     def stop(self) -> None:
-        """End all ways."""
         glides, self._glides = self._glides, {}
         for _, task in glides.values():
             task.kill()
@@ -226,6 +224,54 @@ class Things:
         return (*rotate_back(floor, tuple(point)), *roll_pitch_yaw(turn))
 
 
+@dataclass(frozen=True)
+class Glide:
+    """A straight way, with a turn the short way round.
+
+    Attributes:
+        start: Where it begins.
+        target: Where it ends.
+        begin: When, s.
+        duration: How long it takes, s.
+    """
+
+    start: Pose
+    target: Pose
+    begin: float
+    duration: float
+
+    @property
+    def velocity(self) -> Vector3:
+        """On the way, in m/s."""
+        dx, dy, dz = (b - a for a, b in zip(self.start.position, self.target.position))
+        return (dx / self.duration, dy / self.duration, dz / self.duration)
+
+    def ended(self, now: float) -> bool:
+        """Whether the end has been reached at a time in s."""
+        return now >= self.begin + self.duration - 1e-9
+
+    def at(self, now: float) -> Pose:
+        """The pose at a time in s; that of the end afterwards."""
+        if self.ended(now):
+            return self.target
+        share = max(now - self.begin, 0.0) / self.duration
+        x, y, z = (a + share * (b - a) for a, b in zip(self.start.position, self.target.position))
+        return Pose((x, y, z), slerp(self.start.orientation, self.target.orientation, share))
+
+
+def slerp(first: Quaternion, second: Quaternion, share: float) -> Quaternion:
+    """The orientation at a share 0..1 of the way between two, the short way round."""
+    cosine = sum(a * b for a, b in zip(first, second))
+    if cosine < 0.0:
+        second, cosine = (-second[0], -second[1], -second[2], -second[3]), -cosine
+    angle = math.acos(min(cosine, 1.0))
+    if angle < 1e-6:
+        return second
+    near, far = (math.sin(part * angle) / math.sin(angle) for part in (1.0 - share, share))
+    x, y, z, w = (near * a + far * b for a, b in zip(first, second))
+    return (x, y, z, w)
+
+
 def _listed(names: object) -> str:
     return ", ".join(sorted(names)) or "nothing"
 
@@ -233,15 +279,13 @@ def _listed(names: object) -> str:
 def _checked_place(position: Sequence[float]) -> Vector3:
     if len(position) != 3 or not all(abs(value) <= FURTHEST for value in position):
         raise BadValue("position", list(position), f"[x, y, z] in m, each -{FURTHEST:g}..{FURTHEST:g}")
-    x, y, z = (float(value) for value in position)
-    return x, y, z
+    return vector3(position)
 
 
 def _checked_rpy(rpy: Sequence[float]) -> Vector3:
     if len(rpy) != 3 or not all(math.isfinite(value) for value in rpy):
         raise BadValue("rpy", list(rpy), "[roll, pitch, yaw] in rad")
-    roll, pitch, yaw = (float(value) for value in rpy)
-    return roll, pitch, yaw
+    return vector3(rpy)
 
 
 def _radius(shape: Shape) -> float:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Sequence
 
 from nao_sim_bridge.base.errors import SimulationError
-from nao_sim_bridge.base.rotations import Vector3, from_roll_pitch_yaw, rotate
+from nao_sim_bridge.base.rotations import Vector3, from_roll_pitch_yaw, plus, rotate
 from nao_sim_bridge.base.samples import Sound
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
@@ -24,9 +23,6 @@ class WorldSounds:
 
     Args:
         simulation: Whose world it is; nothing is added to its ticks when the world is silent.
-        world: That world.
-        speak: Says texts.
-        read: Reads files.
 
     Raises:
         WorldError: A file cannot be read, or a text cannot be said.
@@ -57,9 +53,9 @@ class WorldSounds:
             return rotate(self._world.floor.orientation, sound.position)
         pose = snapshot.objects.get(sound.on)
         if pose is not None:
-            return _sum(pose.position, rotate(pose.orientation, sound.position))
+            return plus(pose.position, rotate(pose.orientation, sound.position))
         thing = next(thing for thing in self._world.objects if thing.name == sound.on)
-        in_floor = _sum(thing.position, rotate(from_roll_pitch_yaw(*thing.rpy), sound.position))
+        in_floor = plus(thing.position, rotate(from_roll_pitch_yaw(*thing.rpy), sound.position))
         return rotate(self._world.floor.orientation, in_floor)
 
     def _look(self, snapshot: Snapshot) -> None:
@@ -91,7 +87,3 @@ def _made(sound: WorldSound, speak: Speak, read: Read, world: World) -> Sound:
         return make_sound(sound, speak, read)
     except SimulationError as error:
         raise WorldError(f"world {world.name}: sound {sound.name!r}", str(error)) from error
-
-
-def _sum(first: Sequence[float], second: Sequence[float]) -> Vector3:
-    return (first[0] + second[0], first[1] + second[1], first[2] + second[2])

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Tuple
 
-from nao_sim_bridge.base.config import read_settings
-from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.config import config_file, read_settings
 
 FILE = "recognition.json"
 

@@ -13,14 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from nao_sim_bridge.base.config import check_keys, read_json, vector
+from nao_sim_bridge.base.config import check_keys, config_file, read_json, vector
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.kinematics import matrix_rpy, rpy_matrix
 from nao_sim_bridge.model.leds_layout import Lamp, load_leds
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.robot_model import frozen_mapping
-from nao_sim_bridge.model.shapes import SEEN_KINDS, Shape, read_shape
+from nao_sim_bridge.model.shapes import SEEN_KINDS, Shape, read_shape, with_right_side
 
 FILE = "appearance.json"
 PHALANX = "Phalanx"
@@ -83,15 +82,10 @@ def load_appearance(version: str = "V6") -> Appearance:
     unknown = sorted(set(authored) - links)
     if unknown:
         raise ConfigError(f"{FILE}: links", f"no link {unknown[0]!r}")
-    mirrored = {
-        "R" + name[1:]: tuple(shape.mirrored() for shape in shapes)
-        for name, shapes in authored.items()
-        if name.startswith("L")
-    }
     lamps = _lamp_figures(tables["lamps"], load_leds(version).lamps)
     return Appearance(
         materials=frozen_mapping(materials),
-        shapes=frozen_mapping({**authored, **mirrored}),
+        shapes=frozen_mapping(with_right_side(authored)),
         phalanx=phalanx,
         lamps=tuple(lamps),
     )
@@ -105,7 +99,6 @@ def _seen_shape(entry: Any, where: str, materials: Mapping[str, Any]) -> Shape:
 
 
 def _lamp_figures(tables: Any, lamps: tuple[Lamp, ...]) -> list[LampFigure]:
-    """A figure for each lamp of the layout."""
     where = f"{FILE}: lamps"
     check_keys(tables, where, ("eye", "ear", "brain", "chest", "foot"))
     figures = []

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Iterable, Sequence
+import math
+from typing import Iterable, Sequence, Tuple
 
 import numpy as np
 
@@ -59,3 +60,26 @@ def _half_hull(ordered: Sequence[tuple[float, float]]) -> list[tuple[float, floa
 
 def _turn(a: Sequence[float], b: Sequence[float], c: Sequence[float]) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+Point = Tuple[float, float]
+
+
+def outside(corners: Sequence[Point], point: Point) -> tuple[float, Point]:
+    """How far a point is outside a convex polygon (counter-clockwise), m, negative inside, and the unit vector out."""
+    x, y = point
+    deepest, way = -math.inf, (0.0, 0.0)
+    nearest, direction = math.inf, (0.0, 0.0)
+    for (ax, ay), (bx, by) in zip(corners, [*corners[1:], corners[0]]):
+        ex, ey = bx - ax, by - ay
+        length = math.hypot(ex, ey)
+        normal = (ey / length, -ex / length)
+        height = (x - ax) * normal[0] + (y - ay) * normal[1]
+        if height > deepest:
+            deepest, way = height, normal
+        share = min(max(((x - ax) * ex + (y - ay) * ey) / length**2, 0.0), 1.0)
+        dx, dy = x - ax - share * ex, y - ay - share * ey
+        distance = math.hypot(dx, dy)
+        if 0.0 < distance < nearest:
+            nearest, direction = distance, (dx / distance, dy / distance)
+    return (deepest, way) if deepest <= 0.0 else (nearest, direction)

@@ -9,11 +9,10 @@ from typing import Any
 
 import pybullet
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.model.shapes import Shape, read_shape
+from nao_sim_bridge.model.shapes import Shape, read_shape, with_right_side
 
 FILE = "collision.json"
 FINGERS = {"LHand": "LFingers", "RHand": "RFingers"}
@@ -34,12 +33,7 @@ def read_collision_shapes(model: RobotModel) -> dict[str, tuple[Shape, ...]]:
     }
     for name in shapes:
         _check_link(model, name, f"{FILE}: links")
-    mirrored = {
-        _right(name): tuple(shape.mirrored() for shape in of_link)
-        for name, of_link in shapes.items()
-        if name.startswith("L")
-    }
-    return {**shapes, **mirrored}
+    return with_right_side(shapes)
 
 
 def apart(model: RobotModel) -> Iterator[tuple[str, str]]:
@@ -53,7 +47,7 @@ def apart(model: RobotModel) -> Iterator[tuple[str, str]]:
     where = f"{FILE}: self_collision"
     keys = ("note", "reach_torso", "ignored_note", "ignored")
     section = check_keys(_tables()["self_collision"], where, keys)
-    reach_torso = {side for name in section["reach_torso"] for side in (name, _right(name))}
+    reach_torso = {side for name in section["reach_torso"] for side in (name, f"R{name[1:]}")}
     ignored = {frozenset(pair) for pair in section["ignored"]}
     for name in (*reach_torso, *(name for pair in ignored for name in pair)):
         _check_link(model, name, where)
@@ -80,11 +74,6 @@ def _check_link(model: RobotModel, name: str, where: str) -> None:
     known = {link.name for link in model.links} | set(FINGERS.values())
     if name not in known:
         raise ConfigError(where, f"no link {name!r} (allowed: {', '.join(sorted(known))})")
-
-
-def _right(name: str) -> str:
-    """The same link of the right side."""
-    return "R" + name[1:]
 
 
 @lru_cache(maxsize=None)

@@ -23,7 +23,6 @@ EVEN = 1e-6
 
 
 def sensor_places(model: RobotModel) -> dict[str, Place]:
-    """Places of all sensors by name."""
     single = [*model.imu.values(), *(camera.place for camera in model.cameras)]
     groups = (model.fsr, model.sonars, model.touch, model.microphones, model.loudspeakers)
     return {place.name: place for place in [*single, *(place for group in groups for place in group)]}

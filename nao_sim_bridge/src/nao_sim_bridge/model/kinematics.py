@@ -91,15 +91,7 @@ def transform(rotation: np.ndarray, position: Sequence[float]) -> np.ndarray:
 
 
 def link_transforms(model: RobotModel, angles: Sequence[float]) -> dict[str, np.ndarray]:
-    """Poses of the 25 links in the torso frame.
-
-    Args:
-        model: The robot.
-        angles: (26,) in Body order, rad; hands do not matter.
-
-    Returns:
-        Link name to (4, 4) transform.
-    """
+    """Link name to (4, 4) pose in the torso frame, for (26,) angles in Body order, rad; hands do not matter."""
     poses = {"Torso": np.eye(4)}
     for joint, angle in zip(model.joints, angles):
         if joint.child_link is not None:
@@ -109,12 +101,7 @@ def link_transforms(model: RobotModel, angles: Sequence[float]) -> dict[str, np.
 
 
 class LinkPoses(Dict[str, np.ndarray]):
-    """As `link_transforms`, each pose worked out when it is asked for; to be looked up, not gone through.
-
-    Args:
-        model: The robot.
-        angles: (26,) in Body order, rad; hands do not matter.
-    """
+    """As `link_transforms`, each pose worked out when it is asked for; to be looked up, not gone through."""
 
     def __init__(self, model: RobotModel, angles: Sequence[float]) -> None:
         super().__init__(Torso=np.eye(4))
@@ -131,15 +118,7 @@ class LinkPoses(Dict[str, np.ndarray]):
 
 
 def finger_transforms(model: RobotModel, opening: float) -> dict[str, np.ndarray]:
-    """Poses of the eight phalanges of a hand in the frame of its wrist link.
-
-    Args:
-        model: The robot.
-        opening: Hand value, 0 closed to 1 open.
-
-    Returns:
-        Phalanx name (`Finger11`) to (4, 4) transform.
-    """
+    """Phalanx name (`Finger11`) to (4, 4) pose in the frame of the wrist link; `opening` is 0 closed to 1 open."""
     poses = {}
     for finger in model.fingers:
         bend = transform(axis_matrix(finger.axis, (opening - 1.0) * finger.travel), (0.0, 0.0, 0.0))
@@ -148,10 +127,3 @@ def finger_transforms(model: RobotModel, opening: float) -> dict[str, np.ndarray
             poses[phalanx] = pose
             pose = pose @ transform(np.eye(3), (finger.length, 0.0, 0.0)) @ bend
     return poses
-
-
-def center_of_mass(model: RobotModel, angles: Sequence[float]) -> np.ndarray:
-    """(3,) centre of mass of the whole robot in the torso frame, m."""
-    poses = link_transforms(model, angles)
-    moment = sum(link.mass * (poses[link.name] @ np.append(link.com, 1.0))[:3] for link in model.links)
-    return moment / model.total_mass

@@ -14,9 +14,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError, UnknownName
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import VERSIONS, frozen_mapping
 
 FILE = "nao_leds.json"
@@ -204,7 +203,6 @@ def _eye_short_name(side: str, index: int) -> str:
 
 
 def _lamps(short_names: Mapping[str, tuple[int, ...]]) -> list[Lamp]:
-    """All lamps: eyes, ears, head, chest, feet."""
     blue, white = (0.1, 0.35, 1.0), (1.0, 1.0, 1.0)
     lamps = []
     for side in SIDES:

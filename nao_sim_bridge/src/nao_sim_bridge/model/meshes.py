@@ -125,7 +125,6 @@ def capsule(radius: float, length: float, around: int = AROUND) -> Mesh:
 
 
 def box(edges: tuple[float, ...]) -> Mesh:
-    """A box with sharp edges."""
     sides = []
     square = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     for axis in range(3):

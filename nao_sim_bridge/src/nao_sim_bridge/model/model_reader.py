@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from nao_sim_bridge.base.config import array, check_keys, read_json, vector
+from nao_sim_bridge.base.config import array, check_keys, config_file, read_json, vector
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import (
     FILE,
     VERSIONS,
@@ -42,6 +41,10 @@ HAND_KEYS = (
     "name type parent_link child_link origin_xyz_m origin_rpy_rad axis lower upper max_velocity_per_s "
     "max_torque_Nm note"
 ).split()
+SONAR_KEYS = (
+    "frame_note transducers_doc2x parent_link frequency_kHz cone_deg update_period_s range_m resolution_m "
+    "alsonar_threshold_m"
+).split()
 CAMERA_SECTION_OF = {"V6": "V6", "V5": "V5_V4"}
 
 
@@ -63,7 +66,6 @@ def read_place(entry: Any, where: str, extra: Iterable[str] = (), parent: str = 
 
 
 def read_places(entries: list[Any], where: str) -> tuple[Place, ...]:
-    """A list of frames."""
     return tuple(read_place(entry, f"{where}[{index}]") for index, entry in enumerate(entries))
 
 
@@ -75,7 +77,6 @@ class ModelReader:
         self.version = version
 
     def read(self) -> RobotModel:
-        """The whole model."""
         tables = self.tables
         joints = self.joints()
         links = self.links()
@@ -99,14 +100,14 @@ class ModelReader:
             links=links,
             coupled_limits=frozen_mapping(self.coupled_limits()),
             effectors=frozen_mapping({p.name: p for p in read_places(tables["effectors"], at("effectors"))}),
-            fsr=self.fsr(),
+            fsr=self.frames("fsr", ("range_N", "unit_in_ALMemory", "note")),
             imu=frozen_mapping(
                 {
                     name: read_place({"name": name, **imu[name.lower()]}, at("imu", name.lower()), sensor_extra)
                     for name in ("Accelerometer", "Gyrometer")
                 }
             ),
-            sonars=self.sonars(),
+            sonars=self.frames("sonars", SONAR_KEYS),
             cameras=self.cameras(),
             touch=read_places(tables["tactile"], at("tactile")),
             microphones=read_places(tables["microphones_V6"], at("microphones_V6")),
@@ -148,10 +149,8 @@ class ModelReader:
 
     def joints(self) -> tuple[Joint, ...]:
         """The joints in Body order, whatever their order in the file."""
-        joints = {}
-        for index, entry in enumerate(self.tables["joints"]):
-            joint = self.joint(entry, at(f"joints[{index}]"))
-            joints[joint.name] = joint
+        read = (self.joint(entry, at(f"joints[{index}]")) for index, entry in enumerate(self.tables["joints"]))
+        joints = {joint.name: joint for joint in read}
         order = self.tables["almotion_body_order"]
         if sorted(order) != sorted(joints):
             raise ConfigError(at("almotion_body_order"), "does not name the same joints as the table of joints")
@@ -198,34 +197,21 @@ class ModelReader:
 
     def coupled_limits(self) -> dict[str, CoupledLimit]:
         """Tables called `<joint>_by_<other joint>`."""
-        limits = {}
+        order, limits = self.tables["almotion_body_order"], {}
         for name, rows in self.tables["coupled_limits"].items():
             if name == "note":
                 continue
-            joint, _, by_joint = name.partition("_by_")
+            joint, by_joint = name.split("_by_")
             table = array(rows, at("coupled_limits", name), (-1, 3))
             if np.any(np.diff(table[:, 0]) <= 0.0):
                 raise ConfigError(at("coupled_limits", name), "first column does not ascend")
-            limits[joint] = CoupledLimit(joint, by_joint, table)
-        return limits
+            limits[joint] = CoupledLimit(order.index(joint), order.index(by_joint), [*map(tuple, table.tolist())])
+        return dict(sorted(limits.items(), key=lambda entry: entry[1].joint))
 
-    def fsr(self) -> tuple[Place, ...]:
-        """Foot pressure sensors."""
-        section = check_keys(self.tables["fsr"], at("fsr"), ("frames",), ("range_N", "unit_in_ALMemory", "note"))
-        return read_places(section["frames"], at("fsr.frames"))
-
-    def sonars(self) -> tuple[Place, ...]:
-        """One frame a side."""
-        section = check_keys(
-            self.tables["sonars"],
-            at("sonars"),
-            ("frames",),
-            (
-                "frame_note transducers_doc2x parent_link frequency_kHz cone_deg update_period_s range_m "
-                "resolution_m alsonar_threshold_m"
-            ).split(),
-        )
-        return read_places(section["frames"], at("sonars.frames"))
+    def frames(self, name: str, described: Iterable[str]) -> tuple[Place, ...]:
+        """The frames of a section that has them, and other keys which are not read."""
+        section = check_keys(self.tables[name], at(name), ("frames",), described)
+        return read_places(section["frames"], at(f"{name}.frames"))
 
     def cameras(self) -> tuple[Camera, ...]:
         """The two cameras with the field of view of the version."""
@@ -234,19 +220,11 @@ class ModelReader:
         cameras = []
         for index, entry in enumerate(section["frames"]):
             place = read_place(entry, at(f"cameras.frames[{index}]"), ("index",))
-            cameras.append(
-                Camera(
-                    name=place.name,
-                    index=int(entry["index"]),
-                    place=place,
-                    horizontal_fov=math.radians(optics["hfov_deg"]),
-                    vertical_fov=math.radians(optics["vfov_deg"]),
-                )
-            )
+            view = (math.radians(optics["hfov_deg"]), math.radians(optics["vfov_deg"]))
+            cameras.append(Camera(place.name, int(entry["index"]), place, *view))
         return tuple(cameras)
 
     def fingers(self) -> tuple[Finger, ...]:
-        """Fingers and thumb of a hand."""
         section = check_keys(
             self.tables["fingers"],
             at("fingers"),
@@ -256,11 +234,7 @@ class ModelReader:
         fingers = []
         for name, phalanges in section["per_hand"].items():
             first = phalanges[0]
-            base = {
-                "name": first,
-                "xyz_m": section["base_xyz_m"][first],
-                "rpy_rad": section["base_rpy_rad"][first],
-            }
+            base = {"name": first, "xyz_m": section["base_xyz_m"][first], "rpy_rad": section["base_rpy_rad"][first]}
             fingers.append(
                 Finger(
                     name=name,
@@ -274,7 +248,6 @@ class ModelReader:
         return tuple(fingers)
 
     def simulated_hand(self) -> SimulatedHand:
-        """The finger body of the physics."""
         where = at("simulated_hand")
         keys = "note origin_xyz_m axis mass_kg com_xyz_m inertia_kg_m2 travel_rad phalanx_mass_kg".split()
         section = check_keys(self.tables["simulated_hand"], where, keys)
@@ -307,10 +280,11 @@ class ModelReader:
         for index, entry in enumerate(section["types"]):
             required = "type model no_load_rpm stall_torque_mNm nominal_torque_mNm_max gear_ratio_A joints_A".split()
             check_keys(entry, at(f"motors.types[{index}]"), required, ("gear_ratio_B", "joints_B"))
-            ratios = {}
-            for group in "AB":
-                for joint in entry.get(f"joints_{group}", ()):
-                    ratios[joint] = float(entry[f"gear_ratio_{group}"])
+            ratios = {
+                joint: float(entry[f"gear_ratio_{group}"])
+                for group in "AB"
+                for joint in entry.get(f"joints_{group}", ())
+            }
             motors.append(
                 Motor(
                     model=entry["model"],

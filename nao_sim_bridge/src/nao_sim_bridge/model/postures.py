@@ -8,15 +8,18 @@ from functools import lru_cache
 
 import numpy as np
 
-from nao_sim_bridge.base.config import check_keys, read_json, vector
+from nao_sim_bridge.base.config import check_keys, config_file, read_json, vector
 from nao_sim_bridge.base.errors import UnknownName
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.robot_model import RobotModel, frozen_mapping
 
 FILE = "nao_postures.json"
 SECTIONS = ("_meta", "posture_families", "family_of", "description", "postures")
 OPTIONAL_SECTIONS = ("unknown_posture_name", "default_max_tries_goToPosture", "alternatives")
+# Pitch of the torso in world, rad, by the family of the posture: near the pose in which the stiff robot comes to rest.
+PITCH_OF_FAMILY = {"Sitting": -0.28, "LyingBelly": 1.45, "LyingBack": -1.5}
+# Leaning back on the hands, the seat and the heels at once.
+PITCH_OF_POSTURE = {"SitRelax": -0.05}
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,3 +79,8 @@ def posture(model: RobotModel, name: str) -> tuple[float, ...]:
         raise UnknownName("posture", name, by_name)
     lower, upper = model.limits_array().T
     return tuple(np.clip(by_name[name].angles, lower, upper).tolist())
+
+
+def start_pitch(name: str) -> float | None:
+    """Pitch of the torso in world at the start, rad, positive with the face down; None when on the feet."""
+    return PITCH_OF_POSTURE.get(name, PITCH_OF_FAMILY.get(load_postures().by_name[name].family))

@@ -6,11 +6,14 @@ joints are zero, so joint origins are translations. All values are SI units; arr
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Mapping
+from typing import Any, Mapping, Sequence
 
 import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 
 FILE = "nao_h25.json"
 VERSIONS = ("V6", "V5")
@@ -104,22 +107,29 @@ class Camera:
 
 @dataclass(frozen=True, eq=False)
 class CoupledLimit:
-    """Limits of one joint as they depend on another, linear between the rows.
+    """Limits of one joint that depend on where another one is, fast enough for every tick.
 
     Attributes:
-        joint: Joint that is limited.
-        by_joint: Joint that it depends on.
-        table: (n, 3) rows of [value of by_joint, lower, upper], rad, first column ascending.
+        joint: Index of the joint that is limited.
+        by: Index of the joint that it depends on.
+        rows: (value of `by`, lower, upper) in rad, first column ascending; linear between rows.
     """
 
-    joint: str
-    by_joint: str
-    table: np.ndarray
+    joint: int
+    by: int
+    rows: Sequence[tuple[float, float, float]]
 
     def limits_at(self, value: float) -> tuple[float, float]:
-        """Lower and upper limit in rad when `by_joint` is at `value` rad; the ends hold outside the table."""
-        by, lower, upper = self.table.T
-        return float(np.interp(value, by, lower)), float(np.interp(value, by, upper))
+        """Lower and upper limit in rad when the other joint is at `value` rad; the ends hold outside the table."""
+        rows = self.rows
+        after = bisect_right(rows, (value,))
+        if after == 0:
+            return rows[0][1], rows[0][2]
+        if after == len(rows):
+            return rows[-1][1], rows[-1][2]
+        (x0, low0, high0), (x1, low1, high1) = rows[after - 1], rows[after]
+        share = (value - x0) / (x1 - x0)
+        return low0 + share * (low1 - low0), high0 + share * (high1 - high0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,7 +221,7 @@ class RobotModel:
         chains: Name of a chain or group of joints to its joint names.
         chain_names: The five kinematic chains.
         links: The 25 links; a parent comes before its children.
-        coupled_limits: Limited joint name to its coupled limit.
+        coupled_limits: Limited joint name to its coupled limit, in the order of the joints.
         effectors: End transforms of the chains and the torso, by name.
         fsr: The eight foot pressure sensors.
         imu: Places of `Accelerometer` and `Gyrometer`, by name.
@@ -255,11 +265,9 @@ class RobotModel:
     total_mass: float
 
     def joint(self, name: str) -> Joint:
-        """The joint of that name."""
         return self.joints[self.joint_index[name]]
 
     def link(self, name: str) -> Link:
-        """The link of that name."""
         return next(link for link in self.links if link.name == name)
 
     def limits_array(self) -> np.ndarray:
@@ -269,11 +277,7 @@ class RobotModel:
         return limits
 
     def sole_polygon(self, side: str) -> np.ndarray:
-        """(n, 2) outline of a sole in its ankle roll frame, counter-clockwise, m.
-
-        Args:
-            side: `L` or `R`; the right sole is the mirror image of the left one.
-        """
+        """(n, 2) outline of the sole of `L` or, mirrored, `R` in its ankle roll frame, counter-clockwise, m."""
         if side == "L":
             return self.sole_contour
         polygon = (self.sole_contour * (1.0, -1.0))[::-1]
@@ -281,6 +285,35 @@ class RobotModel:
         return polygon
 
 
+def joint_kind(joint: str) -> str:
+    """Name of a joint without its side (`HipPitch`)."""
+    return joint[1:] if joint[0] in "LR" else joint
+
+
 def frozen_mapping(entries: Mapping) -> Mapping:
     """A read-only view of a copy of the mapping."""
     return MappingProxyType(dict(entries))
+
+
+def joint_names(names: Any, model: RobotModel) -> list[str]:
+    """Joint names behind a joint, a chain, or a list of both, in order.
+
+    Raises:
+        UnknownName: A name is neither a joint nor a chain.
+        BadValue: `names` is no string and no list, or empty, or holds something else than strings.
+    """
+    if isinstance(names, str):
+        names = [names]
+    if not isinstance(names, (list, tuple)) or not names:
+        raise BadValue("names", names, "a joint, a chain, or a list of them")
+    found: list[str] = []
+    for name in names:
+        if not isinstance(name, str):
+            raise BadValue("names", name, "the name of a joint or of a chain")
+        if name in model.joint_index:
+            found.append(name)
+        elif name in model.chains and all(n in model.joint_index for n in model.chains[name]):
+            found.extend(model.chains[name])
+        else:
+            raise UnknownName("joint or chain", name, [*model.joint_index, *model.chains])
+    return found

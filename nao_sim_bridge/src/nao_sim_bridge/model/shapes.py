@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -78,6 +78,12 @@ def read_shape(entry: Any, where: str, extra: Iterable[str] = (), kinds_known: S
     xyz = vector(entry.get("xyz", (0.0, 0.0, 0.0)), f"{where}.xyz")
     rpy = vector(entry.get("rpy", (0.0, 0.0, 0.0)), f"{where}.rpy")
     return Shape(kind, _floats(size), _floats(xyz), _floats(rpy), material)
+
+
+def with_right_side(shapes: Mapping[str, tuple[Shape, ...]]) -> dict[str, tuple[Shape, ...]]:
+    """Shapes by link of both sides, from those of the middle and of the left side, which are mirrored."""
+    left = {name: of_link for name, of_link in shapes.items() if name.startswith("L")}
+    return {**shapes, **{f"R{name[1:]}": tuple(shape.mirrored() for shape in left[name]) for name in left}}
 
 
 def rod(kind: str, radius: float, start: np.ndarray, end: np.ndarray, material: str = "") -> Shape:

@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Callable
 
 from nao_sim_bridge.base.closing import Step
-from nao_sim_bridge.base.paths import sounds_directory
+from nao_sim_bridge.base.config import sounds_directory
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.core.runner import SimulationRunner

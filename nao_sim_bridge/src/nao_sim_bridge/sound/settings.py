@@ -7,9 +7,8 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Mapping, Tuple
 
-from nao_sim_bridge.base.config import check_keys, read_settings
+from nao_sim_bridge.base.config import check_keys, config_file, read_settings
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 
 FILE = "sound.json"
 CHANNELS = ("left", "right", "front", "rear")

@@ -7,9 +7,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Iterable, Mapping, Sequence, Tuple
 
-from nao_sim_bridge.base.config import array, check_keys, read_json
+from nao_sim_bridge.base.config import array, check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.model.model_reader import load_model
 

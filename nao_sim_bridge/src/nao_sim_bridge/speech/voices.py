@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Mapping, Tuple
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import BadValue, ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import frozen_mapping
 from nao_sim_bridge.speech.speech import Engine, SpeechError, listed
 

@@ -44,9 +44,6 @@ class Approach:
         relative: Where that is.
         gait: How it walks.
         reached: Called each time that it has got there.
-
-    Args:
-        simulation: Whose robot it is.
     """
 
     def __init__(self, simulation: Any) -> None:
@@ -120,6 +117,5 @@ class Approach:
 
 
 def goal_beside(robot: FootPose, place: Point, relative: Relative) -> FootPose:
-    """Where the robot should be in the world."""
     bearing = math.atan2(place[1] - robot.y, place[0] - robot.x)
     return FootPose(place[0], place[1], bearing).moved(relative.x, relative.y, relative.yaw)

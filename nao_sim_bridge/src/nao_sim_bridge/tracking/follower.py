@@ -64,10 +64,8 @@ class Follower:
         head: Turns the head.
         approach: Walks to the place.
         effector: Which arms point at the place.
+        velocity: Of the head at most, rad/s.
         search_share: Of the head's velocity while it searches.
-
-    Args:
-        simulation: Whose robot it is.
     """
 
     def __init__(self, simulation: Any) -> None:
@@ -80,7 +78,7 @@ class Follower:
         self._place: Point | None = None
         self._searching: int | None = None
         self._next_look = 0.0
-        self._full_speed = self.head.velocity
+        self.velocity = self.head.velocity
         self._switched_whole_body = False
         self._once: Task | None = None
         simulation.after_tick.append(self._tick)
@@ -88,7 +86,6 @@ class Follower:
 
     @property
     def mode(self) -> Mode:
-        """What follows."""
         return self._mode
 
     @mode.setter
@@ -96,20 +93,6 @@ class Follower:
         if mode is not self._mode:
             self._release()
         self._mode = mode
-
-    @property
-    def velocity(self) -> float:
-        """Of the head at most, rad/s."""
-        return self._full_speed
-
-    @velocity.setter
-    def velocity(self, velocity: float) -> None:
-        self._full_speed = velocity
-
-    @property
-    def place(self) -> Point | None:
-        """The place in the world of the robot's odometry, m; None when there is none."""
-        return self._place
 
     def follow(self, place: Point) -> None:
         """The place is there now, in the world of the robot's odometry, m."""
@@ -153,7 +136,7 @@ class Follower:
         elif now.time >= self._next_look:
             self._next_look = now.time + LOOK_TIME
             self._aim(now, self._place)
-        self.head.velocity = self._full_speed * (self.search_share if self._searching is not None else 1.0)
+        self.head.velocity = self.velocity * (self.search_share if self._searching is not None else 1.0)
         self.head.tick(self._simulation.settings.tick_s)
 
     def _aim(self, now: Snapshot, place: Point) -> None:

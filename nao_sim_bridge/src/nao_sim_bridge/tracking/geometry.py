@@ -7,6 +7,7 @@ from typing import Sequence, Tuple
 
 import numpy as np
 
+from nao_sim_bridge.base.rotations import vector3
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.model.frames import ROBOT, WORLD, Placement, robot_in_world, space_in_torso
 from nao_sim_bridge.model.kinematics import LinkPoses, quaternion_matrix, rpy_matrix, transform
@@ -31,18 +32,18 @@ def placement(model: RobotModel, now: Snapshot) -> Placement:
 
 def in_torso(model: RobotModel, placed: Placement, point: Sequence[float], frame: int) -> Point:
     """A place in the frame of the torso, from one of ALMotion's frames, m."""
-    return _point(space_in_torso(model, frame, placed) @ _homogeneous(point))
+    return vector3((space_in_torso(model, frame, placed) @ _homogeneous(point))[:3])
 
 
 def in_frame(model: RobotModel, placed: Placement, point: Sequence[float], frame: int) -> Point:
     """A place of the world in one of ALMotion's frames, m."""
     place = space_in_torso(model, WORLD, placed) @ _homogeneous(point)
-    return _point(np.linalg.inv(space_in_torso(model, frame, placed)) @ place)
+    return vector3((np.linalg.inv(space_in_torso(model, frame, placed)) @ place)[:3])
 
 
 def in_world(model: RobotModel, placed: Placement, point: Sequence[float], frame: int = ROBOT) -> Point:
     """A place in the world of the robot's odometry, from one of ALMotion's frames, m."""
-    return _point(placed.torso_in_world @ space_in_torso(model, frame, placed) @ _homogeneous(point))
+    return vector3((placed.torso_in_world @ space_in_torso(model, frame, placed) @ _homogeneous(point))[:3])
 
 
 def robot_pose(model: RobotModel, placed: Placement) -> Tuple[float, float, float]:
@@ -52,21 +53,18 @@ def robot_pose(model: RobotModel, placed: Placement) -> Tuple[float, float, floa
 
 
 def seen_place(camera: Sequence[float], alpha: float, beta: float, distance: float) -> Point:
-    """Where something is that a camera sees.
+    """Where something is that a camera sees: x, y, z in the frame of the pose, m.
 
     Args:
         camera: Pose of the camera: x, y, z in m, roll, pitch, yaw in rad.
         alpha: Of it in the picture, positive to the left, rad.
         beta: Of it in the picture, positive downwards, rad.
         distance: From the camera, m.
-
-    Returns:
-        x, y, z in the frame of the pose, m.
     """
     # Angles of a picture are those of the axes: tangents, not two turns in a row.
     ray = np.array((1.0, math.tan(alpha), -math.tan(beta)))
     place = np.asarray(camera[:3]) + rpy_matrix(camera[3:6]) @ (distance / math.sqrt(ray @ ray) * ray)
-    return float(place[0]), float(place[1]), float(place[2])
+    return vector3(place)
 
 
 def distance_of(size: float, angle: float) -> float:
@@ -78,11 +76,10 @@ def head_angles(model: RobotModel, point: Point, camera: int = 0) -> Tuple[float
     """HeadYaw and HeadPitch, rad within their limits, that bring a place into the middle of a camera's picture.
 
     Args:
-        model: The robot.
         point: In the frame of the torso, m.
         camera: Index, 0 top, 1 bottom.
     """
-    yaw_joint, pitch_joint = (model.joints[model.joint_index[name]] for name in HEAD)
+    yaw_joint, pitch_joint = map(model.joint, HEAD)
     neck = yaw_joint.origin + pitch_joint.origin
     mount = model.cameras[camera].place
     x, y, z = (a - b for a, b in zip(point, neck))
@@ -97,16 +94,9 @@ def head_angles(model: RobotModel, point: Point, camera: int = 0) -> Tuple[float
 
 
 def arm_angles(model: RobotModel, arm: str, point: Point) -> dict[str, float]:
-    """Angles of an arm, rad within the limits, that points at a place.
-
-    Args:
-        model: The robot.
-        arm: "LArm" or "RArm".
-        point: In the frame of the torso, m.
-    """
+    """Angles, rad within limits, of "LArm" or "RArm" that points at a place in the frame of the torso, m."""
     side = ARMS[arm]
-    pitch_joint = model.joints[model.joint_index[f"{side}ShoulderPitch"]]
-    roll_joint = model.joints[model.joint_index[f"{side}ShoulderRoll"]]
+    pitch_joint, roll_joint = model.joint(f"{side}ShoulderPitch"), model.joint(f"{side}ShoulderRoll")
     x, y, z = (a - b for a, b in zip(point, pitch_joint.origin))
     ahead = math.hypot(x, z)
     pitch = math.atan2(-z, x) if ahead > ABOVE else 0.0
@@ -131,7 +121,3 @@ def _limited(joint: object, angle: float) -> float:
 
 def _homogeneous(point: Sequence[float]) -> np.ndarray:
     return np.array((point[0], point[1], point[2], 1.0))
-
-
-def _point(place: np.ndarray) -> Point:
-    return float(place[0]), float(place[1]), float(place[2])

@@ -19,11 +19,7 @@ class HeadServo:
     Attributes:
         velocity: rad/s, at most.
         acceleration: rad/s2, at most.
-
-    Args:
-        simulation: Whose robot it is.
-        velocity: See above.
-        acceleration: See above.
+        resting: Whether the head has got to where it should be, or need not go anywhere.
     """
 
     def __init__(self, simulation: Any, velocity: float, acceleration: float) -> None:
@@ -34,16 +30,10 @@ class HeadServo:
         self._target: Tuple[float, float] | None = None
         self._angles = [0.0, 0.0]
         self._speeds = [0.0, 0.0]
-        self._resting = True
-
-    @property
-    def resting(self) -> bool:
-        """Whether the head has got to where it should be, or need not go anywhere."""
-        return self._resting
+        self.resting = True
 
     @property
     def limp(self) -> bool:
-        """Whether the head cannot move."""
         stiffnesses = self._simulation.robot.joints.stiffnesses
         return any(stiffnesses[i] == 0.0 for i in self._indices)
 
@@ -51,15 +41,15 @@ class HeadServo:
         """Turn to HeadYaw and HeadPitch, rad."""
         if self._target is None:
             self._take_up()
-        self._target, self._resting = target, False
+        self._target, self.resting = target, False
 
     def stop(self) -> None:
         """Leave the head where it is."""
-        self._target, self._resting = None, True
+        self._target, self.resting = None, True
 
     def tick(self, dt: float) -> None:
         """Move on by `dt` seconds."""
-        if self._target is None or self._resting:
+        if self._target is None or self.resting:
             return
         robot = self._simulation.robot
         if robot.motion.busy(self._indices) or self.limp:
@@ -74,7 +64,7 @@ class HeadServo:
         self._angles[1] = min(max(self._angles[1], low), high)
         speeds = {i: robot.model.joints[i].max_velocity for i in self._indices}
         robot.motion.set_targets(dict(zip(self._indices, self._angles)), speeds)
-        self._resting = all(there)
+        self.resting = all(there)
 
     def _take_up(self) -> None:
         """Begin from where the head is told to be now."""

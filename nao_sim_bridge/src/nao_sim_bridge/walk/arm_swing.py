@@ -23,9 +23,6 @@ class ArmSwing:
         enabled: Name of each arm to whether it may swing.
 
     Args:
-        model: The robot.
-        joints: Its commands.
-        settings: How far arms swing.
         stride: How far the left foot is ahead of the right one, m; None while the robot does not walk.
     """
 
@@ -43,7 +40,7 @@ class ArmSwing:
             arm: {
                 model.joint_index[name]: home[model.joint_index[name]]
                 for name in model.chains[arm]
-                if not model.joints[model.joint_index[name]].is_hand
+                if not model.joint(name).is_hand
             }
             for arm in ARMS
         }

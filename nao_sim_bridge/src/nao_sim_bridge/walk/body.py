@@ -1,11 +1,15 @@
-"""The walking body: where its centre of mass is, by what the joints are told and by what they measure."""
+"""The walking body: where its centre of mass, its feet and the robot are, by angles told or measured."""
 
 from __future__ import annotations
 
+from math import atan2
 from typing import Sequence, Tuple
 
+from nao_sim_bridge.base.readings import Pose
+from nao_sim_bridge.base.rotations import rotate
 from nao_sim_bridge.control.balance.stance import FEET, MassCarrier, limb_tips
 from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.walk.footsteps import FootPose, middle
 from nao_sim_bridge.walk.legs import LEFT, RIGHT, LegAngles, Legs
 from nao_sim_bridge.walk.matrices import Matrix, Vector
 
@@ -19,9 +23,6 @@ class WalkingBody:
     Attributes:
         legs: Their kinematics.
         mass: Of the robot, kg.
-
-    Args:
-        model: The robot.
     """
 
     def __init__(self, model: RobotModel) -> None:
@@ -49,7 +50,6 @@ class WalkingBody:
 
         Args:
             upper: As `upper_moment`.
-            pose: Of the legs.
         """
         hip, left, right = pose
         l_moment, l_ankle, l_foot = self.legs.state(LEFT, hip, left)
@@ -61,3 +61,25 @@ class WalkingBody:
             (upper[2] + l_moment[2] + r_moment[2]) / mass,
         )
         return com, ((l_ankle, l_foot), (r_ankle, r_foot))
+
+
+def foot_on_ground(body: WalkingBody, torso: Pose, angles: Sequence[float], side: int) -> FootPose:
+    """A foot in the world that the torso's pose is in; (26,) joint angles in rad."""
+    hip, left, right = body.leg_pose(angles)
+    _, ankle, foot = body.legs.state(side, hip, left if side == LEFT else right)
+    height = body.legs.sole_height
+    below = (ankle[0] - height * foot[2], ankle[1] - height * foot[5], ankle[2] - height * foot[8])
+    x, y, _ = rotate(torso.orientation, below)
+    ahead = rotate(torso.orientation, (foot[0], foot[3], foot[6]))
+    return FootPose(torso.position[0] + x, torso.position[1] + y, atan2(ahead[1], ahead[0]))
+
+
+def robot_on_ground(body: WalkingBody, torso: Pose, angles: Sequence[float]) -> FootPose:
+    """The robot, half way between its feet."""
+    return middle(foot_on_ground(body, torso, angles, LEFT), foot_on_ground(body, torso, angles, RIGHT))
+
+
+def frame_from(there: FootPose, here: FootPose) -> FootPose:
+    """Where a frame lies in the world in which something is `there`, when it is `here` in the frame."""
+    origin = FootPose(0.0, 0.0, 0.0).seen_from(here)
+    return there.moved(*origin)

@@ -57,7 +57,6 @@ def clip_step(placement: FootPose, side: int, limits: StepLimits) -> FootPose:
     Args:
         placement: Of the foot that steps, in the frame of the other one.
         side: Of the foot that steps, 1 left, -1 right.
-        limits: Of the step.
     """
     x = min(max(placement.x, limits.min_x), limits.max_x)
     aside = min(max(side * placement.y, limits.min_y), limits.max_y)

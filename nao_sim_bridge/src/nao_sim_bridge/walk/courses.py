@@ -46,12 +46,12 @@ class Course(ABC):
         haste: Share of its speed that a course may use, 0..1: a body that is off its plan comes back best on the spot.
 
     Args:
-        settings: Of the walk.
         rate: At which the robot walks already.
     """
 
-    def __init__(self, settings: WalkSettings, rate: Rate = STANDSTILL) -> None:
+    def __init__(self, settings: WalkSettings, gait: FeetGait, rate: Rate = STANDSTILL) -> None:
         self._settings = settings
+        self._gait = gait
         self._half = settings.foot_separation / 2.0
         self.frame = FootPose(0.0, 0.0, 0.0)
         self.reached = False
@@ -59,9 +59,9 @@ class Course(ABC):
         self._state: Any = self._first_state(rate)
 
     @property
-    @abstractmethod
     def rate(self) -> Rate:
         """Way of the robot in the step that it took last."""
+        return self._state.rate
 
     @abstractmethod
     def _first_state(self, rate: Rate) -> Any:
@@ -84,13 +84,7 @@ class Course(ABC):
         self.frame = other.frame
 
     def upcoming(self, support: FootPose, side: int, count: int) -> list[Step]:
-        """The next steps, fewer than `count` when the course ends.
-
-        Args:
-            support: The foot that carries.
-            side: Of the foot that moves next.
-            count: How many are wanted.
-        """
+        """The next steps, of the foot on the `side` first; fewer than `count` when the course ends."""
         steps: list[Step] = []
         state = self._state
         while len(steps) < count:
@@ -108,11 +102,14 @@ class Course(ABC):
         if made is not None:
             self._state = made[1]
 
-    def _landing(self, support: FootPose, side: int, rate: Rate, gait: FeetGait) -> FootPose:
+    def _step(self, side: int, landing: FootPose) -> Step:
+        return Step(side, landing, self._gait.period(side), self._gait.of(side))
+
+    def _landing(self, support: FootPose, side: int, rate: Rate) -> FootPose:
         """Where a foot lands when the robot goes on at a rate."""
         x, y, yaw = rate
         settings = self._settings
-        mine, other = gait.of(side), gait.of(-side)
+        mine, other = self._gait.of(side), self._gait.of(-side)
         x *= 2.0 * mine.max_step_x / (mine.max_step_x + other.max_step_x)
         aside = sidestep(y, y * side > 0.0, settings.foot_separation - settings.min_foot_separation)
         turn = spread(yaw, yaw * side > 0.0, settings.outer_turn)

@@ -8,7 +8,7 @@ from typing import Tuple
 from nao_sim_bridge.walk.body import LegPose, WalkingBody
 from nao_sim_bridge.walk.legs import LEFT
 from nao_sim_bridge.walk.matrices import Vector, about_y, then_about_x, turned
-from nao_sim_bridge.walk.observer import PendulumObserver
+from nao_sim_bridge.walk.pattern import PendulumObserver
 from nao_sim_bridge.walk.plan import WalkPlan
 from nao_sim_bridge.walk.settings import WalkSettings
 
@@ -24,8 +24,6 @@ class WalkFeedback:
         ankle: What the ankles of legs that carry get, roll and pitch, rad.
 
     Args:
-        settings: How strong it answers.
-        body: The robot.
         omega: Frequency of the pendulum, rad/s.
     """
 

@@ -1,8 +1,8 @@
-"""Poses of feet on the ground, and where the next one goes."""
+"""Poses of feet on the ground, and the way of one through the air."""
 
 from __future__ import annotations
 
-from math import atan2, cos, sin
+from math import atan2, cos, pi, sin
 from typing import NamedTuple
 
 # Feet stand side by side up to this, m, and parallel up to this, rad.
@@ -46,3 +46,32 @@ def middle(first: FootPose, second: FootPose) -> FootPose:
     turn = second.yaw - first.yaw
     turn = atan2(sin(turn), cos(turn))
     return FootPose((first.x + second.x) / 2.0, (first.y + second.y) / 2.0, first.yaw + turn / 2.0)
+
+
+class FootInAir(NamedTuple):
+    """A foot on its way.
+
+    Attributes:
+        pose: Over the ground.
+        height: Of the sole over the ground, m.
+    """
+
+    pose: FootPose
+    height: float
+
+
+def swing(start: FootPose, end: FootPose, share: float, lift: float) -> FootInAir:
+    """Where the foot is.
+
+    It goes forward with the least jerk and up and down as a cosine, at rest at both ends.
+
+    Args:
+        share: Of its time in the air, 0..1.
+        lift: Peak, m.
+    """
+    u = min(max(share, 0.0), 1.0)
+    s = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)
+    turn = end.yaw - start.yaw
+    turn = atan2(sin(turn), cos(turn))
+    pose = FootPose(start.x + s * (end.x - start.x), start.y + s * (end.y - start.y), start.yaw + s * turn)
+    return FootInAir(pose, 0.5 * lift * (1.0 - cos(2.0 * pi * u)))

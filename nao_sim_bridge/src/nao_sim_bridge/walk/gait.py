@@ -6,9 +6,8 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, Mapping
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import BadValue, ConfigError, UnknownName
-from nao_sim_bridge.base.paths import config_file
 
 FILE = "walk.json"
 SIDES = ("Left", "Right")

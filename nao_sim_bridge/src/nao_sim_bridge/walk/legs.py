@@ -44,11 +44,7 @@ class Sole:
 
 
 class Legs:
-    """Leg kinematics of one robot model.
-
-    Args:
-        model: The robot.
-    """
+    """Leg kinematics of one robot model."""
 
     def __init__(self, model: RobotModel) -> None:
         joints = {joint.name: joint for joint in model.joints}
@@ -75,20 +71,15 @@ class Legs:
     def solve(
         self, torso: Vector, rotation: Matrix, left: Sole, right: Sole, hip_yaw: float
     ) -> tuple[float, LegAngles, LegAngles]:
-        """Angles that put both soles where they are asked for, as far as one hip motor can.
+        """HipYawPitch and angles of both legs that put the soles where they are asked for, as far as one hip motor can.
 
         With the torso's pose given, each foot asks for a HipYawPitch of its own; the one in the middle leaves both
         feet turned off by the same small angle.
 
         Args:
             torso: Position of the torso, m.
-            rotation: Of the torso.
             left: Left sole, in the same frame as the torso.
-            right: Right sole.
             hip_yaw: HipYawPitch to begin with, rad: that of the last tick.
-
-        Returns:
-            HipYawPitch, left leg, right leg.
         """
         l_ankle, l_turn = self._in_torso(torso, rotation, left)
         r_ankle, r_turn = self._in_torso(torso, rotation, right)
@@ -145,11 +136,7 @@ class Legs:
         return (roll, pitch, knee, ankle_pitch, ankle_roll), atan2(off_y, off_x)
 
     def state(self, side: int, hip_yaw: float, angles: LegAngles) -> tuple[Vector, Vector, Matrix]:
-        """Forward kinematics of one leg in the torso frame.
-
-        Returns:
-            Mass times centre of mass of the leg (kg m), position of the ankle (m), rotation of the foot.
-        """
+        """Mass moment (kg m), place of the ankle (m) and rotation of the foot of one leg in the torso frame."""
         roll, pitch, knee, ankle_pitch, ankle_roll = angles
         yaw_turn = hip_rotation(side, hip_yaw)
         roll_turn = then_about_x(yaw_turn, roll)

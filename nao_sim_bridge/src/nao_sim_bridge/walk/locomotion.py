@@ -20,7 +20,7 @@ from nao_sim_bridge.control.balance.stability import Stability
 from nao_sim_bridge.control.joints.engine import MotionEngine
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.walk.arm_swing import ArmSwing
-from nao_sim_bridge.walk.body import WalkingBody
+from nao_sim_bridge.walk.body import WalkingBody, foot_on_ground, frame_from, robot_on_ground
 from nao_sim_bridge.walk.courses import STANDSTILL, Course, Rate, rate_limits
 from nao_sim_bridge.walk.footstep_plan import FootstepPlan, steps_to_come
 from nao_sim_bridge.walk.footsteps import FootPose, middle, side_by_side
@@ -34,7 +34,6 @@ from nao_sim_bridge.walk.velocity_course import VelocityCourse
 from nao_sim_bridge.walk.waits import WalkWaits
 from nao_sim_bridge.walk.walk_guard import WalkGuard
 from nao_sim_bridge.walk.walker import Readings, Walker
-from nao_sim_bridge.walk.whereabouts import foot_on_ground, frame_from, robot_on_ground
 
 # Where in a step the foot that carries tells where the plan's frame lies in the world.
 MIDDLE = 0.5
@@ -63,16 +62,6 @@ class Locomotion:
         arms: Swing of the arms.
         failures: Called when a move cannot begin or ends before time, with the cause, whether the walk had begun, and
             the place of the obstacle in the world of the robot's odometry, m, if one was the cause.
-
-    Args:
-        model: The robot.
-        settings: Gravity.
-        joints: Its commands.
-        motion: What moves its joints.
-        stability: What keeps it on its feet while it does not walk, and watches for falls.
-        reflexes: Which protections are on.
-        task_ids: Source of the tasks' numbers.
-        snapshot: What was sensed at the last tick; None before the first one.
     """
 
     def __init__(
@@ -90,7 +79,7 @@ class Locomotion:
         self._joints = joints
         self._motion = motion
         self._stability = stability
-        self._waits = WalkWaits(task_ids, self._drop_goal)
+        self._waits = WalkWaits(task_ids, self._stop_course)
         self._snapshot = snapshot
         self._settings = load_walk_settings()
         self.body = WalkingBody(model)
@@ -120,11 +109,8 @@ class Locomotion:
             return self.until_finished()
         now = self._now()
         feet = [foot_on_ground(self.body, now.odometry, self._joints.commands, side) for side in (LEFT, RIGHT)]
-        course = None
-        if not side_by_side(feet[0], feet[1], self._settings.foot_separation):
-            course = VelocityCourse(self._settings, FeetGait(), STANDSTILL)
-            course.end()
-        self._begin("moveInit", course)
+        stands = side_by_side(feet[0], feet[1], self._settings.foot_separation)
+        self._begin("moveInit", None if stands else self._ending(STANDSTILL))
         return self.until_finished("moveInit")
 
     def move(self, x: float, y: float, theta: float, gait: FeetGait) -> None:
@@ -146,12 +132,7 @@ class Locomotion:
         self._go("moveToward", (x * longest, y * aside, theta * turn), gait)
 
     def move_to(self, points: Sequence[FootPose], gait: FeetGait, time: float | None = None) -> Task:
-        """Walk to a pose through others, all as seen from the robot now.
-
-        Args:
-            points: The last one is where the walk ends.
-            gait: How.
-            time: Take so long at least, s.
+        """Walk to the last of `points` through the others, all as seen from the robot now, in `time` s or more.
 
         Returns:
             Ends when the robot stands, with whether it is there.
@@ -172,10 +153,7 @@ class Locomotion:
         return self._set_goal("moveTo", course)
 
     def set_steps(self, steps: Sequence[Placement], gait: FeetGait, clear: bool) -> Task:
-        """Make planned steps, after those that are planned already or instead of them.
-
-        Returns:
-            Ends when the last of them is made and the robot stands, with whether all were made.
+        """Make planned steps, after those planned or instead; ends when the robot stands, with whether all are made.
 
         Raises:
             MoveRefused: The robot cannot walk now.
@@ -188,8 +166,7 @@ class Locomotion:
 
     def stop(self) -> Task:
         """End the walk as soon as both feet can stand; the task ends then."""
-        if self.active:
-            self._stop_course()
+        self._stop_course()
         return self.until_finished("stopMove")
 
     def kill(self) -> None:
@@ -284,22 +261,16 @@ class Locomotion:
         return now
 
     def _go(self, name: str, rate: Rate, gait: FeetGait) -> None:
-        if not any(rate):
-            if self.active:
-                self._stop_course()
-            return
-        self._start(name, VelocityCourse(self._settings, gait, rate, self._rate()))
+        if any(rate):
+            self._start(name, VelocityCourse(self._settings, gait, rate, self._rate()))
+        else:
+            self._stop_course()
 
     def _set_goal(self, name: str, course: Course) -> Task:
         goal = self._waits.make_goal(name)
         self._start(name, course)
         self._waits.goal = goal
         return goal
-
-    def _drop_goal(self) -> None:
-        """Somebody has cancelled what the walk was for: it ends on two feet."""
-        if self.active:
-            self._stop_course()
 
     def _start(self, name: str, course: Course) -> None:
         if not self.active:
@@ -309,14 +280,19 @@ class Locomotion:
         self._change_course(course)
 
     def _stop_course(self) -> None:
+        """End a walk, if any, on two feet; also when somebody has cancelled what it was for."""
+        if not self.active:
+            return
         self._waits.end_goal(False)
         if self._walker is None or not self._walker.plan.walking:
             self._to_begin = False  # it has not made a step yet, or makes none any more
             return
-        gait = FeetGait()
-        ending = VelocityCourse(self._settings, gait, STANDSTILL, self._rate())
-        ending.end()
-        self._change_course(ending)
+        self._change_course(self._ending(self._rate()))
+
+    def _ending(self, rate: Rate) -> VelocityCourse:
+        course = VelocityCourse(self._settings, FeetGait(), STANDSTILL, rate)
+        course.end()
+        return course
 
     def _change_course(self, course: Course) -> None:
         if self._course is not None:
@@ -350,9 +326,9 @@ class Locomotion:
         if cause:
             self._fail(cause, started=False)
             self._hindered = True
-            return {i: _LegCurve(self, i) for i in self._legs}
-        self._walker = walker = Walker(self.body, self._settings, self._gravity, commands)
-        self._stability.walk = lambda: walker.feedback.error
+        else:
+            self._walker = walker = Walker(self.body, self._settings, self._gravity, commands)
+            self._stability.walk = lambda: walker.feedback.error
         return {i: _LegCurve(self, i) for i in self._legs}
 
     def _begin_course(self, walker: Walker, course: Course, now: Snapshot) -> None:

@@ -30,7 +30,6 @@ def about_z(angle: float) -> Matrix:
 
 
 def product(first: Matrix, second: Matrix) -> Matrix:
-    """`first` times `second`."""
     a, b, c, d, e, f, g, h, i = first
     j, k, l, m, n, o, p, q, r = second  # noqa: E741
     return (
@@ -67,7 +66,6 @@ def transposed(matrix: Matrix) -> Matrix:
 
 
 def turned(matrix: Matrix, vector: Vector) -> Vector:
-    """`matrix` times `vector`."""
     x, y, z = vector
     a, b, c, d, e, f, g, h, i = matrix
     return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)

@@ -18,11 +18,10 @@ from math import exp, sqrt
 from typing import Mapping, Sequence
 
 from nao_sim_bridge.walk.courses import Course, Step
-from nao_sim_bridge.walk.footsteps import FootPose, middle
+from nao_sim_bridge.walk.footsteps import FootInAir, FootPose, middle, swing
 from nao_sim_bridge.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.walk.pattern import Point, Segment, divergent_component
 from nao_sim_bridge.walk.settings import WalkSettings
-from nao_sim_bridge.walk.swing import FootInAir, swing
 
 # A foot is in the air for this at most, s: longer steps stand on both feet the longer.
 LONGEST_SWING = 0.48
@@ -40,7 +39,7 @@ class Phase(Enum):
 
 
 class WalkPlan:
-    """Advances a walk, tick by tick.
+    """Advances a walk, tick by tick; `gravity` in m/s2.
 
     Attributes:
         phase: What it is at.
@@ -52,12 +51,6 @@ class WalkPlan:
         pressure: Where the zero moment point is to be, m.
         time: Since the begin of the phase or step, s.
         waited: How long the foot in the air has been waited for, s.
-
-    Args:
-        settings: Of the walk.
-        gravity: m/s2.
-        feet: Where they stand.
-        com: Where the centre of mass is.
     """
 
     def __init__(self, settings: WalkSettings, gravity: float, feet: Mapping[int, FootPose], com: Point) -> None:
@@ -95,7 +88,6 @@ class WalkPlan:
         return min(max((self.time - 0.5 * double) / (self.step.period - double), 0.0), 1.0)
 
     def foot(self, side: int) -> FootInAir:
-        """Where a foot is to be now."""
         if self.phase is not Phase.STEP or self.step is None or side != self.step.side:
             return FootInAir(self.feet[side], 0.0)
         settings = self._settings
@@ -106,8 +98,7 @@ class WalkPlan:
 
     def rest(self) -> Point:
         """Where the body is at rest over both feet."""
-        (ax, ay), (bx, by) = self._pressed(self.feet[LEFT], LEFT), self._pressed(self.feet[RIGHT], RIGHT)
-        return ((ax + bx) / 2.0, (ay + by) / 2.0)
+        return self._between(self.feet)
 
     @property
     def robot(self) -> FootPose:
@@ -153,12 +144,7 @@ class WalkPlan:
         self._course = course
 
     def advance(self, dt: float, landed: bool) -> None:
-        """One tick.
-
-        Args:
-            dt: Of the tick, s.
-            landed: Whether the foot in the air, if any, feels the ground.
-        """
+        """One tick of `dt` s; `landed`: whether the foot in the air, if any, feels the ground."""
         if self._late(landed, dt):
             self.waited += dt
         else:
@@ -244,8 +230,7 @@ class WalkPlan:
             segments += [Segment(double, pressed, after), Segment(step.period - double, after, after)]
             pressed = after
             feet[step.side] = step.landing
-        (ax, ay), (bx, by) = self._pressed(feet[LEFT], LEFT), self._pressed(feet[RIGHT], RIGHT)
-        end = ((ax + bx) / 2.0, (ay + by) / 2.0)
+        end = self._between(feet)
         over = len(steps) <= self._settings.steps_ahead
         last = self._settings.settle_time if over else 0.5 * self._double(steps[-1])
         return divergent_component([*segments, Segment(last, pressed, end)], end, self.omega)
@@ -253,6 +238,10 @@ class WalkPlan:
     def _double(self, step: Step) -> float:
         """Time of a step in which both feet carry, s."""
         return max(self._settings.double_support_share * step.period, step.period - LONGEST_SWING)
+
+    def _between(self, feet: Mapping[int, FootPose]) -> Point:
+        (ax, ay), (bx, by) = self._pressed(feet[LEFT], LEFT), self._pressed(feet[RIGHT], RIGHT)
+        return ((ax + bx) / 2.0, (ay + by) / 2.0)
 
     def _pressed(self, foot: FootPose, side: int) -> Point:
         at = foot.moved(self._settings.pressure_ahead, -side * self._settings.pressure_inward)
@@ -278,10 +267,10 @@ class WalkPlan:
                 piece = Segment(left, (ax + (bx - ax) * share, ay + (by - ay) * share), piece.end)
             remaining.append(piece)
         self.divergent = divergent_component(remaining, self._after, self.omega)
-        self.pressure = remaining[0].start if remaining else self._pressure_at_end()
+        if remaining:
+            self.pressure = remaining[0].start
+        else:
+            self.pressure = self._pieces[-1][1].end if self._pieces else self.rest()
         (x, y), (dx, dy) = self.com, self.divergent
         step = dt * self.omega
         self.com = (x + step * (dx - x), y + step * (dy - y))
-
-    def _pressure_at_end(self) -> Point:
-        return self._pieces[-1][1].end if self._pieces else self.rest()

@@ -9,6 +9,36 @@ from typing import Tuple
 from nao_sim_bridge.base.config import array, check_keys
 from nao_sim_bridge.walk.gait import FILE, parameters, walk_file
 
+# Entries of the section `engine`, and the fields of the settings that they are; then those of its groups.
+PLAIN = {
+    "com_height_m": "com_height",
+    "lean_rad": "lean",
+    "pressure_ahead_m": "pressure_ahead",
+    "pressure_inward_m": "pressure_inward",
+    "double_support_share": "double_support_share",
+    "steps_ahead": "steps_ahead",
+    "extra_lift_m": "extra_lift",
+    "outer_turn_share": "outer_turn",
+    "ankle_damping_s": "ankle_damping",
+}
+CHANGE = "change_per_step"
+GROUPS = {
+    "times": {name + "_s": name + "_time" for name in ("stance", "push", "shift", "settle", "stand")},
+    CHANGE: dict.fromkeys(("x_m", "y_m", "yaw_rad"), "change"),  # all in one field
+    "observer": {"place": "observer_place", "speed": "observer_speed"},
+    "com_shift": {"gain": "shift_gain", "smoothing": "shift_smoothing", "limit_m": "shift_limit"},
+    "landing": {"loaded_n": "loaded", "latest_s": "latest", "sink_m": "sink"},
+    "habit": {"time_s": "habit_time", "within_m": "habit_within", "limit_m": "habit_limit"},
+    "calm": {"from_m": "calm_from", "range_m": "calm_range"},
+    "hold": {
+        "turn": "turn_hold",
+        "turn_limit_rad": "turn_hold_limit",
+        "aside": "aside_hold",
+        "aside_limit_m": "aside_hold_limit",
+    },
+    "arms": {"swing_rad": "arm_swing", "ease_s": "arm_ease"},
+}
+
 
 @dataclass(frozen=True)
 class WalkSettings:
@@ -105,58 +135,10 @@ def load_walk_settings() -> WalkSettings:
         ConfigError: The file cannot be read, or a key is unknown, missing or of the wrong kind.
     """
     where = f"{FILE}: engine"
-    plain = ["com_height_m", "lean_rad", "pressure_ahead_m", "pressure_inward_m", "double_support_share"]
-    plain += ["steps_ahead", "extra_lift_m", "outer_turn_share", "ankle_damping_s"]
-    groups = {
-        "times": ["stance_s", "push_s", "shift_s", "settle_s", "stand_s"],
-        "change_per_step": ["x_m", "y_m", "yaw_rad"],
-        "observer": ["place", "speed"],
-        "com_shift": ["gain", "smoothing", "limit_m"],
-        "landing": ["loaded_n", "latest_s", "sink_m"],
-        "habit": ["time_s", "within_m", "limit_m"],
-        "calm": ["from_m", "range_m"],
-        "hold": ["turn", "turn_limit_rad", "aside", "aside_limit_m"],
-        "arms": ["swing_rad", "ease_s"],
-    }
-    content = check_keys(walk_file()["engine"], where, [*plain, *groups])
-    values = {}
-    for group, keys in groups.items():
-        entry = check_keys(content[group], f"{where}.{group}", keys)
-        values[group] = array([entry[key] for key in keys], f"{where}.{group}", (len(keys),)).tolist()
-    stance, push, shift, settle, stand = values["times"]
-    return WalkSettings(
-        com_height=content["com_height_m"],
-        lean=content["lean_rad"],
-        pressure_ahead=content["pressure_ahead_m"],
-        pressure_inward=content["pressure_inward_m"],
-        double_support_share=content["double_support_share"],
-        steps_ahead=content["steps_ahead"],
-        extra_lift=content["extra_lift_m"],
-        stance_time=stance,
-        push_time=push,
-        shift_time=shift,
-        settle_time=settle,
-        stand_time=stand,
-        change=tuple(values["change_per_step"]),
-        outer_turn=content["outer_turn_share"],
-        observer_place=values["observer"][0],
-        observer_speed=values["observer"][1],
-        shift_gain=values["com_shift"][0],
-        shift_smoothing=values["com_shift"][1],
-        shift_limit=values["com_shift"][2],
-        ankle_damping=content["ankle_damping_s"],
-        loaded=values["landing"][0],
-        latest=values["landing"][1],
-        sink=values["landing"][2],
-        habit_time=values["habit"][0],
-        habit_within=values["habit"][1],
-        habit_limit=values["habit"][2],
-        calm_from=values["calm"][0],
-        calm_range=values["calm"][1],
-        turn_hold=values["hold"][0],
-        turn_hold_limit=values["hold"][1],
-        aside_hold=values["hold"][2],
-        aside_hold_limit=values["hold"][3],
-        arm_swing=values["arms"][0],
-        arm_ease=values["arms"][1],
-    )
+    content = check_keys(walk_file()["engine"], where, [*PLAIN, *GROUPS])
+    values = {field: content[key] for key, field in PLAIN.items()}
+    for group, fields in GROUPS.items():
+        entry = check_keys(content[group], f"{where}.{group}", fields)
+        numbers = array([entry[key] for key in fields], f"{where}.{group}", (len(fields),)).tolist()
+        values.update({"change": tuple(numbers)} if group == CHANGE else zip(fields.values(), numbers))
+    return WalkSettings(**values)

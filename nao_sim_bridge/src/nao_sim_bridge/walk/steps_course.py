@@ -27,22 +27,15 @@ class Placement(NamedTuple):
 
 
 class StepsCourse(Course):
-    """Makes steps that somebody else has planned; more can be added.
-
-    Args:
-        settings: Of the walk.
-        gait: Their height.
-        placements: Where they go; clipped to what the legs can step.
-    """
+    """Makes steps that somebody else has planned, clipped to what legs can step, as high as `gait` says; takes more."""
 
     def __init__(self, settings: WalkSettings, gait: FeetGait, placements: Sequence[Placement]) -> None:
-        self._gait = gait
         self._queue = list(placements)  # steps that are not begun; states count from its begin
         self._robot: FootPose | None = None
-        super().__init__(settings)
+        super().__init__(settings, gait)
 
     @property
-    def rate(self) -> Rate:  # noqa: D102
+    def rate(self) -> Rate:
         return STANDSTILL
 
     @property
@@ -68,7 +61,7 @@ class StepsCourse(Course):
         self._robot = middle(feet[1], feet[-1])
         return -side
 
-    def take(self, support: FootPose, side: int) -> None:  # noqa: D102
+    def take(self, support: FootPose, side: int) -> None:
         super().take(support, side)
         self._robot = None
         del self._queue[: self._state]
@@ -83,10 +76,9 @@ class StepsCourse(Course):
             return None
         placement = self._queue[state]
         if placement.side != side:  # the other foot is due: it stays where it is, beside this one
-            landing = self._landing(support, side, STANDSTILL, self._gait)
+            landing = self._landing(support, side, STANDSTILL)
             if self._robot is not None:
                 landing = self._robot.moved(0.0, side * self._half)
-            return Step(side, landing, self._gait.period(side), self._gait.of(side)), state
-        beside = clip_step(placement.beside, side, step_limits())
-        period = max(placement.period, self._gait.period(side))
-        return Step(side, support.moved(*beside), period, self._gait.of(side)), state + 1
+            return self._step(side, landing), state
+        step = self._step(side, support.moved(*clip_step(placement.beside, side, step_limits())))
+        return step._replace(period=max(placement.period, step.period)), state + 1

@@ -24,8 +24,6 @@ class TargetCourse(Course):
     """Goes to a place in the world, through others.
 
     Args:
-        settings: Of the walk.
-        gait: How it steps.
         goals: Poses of the robot in the world, the last one is where it ends.
         steps: Take so many at least; fewer would be faster than asked for.
         rate: At which the robot walks already.
@@ -39,25 +37,20 @@ class TargetCourse(Course):
         steps: int = 1,
         rate: Rate = STANDSTILL,
     ) -> None:
-        self._gait = gait
         self._goals = tuple(goals)
         self._steps = steps
         self._first = 1
-        super().__init__(settings, rate)
-
-    @property
-    def rate(self) -> Rate:  # noqa: D102
-        return self._state.rate
+        super().__init__(settings, gait, rate)
 
     def begin_towards(self, robot: FootPose) -> None:
         """Choose the foot that moves first, from where the robot is in the world."""
         way = self._goals[0].seen_from(robot)
         self._first = -1 if (way.y or way.yaw) < 0.0 else 1
 
-    def first_side(self, _: Mapping[int, FootPose]) -> int:  # noqa: D102
+    def first_side(self, _: Mapping[int, FootPose]) -> int:
         return self._first
 
-    def take(self, support: FootPose, side: int) -> None:  # noqa: D102
+    def take(self, support: FootPose, side: int) -> None:
         super().take(support, side)
         self._steps -= 1
         self.reached = self.reached or self._state.closed
@@ -80,9 +73,6 @@ class TargetCourse(Course):
         rate = self._change(state.rate, self._towards(way, goal))
         landing = self._landing_towards(support, side, rate, way)
         return self._step(side, landing), _Nearing(rate, goal, False)
-
-    def _step(self, side: int, landing: FootPose) -> Step:
-        return Step(side, landing, self._gait.period(side), self._gait.of(side))
 
     def _way(self, goal: int, centre: FootPose) -> FootPose:
         """From the robot to a goal, in the frame of the robot."""
@@ -108,7 +98,7 @@ class TargetCourse(Course):
     def _landing_towards(self, support: FootPose, side: int, rate: Rate, way: FootPose) -> FootPose:
         """As `_landing`, but not past the goal: of two steps, one goes further aside than the other."""
         centre = support.moved(0.0, side * self._half)
-        beside = self._landing(support, side, rate, self._gait).moved(0.0, -side * self._half)
+        beside = self._landing(support, side, rate).moved(0.0, -side * self._half)
         made = beside.seen_from(centre)
         x, y, yaw = (copysign(min(abs(m), abs(w)), m) if m * w > 0.0 else m for m, w in zip(made, way))
         return centre.moved(x, y, yaw).moved(0.0, side * self._half)

@@ -35,29 +35,12 @@ class _Going(NamedTuple):
 
 
 class VelocityCourse(Course):
-    """Goes on at a velocity until it is told to end.
-
-    Args:
-        settings: Of the walk.
-        gait: How it steps.
-        wanted: Way in one step.
-        rate: At which the robot walks already.
-    """
+    """Goes on at `wanted`, the way in one step, until it is told to end; `rate`: at which the robot walks already."""
 
     def __init__(self, settings: WalkSettings, gait: FeetGait, wanted: Rate, rate: Rate = STANDSTILL) -> None:
-        self._gait = gait
         self._wanted = within(wanted, gait)
         self._ending = False
-        super().__init__(settings, rate)
-
-    @property
-    def wanted(self) -> Rate:
-        """Way in one step that is asked for."""
-        return self._wanted
-
-    @property
-    def rate(self) -> Rate:  # noqa: D102
-        return self._state.rate
+        super().__init__(settings, gait, rate)
 
     def begin_at(self, robot: FootPose) -> None:
         """Begin from where the robot is in the world, and how it is turned there: its feet may stand in any way."""
@@ -94,7 +77,7 @@ class VelocityCourse(Course):
             x, y, yaw = self._wanted
             rate = self._change(state.rate, (self.haste * x, self.haste * y, self.haste * yaw))
         centre = support.moved(0.0, side * self._half)
-        beside = self._landing(support, side, rate, self._gait).moved(0.0, -side * self._half)
+        beside = self._landing(support, side, rate).moved(0.0, -side * self._half)
         way = beside.seen_from(centre)
         here = self.frame.moved(*centre)
         intended = here if state.intended is None else state.intended
@@ -106,9 +89,6 @@ class VelocityCourse(Course):
         landing = centre.moved(way.x, way.y + aside, way.yaw + turn).moved(0.0, side * self._half)
         after = self._kept_near(intended, here).moved(*way)
         return self._step(side, landing), _Going(rate, closing, after, False)
-
-    def _step(self, side: int, landing: FootPose) -> Step:
-        return Step(side, landing, self._gait.period(side), self._gait.of(side))
 
     def _hold(self, off: FootPose) -> tuple[float, float]:
         """What a step does about having come off to the side, m, and about having turned, rad."""

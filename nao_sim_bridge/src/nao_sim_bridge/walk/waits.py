@@ -14,7 +14,6 @@ class WalkWaits:
         goal: What the walk that goes on is for; None when it is for nothing that has an end.
 
     Args:
-        task_ids: Source of the tasks' numbers.
         dropped: Called when somebody has cancelled what the walk was for.
     """
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Sequence
 
-from nao_sim_bridge.base.rotations import Vector3, rotate
+from nao_sim_bridge.base.rotations import Vector3, plus, rotate
 from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.control.balance.posture_recognition import CROUCHING, STANDING, recognise
@@ -34,16 +34,7 @@ class Obstacle(NamedTuple):
 
 
 class WalkGuard:
-    """Looks after one robot's walks.
-
-    Args:
-        model: The robot.
-        gravity: m/s2.
-        joints: Their stiffnesses.
-        legs: Indices of the joints that walk.
-        stability: Tells of falls.
-        reflexes: Which protections are on.
-    """
+    """Looks after one robot's walks; `gravity` in m/s2."""
 
     def __init__(
         self,
@@ -64,7 +55,6 @@ class WalkGuard:
         self._echoes: Sequence[float] = ()
 
     def begin(self) -> None:
-        """A walk begins."""
         self._lifted = 0.0
 
     def hindrance(self, now: Snapshot) -> str:
@@ -98,8 +88,7 @@ class WalkGuard:
         if not guard.blocks(ahead / parameters()["MaxStepX"].default, now.sonars):
             return None
         seen = rotate(now.odometry.orientation, guard.obstacle_ahead(now.sonars).tolist())
-        x, y, z = (a + b for a, b in zip(now.odometry.position, seen))
-        return Obstacle(f"an obstacle {min(now.sonars):.2f} m ahead", (x, y, z))
+        return Obstacle(f"an obstacle {min(now.sonars):.2f} m ahead", plus(now.odometry.position, seen))
 
     def _soft_joints(self) -> str:
         stiffnesses = self._joints.stiffnesses

@@ -72,8 +72,6 @@ class Walker:
         feedback: What is done about where they are not.
 
     Args:
-        body: The robot.
-        settings: Of the walk.
         gravity: m/s2.
         commands: (26,) commanded angles to start from, rad.
     """
@@ -96,15 +94,11 @@ class Walker:
         self._off: Dict[int, float] | None = None
 
     def tick(self, readings: Readings, commands: Sequence[float], dt: float) -> Dict[int, float]:
-        """Advance by one tick.
+        """Advance by one tick of `dt` s; joint index to command, rad, of both legs.
 
         Args:
             readings: Of the last tick.
             commands: (26,) commanded angles, rad: where arms and head are.
-            dt: Of the tick, s.
-
-        Returns:
-            Joint index to command, rad, of both legs.
         """
         plan, body = self.plan, self._body
         if commands is not self._upper_of:

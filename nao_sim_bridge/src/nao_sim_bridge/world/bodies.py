@@ -6,7 +6,7 @@ from typing import Mapping, Sequence
 
 import pybullet
 
-from nao_sim_bridge.base.finite import check_finite
+from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.world.builder import build_object, build_world, place_of

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from nao_sim_bridge.base.bounded_files import read_bounded
+from nao_sim_bridge.base.config import read_bounded
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.sizes import load_sizes
 

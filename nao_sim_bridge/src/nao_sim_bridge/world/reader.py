@@ -19,10 +19,8 @@ from typing import Any
 import numpy as np
 import yaml
 
-from nao_sim_bridge.base.bounded_files import read_bounded
-from nao_sim_bridge.base.config import LARGEST_FILE, check_keys, vector
+from nao_sim_bridge.base.config import LARGEST_FILE, check_keys, read_bounded, vector, world_directory
 from nao_sim_bridge.base.errors import BadValue, ConfigError, did_you_mean
-from nao_sim_bridge.base.paths import world_directory
 from nao_sim_bridge.base.yaml_values import load_yaml
 from nao_sim_bridge.world.bumps import read_bumps
 from nao_sim_bridge.world.entries import GREY, check_bounds, color, entries, number

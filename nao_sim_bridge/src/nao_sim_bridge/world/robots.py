@@ -17,9 +17,8 @@ from nao_sim_bridge.model.appearance import OFF, load_appearance
 from nao_sim_bridge.model.kinematics import finger_transforms, link_transforms, matrix_rpy, rpy_matrix, transform
 from nao_sim_bridge.model.meshes import tessellate
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.model.postures import posture
+from nao_sim_bridge.model.postures import posture, start_pitch
 from nao_sim_bridge.model.shapes import Shape, rod
-from nao_sim_bridge.model.start_lean import start_pitch
 from nao_sim_bridge.world.entries import color
 from nao_sim_bridge.world.kinds import Kind, Made
 from nao_sim_bridge.world.world import Part, WorldError

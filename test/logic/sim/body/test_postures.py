@@ -26,8 +26,7 @@ from nao_sim_bridge.core.posture_moves import Ground, KeyFrame, Move, direct, lo
 from nao_sim_bridge.model.frames import frame_of
 from nao_sim_bridge.model.kinematics import link_transforms
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.model.postures import load_postures, posture
-from nao_sim_bridge.model.start_lean import start_pitch
+from nao_sim_bridge.model.postures import load_postures, posture, start_pitch
 from nao_sim_bridge.tracking.approach import Relative, goal_beside
 from nao_sim_bridge.tracking.geometry import HEAD, arm_angles, distance_of, head_angles, seen_place, turn_to
 from nao_sim_bridge.walk.footsteps import FootPose

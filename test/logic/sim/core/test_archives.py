@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from nao_sim_bridge.base.archives import Archive, BadArchive
-from nao_sim_bridge.base.bounded_files import TooLarge, read_bounded
-from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.config import TooLarge, read_bounded, read_json
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.sizes import ArchiveSizes, load_sizes, size_rows
 from nao_sim_bridge.behaviors.packages import read_package

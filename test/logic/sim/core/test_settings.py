@@ -8,7 +8,7 @@ import pytest
 
 from nao_sim_bridge.base import errors, settings, sizes
 from nao_sim_bridge.base.errors import BadValue, ConfigError, UnknownName
-from nao_sim_bridge.body.sensors import noise_settings
+from nao_sim_bridge.body.sensors import imperfection
 from nao_sim_bridge.control.balance import balance, fall_manager
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.hearing import settings as hearing
@@ -16,12 +16,12 @@ from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.world.places import NEAREST, ORIGIN, RobotPlace, checked_places, on_circle, parse_places
 
 MODEL = load_model()
-BALANCE, FALLS, NOISE, PHYSICS = balance.FILE, fall_manager.FILE, noise_settings.FILE, settings.FILE
+BALANCE, FALLS, NOISE, PHYSICS = balance.FILE, fall_manager.FILE, imperfection.FILE, settings.FILE
 HEARING, SIZES = hearing.FILE, sizes.FILE
 LOADERS = {
     BALANCE: (balance, lambda: balance.load_balance(MODEL)),
     FALLS: (fall_manager, lambda: fall_manager.load_fall_settings(MODEL)),
-    NOISE: (noise_settings, noise_settings.load_noise),
+    NOISE: (imperfection, imperfection.load_noise),
     PHYSICS: (settings, settings.load_settings),
     HEARING: (hearing, hearing.load_recognition.__wrapped__),
     SIZES: (sizes, sizes.load_sizes.__wrapped__),
@@ -45,7 +45,7 @@ def test_a_tick_is_a_whole_number_of_steps_and_an_encoder_has_4096_a_turn():
     physics = settings.load_settings()
     # ALMotion's own cycle is 10 to 20 ms: a command must not wait longer here.
     assert 0.002 <= physics.tick_s == physics.time_step_s * physics.steps_per_tick <= 0.02
-    assert noise_settings.load_noise().joints.angle_step == pytest.approx(2 * math.pi / 4096)
+    assert imperfection.load_noise().joints.angle_step == pytest.approx(2 * math.pi / 4096)
 
 
 def test_every_size_tells_where_it_counts():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.tasks import Task, TaskIds, killed_error
+from nao_sim_bridge.base.tasks import Task, TaskIds
 from nao_sim_bridge.base.timed_commands import AT_ONCE, merged, polyline
 
 OLD, NEW = ((0.1, 100), (0.2, 200), (0.3, 300)), ((0.5, 250), (0.6, 200))
@@ -35,7 +35,7 @@ def test_a_kill_drops_the_work_before_anybody_hears_of_the_end():
     task.add_done_callback(lambda done: order.append(("heard", done.killed)))
     after = task.then(bool)
     assert task.kill() and order == [("dropped", False), ("heard", True)]
-    assert task.killed and task.error is None and "glide (1) was killed" in str(killed_error(task))
+    assert task.killed and task.error is None
     assert after.killed and after.result(timeout=0) is False
 
 

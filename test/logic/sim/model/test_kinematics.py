@@ -9,19 +9,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_sim_bridge.base.config import read_json
-from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import cross, from_roll_pitch_yaw, multiply, roll_pitch_yaw, rotate, rotate_back
-from nao_sim_bridge.body.glide import Glide, slerp
 from nao_sim_bridge.control.balance.stance import StanceReader
 from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
 from nao_sim_bridge.control.whole_body.grounded_pose import Footing, GroundedPose
+from nao_sim_bridge.core.things import Glide, slerp
+from nao_sim_bridge.model.body_mass import center_of_links
 from nao_sim_bridge.model.frames import frame_of
 from nao_sim_bridge.model.kinematics import (
     LinkPoses,
     axis_matrix,
-    center_of_mass,
     finger_transforms,
     link_transforms,
     matrix_quaternion,
@@ -45,7 +44,7 @@ def test_the_zero_posture_meets_the_published_positions():
     poses = link_transforms(MODEL, ZERO)
     for name, expected in CHECKS.items():
         if name == "CoM_V60":
-            found = center_of_mass(MODEL, ZERO)
+            found = center_of_links(MODEL, MODEL.links, ZERO)
         elif name.endswith("_effector"):
             place = MODEL.effectors[name[: -len("_effector")]]
             found = (poses[place.parent_link] @ np.append(place.position, 1.0))[:3]
@@ -160,7 +159,7 @@ def test_stances_agree_with_the_kinematics(seed):
     angles, (roll, pitch) = chance.uniform(*MODEL.limits_array().T).tolist(), chance.uniform(-1.0, 1.0, 2).tolist()
     level, links = rpy_matrix((roll, pitch, 0.0)), link_transforms(MODEL, angles)
     stance = STANCES.read(angles, roll, pitch)
-    assert stance.com == pytest.approx(level @ center_of_mass(MODEL, angles))
+    assert stance.com == pytest.approx(level @ center_of_links(MODEL, MODEL.links, angles))
     left, right = (level @ links[f"{side}AnkleRoll"][:3, 3] for side in "LR")
     assert (stance.left_ankle, stance.right_ankle) == (pytest.approx(left), pytest.approx(right))
     assert stance.com_from_feet == pytest.approx(stance.com - (left + right) / 2)

@@ -8,17 +8,15 @@ import math
 import numpy as np
 import pytest
 
-from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError, UnknownName
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.appearance import load_appearance
-from nao_sim_bridge.model.body_mass import convex_hull
+from nao_sim_bridge.model.body_mass import convex_hull, outside
 from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.meshes import tessellate
 from nao_sim_bridge.model.model_reader import ModelReader, load_model
 from nao_sim_bridge.model.postures import posture
 from nao_sim_bridge.model.shapes import SEEN_KINDS, Shape, read_shape
-from nao_sim_bridge.model.support_polygon import outside
 
 TABLES = read_json(config_file("nao_h25.json"))
 MODEL = load_model()
@@ -59,7 +57,7 @@ def test_joints_are_in_body_order_with_hands_in_place_and_chains_make_up_the_bod
 
 def test_coupled_limits_interpolate_between_rows():
     limit = MODEL.coupled_limits["HeadPitch"]
-    assert limit.by_joint == "HeadYaw"
+    assert limit.by == MODEL.joint_index["HeadYaw"]
     assert limit.limits_at(0.0) == pytest.approx((-0.671951, 0.515047))
     halfway = (0.486074 + 0.756077) / 2.0
     assert limit.limits_at(halfway) == pytest.approx(((-0.671951 - 0.548033) / 2, (0.422021 + 0.37001) / 2))

@@ -7,9 +7,8 @@ import pytest
 
 from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.control.balance.external_collision import SLOWEST, ExternalCollision
-from nao_sim_bridge.control.joints.capsules import segment_distances
 from nao_sim_bridge.control.joints.idle import BREATH, EASE_TIME, FIVE_DEGREES, Idle, Mode
-from nao_sim_bridge.control.joints.self_collision import CONTACT, SelfCollision
+from nao_sim_bridge.control.joints.self_collision import CONTACT, SelfCollision, segment_distances
 from nao_sim_bridge.control.joints.smart_stiffness import ALL, FACTOR, MOVED, SETTLING, SPARE, SmartStiffness
 from nao_sim_bridge.model.kinematics import link_transforms
 from nao_sim_bridge.model.model_reader import load_model

@@ -5,9 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nao_sim_bridge.control.whole_body.balance_region import CORE, FRONT, MARGIN, balance_region, sole_corners
 from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
-from nao_sim_bridge.control.whole_body.footholds import Footholds, FootState
+from nao_sim_bridge.control.whole_body.footholds import (
+    CORE,
+    FRONT,
+    MARGIN,
+    Footholds,
+    FootState,
+    balance_region,
+    sole_corners,
+)
 from nao_sim_bridge.control.whole_body.grounded_pose import GroundedPose
 from nao_sim_bridge.model.frames import FEET, frame_of
 from nao_sim_bridge.model.model_reader import load_model

@@ -9,11 +9,9 @@ import pytest
 
 from nao_sim_bridge.base.readings import BodyReadings, Contact, Pose
 from nao_sim_bridge.base.rotations import from_roll_pitch_yaw
-from nao_sim_bridge.body.sensors.contacts import Press, in_link_frames
-from nao_sim_bridge.body.sensors.feet import FootSensors
+from nao_sim_bridge.body.sensors.body import FootSensors, Press, TouchSensors, in_link_frames
 from nao_sim_bridge.body.sensors.inertial import InertialUnit
-from nao_sim_bridge.body.sensors.touch import TouchSensors
-from nao_sim_bridge.body.touch_clicks import LONGEST_CLICK, LONGEST_PAUSE, ClickCounter
+from nao_sim_bridge.body.touch_gestures import LONGEST_CLICK, LONGEST_PAUSE, ClickCounter
 from nao_sim_bridge.model.model_reader import load_model
 
 MODEL = load_model()

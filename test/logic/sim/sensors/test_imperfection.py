@@ -8,8 +8,7 @@ from statistics import fmean, pstdev
 import pytest
 
 from nao_sim_bridge.base.readings import Contact, JointReadings, Pose
-from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise
-from nao_sim_bridge.body.sensors.noise_settings import load_noise
+from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise, load_noise
 from nao_sim_bridge.body.sensors.snapshot import Imu
 
 LEFT, RIGHT, HAND = 3, 7, 12

@@ -9,10 +9,8 @@ import pytest
 
 from nao_sim_bridge.base.settings import load_settings
 from nao_sim_bridge.body.sensors.battery import Battery, Status
-from nao_sim_bridge.body.sensors.heat import HOT, heat_shares, heat_status
-from nao_sim_bridge.body.sensors.motors import Motors, Work, motor_of
-from nao_sim_bridge.body.sensors.power import PowerSystem
-from nao_sim_bridge.body.temperatures import NOTHING_HOT, hot_devices
+from nao_sim_bridge.body.sensors.power import Motors, PowerSystem, Work, motor_of
+from nao_sim_bridge.body.temperatures import HOT, NOTHING_HOT, heat_shares, heat_status, hot_devices
 from nao_sim_bridge.model.model_reader import load_model
 
 MODEL, SETTINGS = load_model(), load_settings()

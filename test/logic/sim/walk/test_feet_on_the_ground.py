@@ -8,11 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nao_sim_bridge.walk.body import frame_from
 from nao_sim_bridge.walk.clipping import clip_step, feet_overlap, step_limits
-from nao_sim_bridge.walk.footsteps import FootPose, middle
+from nao_sim_bridge.walk.footsteps import FootPose, middle, swing
 from nao_sim_bridge.walk.legs import LEFT, RIGHT
-from nao_sim_bridge.walk.swing import swing
-from nao_sim_bridge.walk.whereabouts import frame_from
 
 LIMITS = step_limits()
 ROUNDING = 1e-9

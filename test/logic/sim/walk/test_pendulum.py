@@ -6,8 +6,7 @@ import math
 
 import pytest
 
-from nao_sim_bridge.walk.observer import PendulumObserver
-from nao_sim_bridge.walk.pattern import Segment, divergent_component
+from nao_sim_bridge.walk.pattern import PendulumObserver, Segment, divergent_component
 from nao_sim_bridge.walk.settings import load_walk_settings
 
 OMEGA, DT = 6.1, 1.0 / 120.0

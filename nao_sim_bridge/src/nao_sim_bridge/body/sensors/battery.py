@@ -72,7 +72,6 @@ class BatteryReading:
 
     @property
     def status(self) -> Status:
-        """The status word."""
         flags = {
             Status.END_OF_DISCHARGE: self.empty,
             Status.NEAR_END_OF_DISCHARGE: self.nearly_empty,
@@ -94,7 +93,6 @@ class Battery:
         reading: What its board tells.
 
     Args:
-        settings: Capacity, cells, charger.
         ambient: Temperature of the room, degC.
         tells_plugged: Whether its board reports that a charger is there; that of a V6 does not.
     """

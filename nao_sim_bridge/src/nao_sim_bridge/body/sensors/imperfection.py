@@ -9,12 +9,77 @@ from __future__ import annotations
 import math
 import random
 from collections import deque
+from dataclasses import asdict, dataclass
 from typing import Deque, Iterable, Mapping, NamedTuple, Sequence, Tuple
 
+from nao_sim_bridge.base.config import config_file, read_settings
+from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.readings import Contact, JointReadings, Pose
 from nao_sim_bridge.base.rotations import Vector3
-from nao_sim_bridge.body.sensors.noise_settings import NoiseSettings
 from nao_sim_bridge.body.sensors.snapshot import Imu
+
+FILE = "sensor_noise.json"
+
+
+@dataclass(frozen=True)
+class JointNoise:
+    """Of encoders: noise and step of an angle in rad (for hands: of the opening 0..1), noise of a speed in rad/s."""
+
+    angle: float
+    angle_step: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class InertialNoise:
+    """Of the inertial unit.
+
+    Attributes:
+        angle_wander: Slow error of roll, pitch and yaw, rad.
+        angle_wander_time_s: Time after which that error has little to do any more with what it was.
+        angle: Fast noise of the three angles, rad.
+        gyroscope: rad/s.
+        accelerometer: m/s2.
+    """
+
+    angle_wander: float
+    angle_wander_time_s: float
+    angle: float
+    gyroscope: float
+    accelerometer: float
+
+
+@dataclass(frozen=True)
+class FootNoise:
+    """Of the force sensors: error for good of each foot, and noise, both as shares of the force."""
+
+    calibration: float
+    force: float
+
+
+@dataclass(frozen=True)
+class NoiseSettings:
+    """All of `sensor_noise.json`: standard deviations, at a scale of 1."""
+
+    joints: JointNoise
+    inertial: InertialNoise
+    feet: FootNoise
+
+
+def load_noise() -> NoiseSettings:
+    """Settings as the file gives them.
+
+    Raises:
+        ConfigError: The file cannot be read, or a key is unknown, missing, or no number of 0 or more.
+    """
+    settings = read_settings(NoiseSettings, config_file(FILE))
+    for name, amounts in asdict(settings).items():
+        for key, amount in amounts.items():
+            is_time = key.endswith("_s")
+            if not math.isfinite(amount) or amount < 0.0 or (is_time and amount == 0.0):
+                allowed = "above 0" if is_time else "0 or more"
+                raise ConfigError(f"{FILE}: {name}.{key}", f"is {amount:g}, allowed is {allowed} and finite")
+    return settings
 
 
 class Felt(NamedTuple):
@@ -39,7 +104,6 @@ class Noise:
     Args:
         settings: Sizes of the errors at a scale of 1.
         scale: Multiplies all of them; 1 is a real robot.
-        stream: Where chance comes from.
         feet: Link indices of the feet, whose force sensors have errors of their own.
         dt: Length of a tick, s.
     """
@@ -102,11 +166,7 @@ class Noise:
 
 
 class Delay:
-    """Lets readings arrive late.
-
-    Args:
-        ticks: By how many ticks; 0 is at once.
-    """
+    """Lets readings arrive late, by so many ticks; 0 is at once."""
 
     def __init__(self, ticks: int) -> None:
         self._line: Deque[Felt] = deque(maxlen=ticks + 1)
@@ -118,12 +178,7 @@ class Delay:
 
 
 class Imperfection:
-    """Noise and delay of one robot.
-
-    Args:
-        noise: What spoils its readings; None for a robot without noise.
-        delay: How late they arrive.
-    """
+    """Noise, None for a robot without it, and delay of one robot."""
 
     def __init__(self, noise: Noise | None, delay: Delay) -> None:
         self._noise = noise

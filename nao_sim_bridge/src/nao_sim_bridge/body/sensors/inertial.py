@@ -6,7 +6,7 @@ import math
 from typing import Sequence
 
 from nao_sim_bridge.base.readings import BodyReadings
-from nao_sim_bridge.base.rotations import Vector3, cross, roll_pitch_yaw, rotate, rotate_back
+from nao_sim_bridge.base.rotations import Vector3, cross, roll_pitch_yaw, rotate, rotate_back, vector3
 from nao_sim_bridge.body.sensors.snapshot import Imu
 
 
@@ -20,7 +20,7 @@ class InertialUnit:
     """
 
     def __init__(self, place: Sequence[float], gravity: float, heading: float = 0.0) -> None:
-        self._place = tuple(float(p) for p in place)
+        self._place = vector3(place)
         self._gravity = gravity
         self._heading = heading
         self._velocity: Vector3 | None = None

@@ -13,8 +13,7 @@ from typing import Mapping, Tuple
 from nao_sim_bridge.base.readings import Contact, FootForces, Pose
 from nao_sim_bridge.base.rotations import Vector3, rotate_back
 from nao_sim_bridge.body.sensors.battery import BatteryReading
-from nao_sim_bridge.body.sensors.body import BodySensors
-from nao_sim_bridge.body.sensors.contacts import Presses, in_link_frames, not_from_below
+from nao_sim_bridge.body.sensors.body import BodySensors, Presses, in_link_frames, not_from_below
 from nao_sim_bridge.world.world import WorldObject
 
 
@@ -94,12 +93,10 @@ class Snapshot:
 
     @cached_property
     def left_foot(self) -> FootForces:
-        """Force sensors of the left foot."""
         return self.sensors.foot_forces("L", self._presses)
 
     @cached_property
     def right_foot(self) -> FootForces:
-        """Force sensors of the right foot."""
         return self.sensors.foot_forces("R", self._presses)
 
     @cached_property
@@ -119,7 +116,7 @@ class Snapshot:
     @cached_property
     def currents(self) -> Tuple[float, ...]:
         """Electric current of each motor, A, absolute."""
-        return self.sensors.currents(self.torques)
+        return self.sensors.motors.currents(self.torques)
 
     @cached_property
     def _presses(self) -> Presses:

@@ -9,10 +9,10 @@ wall is heard where it is perpendicular to the line of sight, if that is within 
 from __future__ import annotations
 
 import math
-from typing import Callable, Iterator, List, NamedTuple, Protocol, Sequence, Tuple
+from typing import Iterator, List, NamedTuple, Protocol, Sequence, Tuple
 
 from nao_sim_bridge.base.readings import Pose
-from nao_sim_bridge.base.rotations import Vector3, from_roll_pitch_yaw, rotate
+from nao_sim_bridge.base.rotations import Vector3, from_roll_pitch_yaw, plus, rotate, vector3
 from nao_sim_bridge.model.robot_model import RobotModel
 
 PERIOD = 0.1
@@ -74,16 +74,12 @@ class Sonars:
 
     Attributes:
         echoes: Of each sonar, distances in m, nearest first; a new tuple with each measurement.
-
-    Args:
-        model: The robot.
-        surroundings: What is around it.
     """
 
     def __init__(self, model: RobotModel, surroundings: Surroundings) -> None:
-        self._places = [(_tuple(s.position), rotate(from_roll_pitch_yaw(*s.rpy), FORWARD)) for s in model.sonars]
+        self._places = [(vector3(s.position), rotate(from_roll_pitch_yaw(*s.rpy), FORWARD)) for s in model.sonars]
         # Both are so near to each other that one search for surfaces does for them.
-        self._middle = _tuple(sum(s.position for s in model.sonars) / len(model.sonars))
+        self._middle = vector3(sum(s.position for s in model.sonars) / len(model.sonars))
         self._surroundings = surroundings
         self._next = 0.0
         self._last: tuple[float, ...] = (NO_ECHO,) * len(self._places)
@@ -103,7 +99,9 @@ class Sonars:
         return self._last
 
     def _measure(self, torso: Pose) -> tuple[Echoes, ...]:
-        to_world = _to_world(torso)
+        def to_world(point: Vector3) -> Vector3:
+            return plus(torso.position, rotate(torso.orientation, point))
+
         ahead = rotate(torso.orientation, FORWARD)
         surfaces = self._surroundings.surfaces(to_world(self._middle), ahead, FARTHEST)
         heard: list[tuple[int, float, Vector3, Surface]] = []
@@ -179,18 +177,3 @@ def _merged(distances: Sequence[float]) -> Echoes:
         if not kept or distance - kept[-1] > MERGED:
             kept.append(distance)
     return tuple(kept)
-
-
-def _to_world(frame: Pose) -> Callable[[Vector3], Vector3]:
-    ox, oy, oz = frame.position
-
-    def to_world(point: Vector3) -> Vector3:
-        x, y, z = rotate(frame.orientation, point)
-        return (ox + x, oy + y, oz + z)
-
-    return to_world
-
-
-def _tuple(values: Sequence[float]) -> Vector3:
-    x, y, z = (float(value) for value in values)
-    return x, y, z

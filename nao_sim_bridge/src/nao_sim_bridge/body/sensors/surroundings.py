@@ -18,12 +18,7 @@ AHEAD, AROUND = 0.5, 0.9
 
 
 class PhysicalSurroundings:
-    """The other bodies of the world. Simulation thread only.
-
-    Args:
-        client: PyBullet's physics client.
-        robot: Body id of the robot, which does not hear itself.
-    """
+    """The other bodies of the world; the robot does not hear itself. Simulation thread only."""
 
     def __init__(self, client: int, robot: int) -> None:
         self._client = client

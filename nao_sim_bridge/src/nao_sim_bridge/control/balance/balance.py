@@ -12,8 +12,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Mapping, Sequence, Tuple
 
-from nao_sim_bridge.base.config import check_keys, read_json, vector
-from nao_sim_bridge.base.paths import config_file
+from nao_sim_bridge.base.config import check_keys, config_file, read_json, vector
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.control.balance.capture_point import BodyMotion
 from nao_sim_bridge.control.balance.stance import StanceReader
@@ -115,10 +114,6 @@ class Balance:
     Attributes:
         enabled: False while somebody has switched push recovery off.
         acting: Whether there are corrections now.
-
-    Args:
-        settings: How strong it answers.
-        reader: Tells where the body belongs with the commanded angles.
     """
 
     def __init__(self, settings: BalanceSettings, reader: StanceReader) -> None:
@@ -133,7 +128,6 @@ class Balance:
 
     @property
     def acting(self) -> bool:
-        """Whether there are corrections now."""
         return any(self._values)
 
     def release(self) -> None:
@@ -146,13 +140,7 @@ class Balance:
         self._rested = True
 
     def corrections(self, motion: BodyMotion, commands: Sequence[float], dt: float) -> Mapping[int, float]:
-        """What to add to joint commands at this tick, by joint index in rad.
-
-        Args:
-            motion: How the body moves over its feet.
-            commands: (26,) commanded angles, rad: where it belongs.
-            dt: Of the tick, s.
-        """
+        """What to add to commands (26, rad: where the body belongs) at a tick of `dt` s, by joint index in rad."""
         home = self._home_of(commands)
         place = motion.stance.com_from_feet
         away = [place[axis] - home[axis] for axis in (0, 1)]

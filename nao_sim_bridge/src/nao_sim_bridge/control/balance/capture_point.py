@@ -45,7 +45,6 @@ class BodyTracker:
     """Follows the body's motion from encoders and inertial unit.
 
     Args:
-        model: The robot.
         gravity: m/s2.
         smoothing: Share of the old velocity in the new one at each tick, 0..1.
     """
@@ -65,14 +64,14 @@ class BodyTracker:
         """The motion of now.
 
         Args:
-            snapshot: Of this tick.
             left_share: How much of the weight the left foot carries, 0..1: the velocity is against that foot.
             dt: Time since the last call, s.
         """
         roll, pitch, _ = snapshot.imu.angles
         stance = self.reader.read(snapshot.positions, roll, pitch)
         velocity = self._velocity(stance, left_share, dt)
-        self._last = BodyMotion(stance, velocity, self._frequency(stance))
+        height = max(stance.com_from_feet[2] + self._sole_height, LEAST_HEIGHT)
+        self._last = BodyMotion(stance, velocity, math.sqrt(self._gravity / height))
         return self._last
 
     def _velocity(self, stance: Stance, left_share: float, dt: float) -> Vector2:
@@ -86,10 +85,6 @@ class BodyTracker:
             keep * x + (1.0 - keep) * (now[0] - before[0]) / dt,
             keep * y + (1.0 - keep) * (now[1] - before[1]) / dt,
         )
-
-    def _frequency(self, stance: Stance) -> float:
-        height = stance.com_from_feet[2] + self._sole_height
-        return math.sqrt(self._gravity / max(height, LEAST_HEIGHT))
 
 
 def _com_from(stance: Stance, left_share: float) -> Sequence[float]:

@@ -33,9 +33,6 @@ class ExternalCollision:
         enabled: Which of "Move", "LArm" and "RArm" are protected.
         orthogonal: Distance to an obstacle ahead at which a move at full speed stops, m.
         tangential: Least distance to any obstacle, m; arms slow down within it.
-
-    Args:
-        model: The robot.
     """
 
     def __init__(self, model: RobotModel) -> None:

@@ -12,16 +12,15 @@ import math
 from dataclasses import dataclass
 from typing import Mapping, Tuple
 
-from nao_sim_bridge.base.config import check_keys, read_json
+from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.control.balance.capture_point import BodyMotion
+from nao_sim_bridge.control.balance.posture_recognition import lean_of
 from nao_sim_bridge.control.balance.stance import StanceReader
 from nao_sim_bridge.control.joints.engine import MotionEngine
-from nao_sim_bridge.model.body_mass import convex_hull
+from nao_sim_bridge.model.body_mass import Point, convex_hull, outside
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.model.support_polygon import Point, outside
 
 FILE = "fall_manager.json"
 # A capture point between the ankles and no more than this behind or ahead of either, m, is over the soles or between
@@ -94,17 +93,11 @@ def load_fall_settings(model: RobotModel) -> FallSettings:
 
 
 class FallManager:
-    """Watches one robot; see the module.
+    """Watches one robot, whose motion ends when it falls but for its arms; see the module.
 
     Attributes:
         state: What it is at.
         direction: Unit vector of the last fall in the level frame (X where the torso heads).
-
-    Args:
-        model: The robot.
-        settings: When and how it acts.
-        reader: Tells where the soles are.
-        motion: Whose tasks end when the robot falls, and what moves the arms.
     """
 
     def __init__(self, model: RobotModel, settings: FallSettings, reader: StanceReader, motion: MotionEngine) -> None:
@@ -135,7 +128,6 @@ class FallManager:
 
     @property
     def falling(self) -> bool:
-        """Whether a fall goes on."""
         return self.state is FallState.FALLING
 
     def rest(self) -> None:
@@ -159,13 +151,7 @@ class FallManager:
             self.state = FallState.WATCHING
 
     def look(self, body: BodyMotion, snapshot: Snapshot, loaded: Tuple[bool, bool]) -> None:
-        """Look whether the robot that it watches begins to fall.
-
-        Args:
-            body: How the body moves over the feet.
-            snapshot: Of this tick.
-            loaded: Whether the left and the right foot carry.
-        """
+        """Look whether the robot that it watches begins to fall; `loaded`: whether left and right foot carry."""
         if self.state is not FallState.WATCHING:
             return
         distance, way = self._outside(body, snapshot, loaded)
@@ -181,7 +167,6 @@ class FallManager:
 
         Args:
             off: How far ahead and to the left of where it should be the body is heading, m.
-            snapshot: Of this tick.
         """
         if self.state is not FallState.WATCHING:
             return
@@ -190,14 +175,14 @@ class FallManager:
         if math.hypot(*off) > settings.walking_off:
             size = math.hypot(*off)
             self._begin((off[0] / size, off[1] / size), snapshot.age)
-        elif _lean(roll, pitch) > settings.walking_lean:
+        elif lean_of(roll, pitch) > settings.walking_lean:
             self._begin(_downhill(roll, pitch), snapshot.age)
 
     def go_on(self, snapshot: Snapshot) -> None:
         """Advance a fall that goes on: let go before the impact, and tell when the robot lies."""
         settings, now = self._settings, snapshot.age
         roll, pitch, _ = snapshot.imu.angles
-        lean = _lean(roll, pitch)
+        lean = lean_of(roll, pitch)
         elapsed = now - self._noticed
         if not self._let_go and (lean >= settings.let_go_lean or elapsed >= settings.let_go_time):
             self._let_go = True
@@ -215,7 +200,7 @@ class FallManager:
         left, right = body.stance.left_ankle, body.stance.right_ankle
         roll, pitch, _ = snapshot.imu.angles
         if not any(loaded):
-            if snapshot.contacts and _lean(roll, pitch) > self._settings.let_go_lean:
+            if snapshot.contacts and lean_of(roll, pitch) > self._settings.let_go_lean:
                 return (math.inf, _downhill(roll, pitch))  # knocked off its feet, it lies already
             return INSIDE  # lifted up: whoever holds it must not let it fall
         if all(loaded) and right[1] < y < left[1]:
@@ -254,11 +239,6 @@ class FallManager:
         if side == "L":
             return dict(pose)
         return {_mirrored(name): angle if name.endswith("Pitch") else -angle for name, angle in pose.items()}
-
-
-def _lean(roll: float, pitch: float) -> float:
-    """Angle of the torso from upright, rad."""
-    return math.acos(max(-1.0, min(1.0, math.cos(roll) * math.cos(pitch))))
 
 
 def _downhill(roll: float, pitch: float) -> Point:

@@ -11,7 +11,7 @@ import math
 from typing import Iterable, Sequence
 
 from nao_sim_bridge.base.readings import Contact, Pose
-from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw, rotate
+from nao_sim_bridge.base.rotations import Quaternion, from_roll_pitch_yaw, plus, rotate
 from nao_sim_bridge.control.balance.stance import StanceReader
 from nao_sim_bridge.model.robot_model import RobotModel
 
@@ -27,7 +27,6 @@ class Odometry:
         torso: Pose of the torso in the world of odometry.
 
     Args:
-        model: The robot.
         ankles: PyBullet's index of the left and the right foot.
         positions: (26,) joint angles at the start, rad.
         tilt: Roll, pitch and yaw at the start by the inertial unit, rad.
@@ -47,7 +46,7 @@ class Odometry:
         self._foot = LEFT if left[2] <= right[2] else RIGHT
         height = -min(left[2], right[2])
         self.torso = Pose((-(left[0] + right[0]) / 2, -(left[1] + right[1]) / 2, height), turn)
-        self._anchor = _plus(self.torso.position, (left, right)[self._foot])
+        self._anchor = plus(self.torso.position, (left, right)[self._foot])
 
     def update(self, positions: Sequence[float], tilt: Sequence[float], contacts: Iterable[Contact]) -> Pose:
         """Take in the readings of a tick.
@@ -55,10 +54,6 @@ class Odometry:
         Args:
             positions: (26,) measured joint angles, rad.
             tilt: Roll, pitch and yaw of the torso by the inertial unit, rad.
-            contacts: What presses on the robot.
-
-        Returns:
-            Pose of the torso in the world of odometry.
         """
         turn = self._turn(tilt)
         loads = [0.0, 0.0]
@@ -69,19 +64,15 @@ class Odometry:
         sole = rotate(turn, self._reader.sole_center(self._foot, positions))
         if loads == [0.0, 0.0]:
             # In the air or lying: nothing tells where it goes.
-            self._anchor = _plus(self.torso.position, sole)
+            self._anchor = plus(self.torso.position, sole)
         x, y, z = self._anchor
         self.torso = Pose((x - sole[0], y - sole[1], z - sole[2]), turn)
         other = RIGHT if self._foot == LEFT else LEFT
         if loads[other] > TAKE_OVER * loads[self._foot]:
             self._foot = other
-            x, y, _ = _plus(self.torso.position, rotate(turn, self._reader.sole_center(other, positions)))
+            x, y, _ = plus(self.torso.position, rotate(turn, self._reader.sole_center(other, positions)))
             self._anchor = (x, y, 0.0)
         return self.torso
 
     def _turn(self, tilt: Sequence[float]) -> Quaternion:
         return from_roll_pitch_yaw(tilt[0], tilt[1], tilt[2] - self._start_yaw)
-
-
-def _plus(a: Vector3, b: Vector3) -> Vector3:
-    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])

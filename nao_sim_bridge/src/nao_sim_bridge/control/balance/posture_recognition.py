@@ -59,7 +59,6 @@ class Recognition:
 
 
 def recognise(model: RobotModel, snapshot: Snapshot) -> Recognition:
-    """Posture and family of the robot at one tick."""
     roll, pitch, _ = snapshot.imu.angles
     load = (snapshot.left_foot.total + snapshot.right_foot.total) / (model.total_mass * 9.81)
     return recognise_readings(model, snapshot.positions, roll, pitch, load)
@@ -71,7 +70,6 @@ def recognise_readings(
     """Posture and family that readings speak of.
 
     Args:
-        model: The robot.
         angles: (26,) measured joint angles in Body order, rad.
         roll: Of the torso in world, rad.
         pitch: Of the torso in world, rad.

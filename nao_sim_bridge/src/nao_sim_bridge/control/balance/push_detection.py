@@ -30,11 +30,7 @@ class Push:
 
 
 class PushDetector:
-    """Looks at how the body moves, tick by tick.
-
-    Args:
-        mass: Of the robot, kg.
-    """
+    """Looks at how the body moves, tick by tick; `mass` is that of the robot, kg."""
 
     def __init__(self, mass: float) -> None:
         self._mass = mass
@@ -45,12 +41,7 @@ class PushDetector:
         self._at_rest_since: float | None = None
 
     def look(self, snapshot: Snapshot, stands_still: Callable[[], bool]) -> Push | None:
-        """The push that has ended by now, if one has.
-
-        Args:
-            snapshot: Of this tick.
-            stands_still: Whether the robot is on its feet and nothing moves its joints; asked only when needed.
-        """
+        """The push that has ended by now, if any; `stands_still` (no joint moves) is asked only when needed."""
         x, y, _ = snapshot.linear_velocity
         speed = math.hypot(x, y)
         if self._since is not None:

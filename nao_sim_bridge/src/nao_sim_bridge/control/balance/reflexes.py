@@ -6,8 +6,8 @@ from typing import Callable
 
 from nao_sim_bridge.body.faults import Faults
 from nao_sim_bridge.body.joint_commands import JointCommands
-from nao_sim_bridge.body.sensors.heat import heat_shares
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.body.temperatures import heat_shares
 from nao_sim_bridge.control.balance.external_collision import ExternalCollision
 from nao_sim_bridge.control.balance.posture_recognition import STANDING, UNKNOWN, Recognition, recognise
 from nao_sim_bridge.control.joints.engine import MotionEngine
@@ -39,12 +39,6 @@ class Reflexes:
         wake_forbidden: Why the robot must not wake up now; empty when it may.
         faults: What is broken; None while nothing can be.
         switches: Of `SWITCHES`, those of whoever walks among them.
-
-    Args:
-        model: The robot.
-        joints: Its commands.
-        motion: Its motion.
-        snapshot: What was sensed at the last tick; None before the first one.
     """
 
     def __init__(

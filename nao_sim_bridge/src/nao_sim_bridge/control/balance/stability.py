@@ -41,12 +41,6 @@ class Stability:
         walk: Set by who walks, and takes the place of balance: a walk keeps its feet under the body by itself. The
             fall manager goes on watching, and asks it how far the body is off.
         on_feet: Whether the weight is on the feet.
-
-    Args:
-        model: The robot.
-        settings: Gravity.
-        joints: Which are corrected.
-        motion: What else moves the joints.
     """
 
     def __init__(self, model: RobotModel, settings: Settings, joints: JointCommands, motion: MotionEngine) -> None:
@@ -118,21 +112,20 @@ class Stability:
             self.falls.go_on(snapshot)
         if self._count % LOOK_EVERY == 0:
             self._note_feet(snapshot, able)
-        self.tracker.forget()
-        self.balance.release()
-        if able:
-            self.balance.settle()
-        self._engaged = False
-        self._joints.correct(NO_CORRECTION, dt)
+        self._leave_legs(dt, at_rest=able)
 
     def _watch_walk(self, off: Tuple[float, float], snapshot: Snapshot, dt: float) -> None:
         """Look whether a walking body falls; all else is the walk's."""
         if self._count % LOOK_EVERY == 0 or not self.on_feet:
             self._note_feet(snapshot, able=True)
         self.falls.look_at_walk(off, snapshot)
+        self._leave_legs(dt, at_rest=True)
+
+    def _leave_legs(self, dt: float, at_rest: bool) -> None:
         self.tracker.forget()
         self.balance.release()
-        self.balance.settle()
+        if at_rest:
+            self.balance.settle()
         self._engaged = False
         self._joints.correct(NO_CORRECTION, dt)
 

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import Iterable, NamedTuple, Sequence, Tuple
 
-from nao_sim_bridge.base.rotations import Vector3, cross, from_roll_pitch_yaw, rotate
+from nao_sim_bridge.base.rotations import Vector3, cross, from_roll_pitch_yaw, rotate, vector3
 from nao_sim_bridge.model.robot_model import Joint, RobotModel
 
 FEET = ("LAnkleRoll", "RAnkleRoll")
@@ -60,7 +60,6 @@ class MassCarrier:
         mass: Of all of them, kg.
 
     Args:
-        model: The robot.
         tips: Last links of the limbs, see `limb_tips`.
     """
 
@@ -81,23 +80,18 @@ class MassCarrier:
 
 
 def limb_tips(model: RobotModel) -> list[str]:
-    """The last links of all limbs."""
     parents = {link.parent_joint and model.joint(link.parent_joint).parent_link for link in model.links}
     return [link.name for link in model.links if link.name not in parents]
 
 
 class StanceReader:
-    """Makes stances of one robot.
-
-    Args:
-        model: The robot.
-    """
+    """Makes stances of one robot."""
 
     def __init__(self, model: RobotModel) -> None:
         self._masses = MassCarrier(model, limb_tips(model))
         self._sole_height = model.sole_height
         legs = [_limb(model, foot) for foot in FEET]
-        self._places = [[_step(model, joint, after=_floats(joint.origin)) for joint in leg] for leg in legs]
+        self._places = [[_step(model, joint, after=vector3(joint.origin)) for joint in leg] for leg in legs]
         self._directions = [[_step(model, joint) for joint in leg] for leg in legs]
         self._soles = [[(float(x), float(y), -model.sole_height) for x, y in model.sole_polygon(s)] for s in "LR"]
 
@@ -135,14 +129,7 @@ class StanceReader:
         return _carry(self._directions[side], angles, AXES[0])
 
     def sole(self, side: int, angles: Sequence[float], roll: float, pitch: float) -> list[Vector3]:
-        """Corners of the outline of a sole in the level frame, m.
-
-        Args:
-            side: 0 left, 1 right.
-            angles: (26,) joint angles in Body order, rad.
-            roll: Of the torso in world, rad.
-            pitch: Of the torso in world, rad.
-        """
+        """Corners of the outline of a sole, side 0 left, 1 right, in the level frame, m; all else as in `read`."""
         level = from_roll_pitch_yaw(roll, pitch, 0.0)
         ankle = rotate(level, _carry(self._places[side], angles, ZERO))
         ahead = rotate(level, _carry(self._directions[side], angles, AXES[0]))
@@ -176,7 +163,7 @@ def _moment_steps(model: RobotModel, limb: Sequence[Joint]) -> list[_Step]:
 
 
 def _step(model: RobotModel, joint: Joint, before: Vector3 = ZERO, after: Vector3 = ZERO) -> _Step:
-    axis = _floats(joint.axis)
+    axis = vector3(joint.axis)
     kind = AXES.index(axis) if axis in AXES else SLANTED
     return _Step(model.joint_index[joint.name], kind, axis, before, after)
 
@@ -202,11 +189,6 @@ def _carry(steps: Sequence[_Step], angles: Sequence[float], start: Vector3) -> V
                 c * y + s * (w * x - u * z) + along * v + ay,
                 c * z + s * (u * y - v * x) + along * w + az,
             )
-    return (x, y, z)
-
-
-def _floats(vector: Sequence[float]) -> Vector3:
-    x, y, z = (float(value) for value in vector)
     return (x, y, z)
 
 

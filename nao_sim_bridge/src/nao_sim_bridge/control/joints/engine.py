@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import AbstractSet, Callable, Container, Iterable, Mapping, Protocol, Sequence, Union
 
-from nao_sim_bridge.base.finite import check_finite
+from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.tasks import Task, TaskIds
 from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.control.joints.bezier import BezierCurve
@@ -71,10 +71,6 @@ class MotionEngine:
         corrector: Who changes what tasks and targets want; None when nobody does.
         idle: Who moves idle joints; None when nobody does.
         notices: Tells in the log what cannot be done as it was asked.
-
-    Args:
-        joints: Where commands and stiffnesses go.
-        task_ids: Source of the tasks' numbers.
     """
 
     def __init__(self, joints: JointCommands, task_ids: TaskIds) -> None:
@@ -148,7 +144,6 @@ class MotionEngine:
             self.corrector.stop(wanted)
 
     def kill_all(self) -> None:
-        """Kill every task and drop every target."""
         for job in list(self._jobs):
             job.task.kill()
         self._targets.clear()
@@ -194,7 +189,6 @@ class MotionEngine:
         self._finish_jobs(now)
 
     def _moved(self) -> AbstractSet[int]:
-        """Joints that tasks and targets move."""
         return {*self._targets, *(i for job in self._jobs if not job.stiffness for i in job.indices)}
 
     def _command(self, wanted: dict[int, float], dt: float) -> None:

@@ -15,7 +15,7 @@ from typing import AbstractSet, Callable, Mapping, Sequence
 
 from nao_sim_bridge.body.joint_commands import JointCommands
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.model.robot_model import RobotModel, joint_kind
 
 CHAINS = {"Head": ("Head",), "LArm": ("LArm",), "RArm": ("RArm",), "Legs": ("LLeg", "RLeg")}
 GROUPS = {**{name: (name,) for name in CHAINS}, "Arms": ("LArm", "RArm"), "Body": tuple(CHAINS)}
@@ -68,8 +68,6 @@ class Idle:
         suspended: True while the robot falls or gets up: it is left alone.
 
     Args:
-        model: The robot.
-        joints: Its commands.
         reference: Name of the posture that a robot like now goes back to, None to stay as it is.
         stands: Whether the robot stands now.
     """
@@ -85,10 +83,7 @@ class Idle:
         self._joints = joints
         self._reference = reference
         self._stands = stands
-        self._chains = {
-            name: _Chain(tuple(model.joint_index[joint] for part in parts for joint in model.chains[part]))
-            for name, parts in CHAINS.items()
-        }
+        self._chains = {name: _Chain(indices) for name, indices in chain_indices(model).items()}
         self._breath = {i: amount for i, joint in enumerate(model.joints) if (amount := _breath_of(joint.name))}
         self._phase = 0.0
         self.bpm, self.amplitude = 12.0, 0.5
@@ -104,7 +99,6 @@ class Idle:
         self.active = any(chain.mode is not Mode.NOTHING for chain in self._chains.values())
 
     def has_mode(self, group: str, mode: Mode) -> bool:
-        """Whether all chains of a group have this mode."""
         return all(self._chains[name].mode is mode for name in GROUPS[group])
 
     def set_breath(self, bpm: float, amplitude: float) -> None:
@@ -160,7 +154,15 @@ class Idle:
         return {i: chain.reference[i] + fullness * self._breath.get(i, 0.0) for i in chain.indices}
 
 
+def chain_indices(model: RobotModel) -> dict[str, tuple[int, ...]]:
+    """Joints of each of `CHAINS` by index."""
+    return {
+        name: tuple(model.joint_index[joint] for part in parts for joint in model.chains[part])
+        for name, parts in CHAINS.items()
+    }
+
+
 def _breath_of(joint: str) -> float:
-    kind = joint[1:] if joint[0] in "LR" else joint
+    kind = joint_kind(joint)
     amount = BREATH.get(kind, 0.0)
     return -amount if joint[0] == "R" and kind in MIRRORED else amount

@@ -10,9 +10,8 @@ from typing import AbstractSet, Sequence
 
 import numpy as np
 
-from nao_sim_bridge.control.joints.capsules import segment_distances
 from nao_sim_bridge.model.kinematics import link_transforms, rpy_matrix
-from nao_sim_bridge.model.robot_model import CollisionShape, RobotModel
+from nao_sim_bridge.model.robot_model import CollisionShape, RobotModel, joint_kind
 
 ARMS = ("LArm", "RArm")
 # The shapes are wider than the limbs: with the elbows on the knees, in the posture Crouch, they overlap by 4 mm.
@@ -33,6 +32,8 @@ REACH = {
     "KneePitch": 0.1,
 }
 ROUNDING = 1e-9
+# Squares of lengths below this, m2, are those of points.
+POINT = 1e-12
 NONE, CLOSE, COLLISION = "none", "near", "collision"
 NOBODY: frozenset[int] = frozenset()
 
@@ -43,9 +44,6 @@ class SelfCollision:
     Attributes:
         enabled: Arms that are kept apart from the rest.
         suspended: True while a move runs that has been tried with its contacts; nothing is kept apart then.
-
-    Args:
-        model: The robot.
     """
 
     def __init__(self, model: RobotModel) -> None:
@@ -126,12 +124,8 @@ class SelfCollision:
 
 def _movers(model: RobotModel, chain: str) -> list[tuple[int, float]]:
     """Joints of a chain that move shapes, by index, and how far for each rad, m."""
-    joints = ((model.joint_index[name], REACH.get(_kind(name), 0.0)) for name in model.chains[chain])
+    joints = ((model.joint_index[name], REACH.get(joint_kind(name), 0.0)) for name in model.chains[chain])
     return [(index, reach) for index, reach in joints if reach]
-
-
-def _kind(joint: str) -> str:
-    return joint if joint.startswith("Head") else joint[1:]
 
 
 def _link(shape: CollisionShape) -> str:
@@ -144,3 +138,26 @@ def _ends(shape: CollisionShape) -> tuple[np.ndarray, np.ndarray]:
     half = 0.0 if shape.length is None else max(shape.length / 2.0 - shape.radius, 0.0)
     axis = rpy_matrix(shape.place.rpy)[:, 2] * half
     return centre - axis, centre + axis
+
+
+def segment_distances(p1: np.ndarray, q1: np.ndarray, p2: np.ndarray, q2: np.ndarray) -> np.ndarray:
+    """(n,) distances in m between segments p1-q1 and p2-q2, each (n, 3) in one frame; ends may coincide (spheres).
+
+    Source: the closest points follow from the two normal equations, clamped to the ends of the segments one after the
+    other (C. Ericson, Real-Time Collision Detection, 5.1.9).
+    """
+    d1, d2, between = q1 - p1, q2 - p2, p1 - p2
+    a, e = _dot(d1, d1), _dot(d2, d2)
+    b, c, f = _dot(d1, d2), _dot(d1, between), _dot(d2, between)
+    safe_a, safe_e = np.maximum(a, POINT), np.maximum(e, POINT)
+    denominator = a * e - b * b
+    parallel = denominator < POINT
+    s = np.where(parallel, 0.0, np.clip((b * f - c * e) / np.where(parallel, 1.0, denominator), 0.0, 1.0))
+    t = np.clip((b * s + f) / safe_e, 0.0, 1.0) * (e > POINT)
+    s = np.clip((b * t - c) / safe_a, 0.0, 1.0) * (a > POINT)
+    apart = between + s[:, None] * d1 - t[:, None] * d2
+    return np.sqrt(_dot(apart, apart))
+
+
+def _dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    return np.einsum("ij,ij->i", first, second)

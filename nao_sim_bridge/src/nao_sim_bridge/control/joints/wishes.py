@@ -18,9 +18,6 @@ class Notices:
 
     Attributes:
         enabled: Whether what it finds is a warning; else it goes to the log as information.
-
-    Args:
-        joints: Their limits.
     """
 
     def __init__(self, joints: JointCommands) -> None:

@@ -57,8 +57,6 @@ class TargetAim:
 
     Args:
         goal: Where the effector is; frame, mask and axes.
-        target: (4, 4).
-        max_speed: m/s, and rad/s of turns.
     """
 
     def __init__(self, goal: Goal, target: np.ndarray, max_speed: tuple[float, float]) -> None:

@@ -11,7 +11,6 @@ from typing import Sequence
 
 import numpy as np
 
-from nao_sim_bridge.model.coupled import couplings
 from nao_sim_bridge.model.frames import Frame
 from nao_sim_bridge.model.robot_model import RobotModel
 
@@ -25,9 +24,6 @@ class BodyKinematics:
         model: The robot.
         max_velocities: (26,) rad/s.
         movable: (26,) True for the joints that have a column: all but hands and RHipYawPitch.
-
-    Args:
-        model: The robot.
     """
 
     def __init__(self, model: RobotModel) -> None:
@@ -39,7 +35,7 @@ class BodyKinematics:
         # The torso is the row after the joints; a link has the row of its parent joint.
         self.row = {**model.joint_index, "Torso": count}
         self.axes = np.array([j.axis for j in model.joints])
-        self.skews = np.array([_skew(axis) for axis in self.axes])
+        self.skews = np.array([[[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]] for x, y, z in self.axes])
         self.squares = self.skews @ self.skews
         self.origins = np.array([j.origin for j in model.joints])
         parents = np.array([self.row[j.parent_link] for j in model.joints])
@@ -57,7 +53,7 @@ class BodyKinematics:
         self.carried_mass = self.carried @ self.masses
         self.max_velocities = np.array([j.max_velocity for j in model.joints])
         self._limits = model.limits_array()
-        self._couplings = couplings(model)
+        self._couplings = tuple(model.coupled_limits.values())
         for constant in (self.movable, self.moves, self.carried):
             constant.flags.writeable = False
 
@@ -81,10 +77,6 @@ class BodyPose:
     Attributes:
         angles: (26,) rad.
         poses: (27, 4, 4) of the links, by the row of their parent joint; the last one is the torso.
-
-    Args:
-        body: Constants of the robot.
-        angles: (26,) rad.
     """
 
     def __init__(self, body: BodyKinematics, angles: np.ndarray) -> None:
@@ -151,11 +143,6 @@ def cross_rows(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     result[:, 1] = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
     result[:, 2] = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     return result
-
-
-def _skew(axis: Sequence[float]) -> np.ndarray:
-    x, y, z = axis
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _levels(parents: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -53,7 +53,6 @@ class CartesianMove:
         indices: Joints that move.
 
     Args:
-        body: The robot.
         moves: Where effectors should be, each effector once.
         placed: Where the commands put the robot when the move begins.
     """

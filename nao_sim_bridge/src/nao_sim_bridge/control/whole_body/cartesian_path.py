@@ -54,11 +54,7 @@ class PosePath:
 
 
 class SampleTimes(Sequence[float]):
-    """Rising times in s from 0 to the last of some: every one of them, and steps between. None of them is kept.
-
-    Args:
-        times: Rising, s.
-    """
+    """Rising times in s from 0 to the last of some: every one of them, and steps between. None of them is kept."""
 
     def __init__(self, times: Iterable[float]) -> None:
         # Of each stretch between two of the times: number of its first sample, its length in samples and in s.
@@ -177,8 +173,6 @@ def joint_curves(
     """Curves of joints that bring frames along paths.
 
     Args:
-        body: The robot.
-        indices: Joints that move.
         goals_at: The goals at a time in s.
         times: Key times of the paths, s, rising.
         commands: (26,) angles to begin at, rad.

@@ -33,7 +33,6 @@ class GroundedPose:
         torso: (4, 4) pose of the torso in the ground frame.
 
     Args:
-        body: The pose in the torso frame.
         footing: The foot that stays; without one it is the torso that stays, and its frame is the ground's.
     """
 
@@ -61,10 +60,6 @@ class GroundedPose:
         rows[3:] -= self._foot_jacobian[3:]
         turn = self.torso[:3, :3]
         return np.concatenate((turn @ rows[:3], turn @ rows[3:]))
-
-    def torso_jacobian(self) -> np.ndarray:
-        """(6, 26) velocity of the torso's origin and its rotation, along the ground's axes."""
-        return self.jacobian(TORSO)
 
     def center_of_mass(self) -> np.ndarray:
         """(3,) in the ground frame, m."""

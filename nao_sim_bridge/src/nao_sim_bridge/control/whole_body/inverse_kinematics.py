@@ -98,9 +98,7 @@ def solve(
     """(26,) angles in rad, within the limits, that bring all goals closest.
 
     Args:
-        body: The robot.
         indices: Joints that may move; one HipYawPitch stands for both.
-        goals: Where frames should be.
         start: (26,) angles to begin at, rad; what may not move stays there.
         footing: The foot that stands; without one the torso stays where it is.
         iterations: At most so many.
@@ -126,7 +124,6 @@ def soft_knees(body: BodyKinematics, angles: np.ndarray, moving: np.ndarray) -> 
     A knee can be bent backwards by a few degrees, up to its limit: no small step shortens such a leg.
 
     Args:
-        body: The robot.
         angles: (26,) rad.
         moving: (26,) which joints may move.
     """

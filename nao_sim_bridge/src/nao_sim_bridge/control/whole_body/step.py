@@ -12,9 +12,9 @@ from typing import Sequence
 
 import numpy as np
 
-from nao_sim_bridge.control.whole_body.balance_region import BalanceRegion
 from nao_sim_bridge.control.whole_body.body_kinematics import BodyKinematics
-from nao_sim_bridge.control.whole_body.grounded_pose import GroundedPose
+from nao_sim_bridge.control.whole_body.footholds import BalanceRegion
+from nao_sim_bridge.control.whole_body.grounded_pose import TORSO, GroundedPose
 from nao_sim_bridge.control.whole_body.inverse_kinematics import Goal
 from nao_sim_bridge.control.whole_body.task_solver import Wish, ranked_step
 
@@ -90,12 +90,10 @@ def joint_freedom(
     """What the joints may do in a tick of `dt` s.
 
     Args:
-        body: The robot.
         angles: (26,) where the joints are, rad.
         posture: (26,) where they should be, rad.
         moved: Joints that go there with all their speed; the others drift.
         mobility: (26,) how readily a joint helps.
-        dt: s.
     """
     away = posture - angles
     preferred = np.clip(away * min(1.0, RETURN_RATE * dt), -RETURN_SPEED * dt, RETURN_SPEED * dt)
@@ -109,13 +107,7 @@ def joint_freedom(
 
 
 def whole_body_step(demands: Demands, freedom: Freedom, dt: float) -> np.ndarray:
-    """(26,) change of the joints in one tick, rad.
-
-    Args:
-        demands: What is asked for.
-        freedom: What the joints may do.
-        dt: Length of the tick, s.
-    """
+    """(26,) change of the joints in one tick of `dt` s, rad."""
     now = demands.now
     center = now.center_of_mass()
     place, rows = center[:2], now.com_jacobian()[:2]
@@ -171,7 +163,7 @@ def _upright(demands: Demands, reach: float) -> Wish:
     up, wanted = demands.now.torso[:3, 2], demands.upright[:, 2]
     turn = np.array([up[1] * wanted[2] - up[2] * wanted[1], up[2] * wanted[0] - up[0] * wanted[2]])
     axes = list(demands.lean_axes)
-    rows = demands.now.torso_jacobian()[3:5]
+    rows = demands.now.jacobian(TORSO)[3:5]
     return Wish(rows[axes], _at_most(turn[axes], reach), TORSO_DAMPING)
 
 

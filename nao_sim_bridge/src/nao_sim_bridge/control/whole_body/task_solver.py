@@ -38,7 +38,7 @@ def ranked_step(
     upper: np.ndarray,
     mobility: np.ndarray,
 ) -> np.ndarray:
-    """The joint step that serves `wishes`, the first one first.
+    """The joint step, (n,) in rad within the bounds, that serves `wishes`, the first one first.
 
     Args:
         wishes: By rank, the highest first.
@@ -46,9 +46,6 @@ def ranked_step(
         lower: (n,) least step of each joint, rad; equal to `upper` for one that stands still.
         upper: (n,) largest step of each joint, rad.
         mobility: (n,) above 0: how readily a joint helps where there is a choice.
-
-    Returns:
-        (n,) step in rad within the bounds.
     """
     scale = np.sqrt(mobility)
     kept = upper - lower <= 0.0

@@ -78,9 +78,6 @@ def start_paths(
     """Lead effectors along paths from now on; `owner` holds their joints until `end_paths`.
 
     Args:
-        whole_body: That leads them.
-        owner: Of the joints.
-        moves: Where effectors should be.
         durations: Of each move, s.
         placed: Where the commands put the robot now.
     """

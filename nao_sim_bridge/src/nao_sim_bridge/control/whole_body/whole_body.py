@@ -42,11 +42,6 @@ class WholeBody:
         enabled: Whether somebody has switched it on.
         controlled: Effectors that it is switched on for by themselves.
         suspended: True while the robot is not on its feet: motion passes unchanged.
-
-    Args:
-        model: The robot.
-        joints: Its commands.
-        motion: Whose motion is changed.
     """
 
     def __init__(self, model: RobotModel, joints: JointCommands, motion: MotionEngine) -> None:
@@ -167,7 +162,6 @@ class WholeBody:
         self._quiet = False
 
     def aim_of(self, name: str) -> Aim | None:
-        """What leads an effector now."""
         return self._aims.get(name)
 
     def release(self, name: str) -> None:

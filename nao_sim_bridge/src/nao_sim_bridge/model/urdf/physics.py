@@ -30,11 +30,11 @@ def physics_urdf(model: RobotModel) -> str:
         body = Body(link.mass, link.com, link.inertia)
         if link.name in carrier_of_fingers:
             body = without_fingers(link, model.simulated_hand)
-        collisions = [line for shape in shapes.get(link.name, ()) for line in xml.collision(shape)]
+        collisions = map(xml.collision, shapes.get(link.name, ()))
         lines += xml.link(link.alt_name, xml.inertial(body.mass, body.com, body.inertia), collisions)
     hand = model.simulated_hand
     for fingers in FINGERS.values():
-        collisions = [line for shape in shapes.get(fingers, ()) for line in xml.collision(shape)]
+        collisions = map(xml.collision, shapes.get(fingers, ()))
         lines += xml.link(fingers, xml.inertial(hand.mass, hand.com, hand.inertia), collisions)
     for joint in model.joints:
         lines += hand_joint(joint, hand, alt_name) if joint.is_hand else body_joint(joint, alt_name)
@@ -42,7 +42,6 @@ def physics_urdf(model: RobotModel) -> str:
 
 
 def body_joint(joint: Joint, alt_name: dict[str, str]) -> list[str]:
-    """A joint between two links of the tables."""
     if joint.child_link is None:
         raise ValueError(f"{joint.name} moves no link of the tables")
     parent, child = alt_name[joint.parent_link], alt_name[joint.child_link]

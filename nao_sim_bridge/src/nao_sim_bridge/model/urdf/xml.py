@@ -20,12 +20,10 @@ def number(value: float) -> str:
 
 
 def triple(values: Sequence[float]) -> str:
-    """Numbers with spaces between."""
     return " ".join(number(value) for value in values)
 
 
 def origin(xyz: Sequence[float], rpy: Sequence[float] = NO_ROTATION) -> str:
-    """An origin element."""
     return f'<origin xyz="{triple(xyz)}" rpy="{triple(rpy)}"/>'
 
 
@@ -73,19 +71,17 @@ def mesh_name(shape: Shape) -> str:
     return f"arc_{inner * 1e4:.0f}_{outer * 1e4:.0f}_{thickness * 1e4:.0f}_{degrees:.0f}.stl"
 
 
-def collision(shape: Shape) -> list[str]:
-    """A collision element."""
-    return [f"    <collision>{origin(shape.xyz, shape.rpy)}{geometry(shape)}</collision>"]
+def collision(shape: Shape) -> str:
+    return f"    <collision>{origin(shape.xyz, shape.rpy)}{geometry(shape)}</collision>"
 
 
-def visual(shape: Shape) -> list[str]:
+def visual(shape: Shape) -> str:
     """A visual element with the colour its shape names."""
     material = f"<material name={_quoted(shape.material)}/>" if shape.material else ""
-    return [f"    <visual>{origin(shape.xyz, shape.rpy)}{geometry(shape)}{material}</visual>"]
+    return f"    <visual>{origin(shape.xyz, shape.rpy)}{geometry(shape)}{material}</visual>"
 
 
 def link(name: str, *parts: Iterable[str]) -> list[str]:
-    """A link around its inertial, visual and collision elements."""
     body = [line for part in parts for line in part]
     if not body:
         return [f"  <link name={_quoted(name)}/>"]
@@ -95,7 +91,6 @@ def link(name: str, *parts: Iterable[str]) -> list[str]:
 def fixed_joint(
     name: str, parent: str, child: str, xyz: Sequence[float], rpy: Sequence[float] = NO_ROTATION
 ) -> list[str]:
-    """A joint that does not move."""
     return [
         f'  <joint name={_quoted(name)} type="fixed">',
         f"    <parent link={_quoted(parent)}/><child link={_quoted(child)}/>",
@@ -117,9 +112,6 @@ def revolute_joint(
     """A turning joint.
 
     Args:
-        name: Name of the joint.
-        parent: Parent link.
-        child: Child link.
         xyz: Origin in the parent link, m.
         axis: Unit vector in the joint frame.
         limits: Lower, upper (rad), effort (N m), velocity (rad/s).
@@ -142,7 +134,6 @@ def revolute_joint(
 
 
 def robot(name: str, comment: str, lines: Iterable[str]) -> str:
-    """The whole document."""
     head = [
         '<?xml version="1.0" encoding="utf-8"?>',
         f"<!-- {comment} -->",

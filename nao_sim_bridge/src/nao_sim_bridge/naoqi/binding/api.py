@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Mapping, Tuple
 
-from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 
 FILE = "naoqi_api.json"
 COMMON = "_common_module"

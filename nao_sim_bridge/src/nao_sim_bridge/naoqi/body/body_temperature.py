@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from nao_sim_bridge.base.settings import HeadSettings
-from nao_sim_bridge.body.sensors.heat import CRITICAL
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.body.temperatures import HEAD, NOTHING_HOT, Hot, hot_devices
+from nao_sim_bridge.body.temperatures import CRITICAL, HEAD, NOTHING_HOT, Hot, hot_devices
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.naoqi.binding.severity import severity_value

@@ -5,9 +5,8 @@ from __future__ import annotations
 import threading
 from typing import Any, Sequence
 
-from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.timed_commands import MERGE

@@ -8,9 +8,8 @@ from collections import deque
 from contextlib import suppress
 from typing import Any, Callable, Deque, Dict, Mapping, Tuple
 
-from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError, SimulationStopped
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.sensors.sonar import NO_ECHO

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Dict, FrozenSet
 
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.body.touch_clicks import ClickCounter
+from nao_sim_bridge.body.touch_gestures import ClickCounter
 from nao_sim_bridge.body.touch_parts import LIMBS, LimbTouch
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.touch_names import CHEST_BUTTON, EVENTS, HANDS, HEAD, SENSORS

@@ -8,12 +8,11 @@ from __future__ import annotations
 import re
 from typing import Any, Callable, Mapping
 
-from nao_sim_bridge.base.config import read_json
+from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.readings import FootForces
-from nao_sim_bridge.body.sensors.heat import heat_status
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.body.temperatures import heat_status
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.leds_layout import LedLayout
 from nao_sim_bridge.model.robot_model import RobotModel

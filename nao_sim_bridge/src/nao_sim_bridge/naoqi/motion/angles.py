@@ -7,7 +7,7 @@ from typing import Any, Sequence
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.joints.curves import Ramp, SmoothCurve
-from nao_sim_bridge.model.joint_names import joint_names
+from nao_sim_bridge.model.robot_model import joint_names
 from nao_sim_bridge.naoqi.binding.arguments import per_item
 from nao_sim_bridge.naoqi.motion.arguments import key_frames
 from nao_sim_bridge.naoqi.motion.part import MotionPart

@@ -7,8 +7,7 @@ from typing import Any, Sequence
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import require_few
-from nao_sim_bridge.model.joint_names import joint_names
-from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.model.robot_model import RobotModel, joint_names
 from nao_sim_bridge.naoqi.binding.arguments import number, numbers
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 

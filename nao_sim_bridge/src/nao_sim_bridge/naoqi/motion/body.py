@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nao_sim_bridge.model.joint_names import joint_names
+from nao_sim_bridge.model.robot_model import joint_names
 from nao_sim_bridge.naoqi.motion.part import MotionPart
 from nao_sim_bridge.naoqi.motion.summary import summary_table
 

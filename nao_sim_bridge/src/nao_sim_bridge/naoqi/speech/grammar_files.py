@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from nao_sim_bridge.base.bounded_files import TooLarge, read_bounded
+from nao_sim_bridge.base.config import TooLarge, read_bounded
 from nao_sim_bridge.base.whole_file import write_whole
 from nao_sim_bridge.hearing.grammars.bnf import BnfGrammar, GrammarError, parse_bnf
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError

@@ -7,8 +7,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from nao_sim_bridge.base.bounded_files import read_bounded
-from nao_sim_bridge.base.config import LARGEST_FILE
+from nao_sim_bridge.base.config import LARGEST_FILE, read_bounded
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.naoqi.binding.arguments import number

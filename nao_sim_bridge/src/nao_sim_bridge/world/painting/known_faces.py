@@ -7,9 +7,8 @@ from dataclasses import dataclass, fields
 from functools import lru_cache
 from typing import Any
 
-from nao_sim_bridge.base.config import check_keys, read_json, vector
+from nao_sim_bridge.base.config import check_keys, config_file, read_json, vector
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import frozen_mapping
 
 FILE = "faces.json"

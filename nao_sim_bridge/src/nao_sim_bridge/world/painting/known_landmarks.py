@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from nao_sim_bridge.base.config import check_keys, read_json, vector
+from nao_sim_bridge.base.config import check_keys, config_file, read_json, vector
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.model.robot_model import frozen_mapping
 
 FILE = "landmarks.json"
