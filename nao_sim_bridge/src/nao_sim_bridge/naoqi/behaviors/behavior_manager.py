@@ -24,12 +24,6 @@ class ALBehaviorManager:
     """ALBehaviorManager as the simulated robot offers it.
 
     Behaviours that are installed, and the list of default behaviours, are kept as long as the simulator runs.
-
-    Args:
-        running: Starts and stops behaviours.
-        runner: Runs commands in the simulation thread.
-        memory: Where events go.
-        files: Where clients have files to install.
     """
 
     def __init__(

@@ -35,8 +35,6 @@ class ALFrameManager:
 
     Args:
         running: Starts and stops behaviours; those of this module are called by their ids.
-        runner: Runs commands in the simulation thread.
-        files: Where clients have files.
     """
 
     def __init__(self, running: RunningBehaviors, runner: SimulationRunner, files: ClientFiles) -> None:

@@ -22,11 +22,6 @@ class RunningBehaviors:
     Attributes:
         installed: What there is.
         ended: Called with the name of each that has ended, and whether it came to its end by itself.
-
-    Args:
-        player: Who plays them.
-        installed: See above.
-        memory: Where the event is raised.
     """
 
     def __init__(self, player: BehaviorPlayer, installed: InstalledBehaviors, memory: MemoryStore) -> None:
@@ -70,7 +65,6 @@ class RunningBehaviors:
         self._tasks[name].kill()
 
     def stop_all(self) -> None:
-        """Stop all behaviours."""
         for task in list(self._tasks.values()):
             task.kill()
 

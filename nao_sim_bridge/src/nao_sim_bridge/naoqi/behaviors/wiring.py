@@ -22,19 +22,7 @@ from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
 
 
 class BehaviorModules:
-    """ALBehaviorManager, ALAnimationPlayer and ALFrameManager of one robot.
-
-    Attributes:
-        running: Starts and stops behaviours.
-
-    Args:
-        simulation: Whose robot it is.
-        runner: Its thread.
-        memory: Where events go.
-        files: Where clients have files to install.
-        speech: The robot's voice and gestures.
-        posture: Takes the robot to postures.
-    """
+    """ALBehaviorManager, ALAnimationPlayer and ALFrameManager of one robot."""
 
     def __init__(
         self,
@@ -52,7 +40,6 @@ class BehaviorModules:
         self._frames = ALFrameManager(self.running, runner, files)
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
         return {
             BEHAVIOR_MANAGER: [self._manager],
             ANIMATION_PLAYER: [self._animations],

@@ -21,13 +21,7 @@ LONGEST_INTERVAL_MS = 3600000
 
 
 class ALPhotoCapture(PictureSettings):
-    """ALPhotoCapture as the simulated robot offers it.
-
-    Args:
-        photographer: Takes the pictures.
-        files: Where clients may have files written to.
-        tables: What the cameras can do.
-    """
+    """ALPhotoCapture as the simulated robot offers it."""
 
     def __init__(self, photographer: Photographer, files: ClientFiles, tables: CameraTables) -> None:
         super().__init__(tables, PhotoSettings(camera=0, resolution=VGA, color_space=BGR, interval=0.2))

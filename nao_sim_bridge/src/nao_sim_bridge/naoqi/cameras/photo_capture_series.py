@@ -50,7 +50,6 @@ class Photographer:
         keeps: Whether the camera is held ready from one picture to the next.
 
     Args:
-        cameras: Of the robot.
         name: What its streams are called.
     """
 
@@ -65,7 +64,6 @@ class Photographer:
 
     @property
     def held(self) -> bool:
-        """Whether a camera is held ready."""
         return self._held is not None
 
     def hold(self, settings: PhotoSettings) -> None:
@@ -155,7 +153,6 @@ class _Series:
         self._thread = threading.Thread(target=self._run, name="pictures", daemon=True)
 
     def start(self) -> None:
-        """Begin."""
         self._thread.start()
 
     def end(self, error: Exception | None = None) -> None:

@@ -13,17 +13,7 @@ from nao_sim_bridge.naoqi.cameras.video_recorder_recording import VideoRecorder
 
 
 class PictureModules:
-    """ALPhotoCapture and ALVideoRecorder of one robot.
-
-    Attributes:
-        photographer: Takes photos.
-        recorder: Records films.
-
-    Args:
-        simulation: Whose cameras these are.
-        runner: Its thread.
-        files: Where clients may have files written to.
-    """
+    """ALPhotoCapture and ALVideoRecorder of one robot."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
         cameras = simulation.cameras
@@ -33,7 +23,6 @@ class PictureModules:
         self._films = video_recorder.ALVideoRecorder(self.recorder, files, cameras.tables)
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
         return {photo_capture.NAME: [self._photos], video_recorder.NAME: [self._films]}
 
     def closing(self) -> list[Callable[[], None]]:

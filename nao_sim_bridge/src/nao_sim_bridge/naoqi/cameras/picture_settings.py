@@ -15,7 +15,6 @@ class PictureSettings:
     """Settings that pictures and films have.
 
     Args:
-        tables: What the cameras can do.
         settings: The first settings: a dataclass with `camera`, `resolution` and `color_space`, NAOqi's numbers.
     """
 

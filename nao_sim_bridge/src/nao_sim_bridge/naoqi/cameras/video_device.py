@@ -26,15 +26,7 @@ LOCAL = "addresses are for modules inside the robot's own process; use {}"
 
 
 class VideoDevice:
-    """ALVideoDevice of one robot.
-
-    Attributes:
-        subscribers: Who looks.
-
-    Args:
-        cameras: Of the robot.
-        files: Where clients may have files written to.
-    """
+    """ALVideoDevice of one robot."""
 
     def __init__(self, cameras: Cameras, files: ClientFiles) -> None:
         self.subscribers = VideoSubscribers(cameras)
@@ -62,14 +54,7 @@ class VideoDevice:
 
 
 class ALVideoDevice:
-    """Subscriptions and pictures.
-
-    Args:
-        cameras: Of the robot.
-        subscribers: Who looks.
-        states: Which cameras run.
-        recordings: Pictures that go to files.
-    """
+    """Subscriptions and pictures."""
 
     def __init__(
         self, cameras: Cameras, subscribers: VideoSubscribers, states: CameraStates, recordings: RawRecordings
@@ -101,7 +86,6 @@ class ALVideoDevice:
         self._subscribers.remove_all(name)
 
     def client_gone(self, module: str) -> None:
-        """A module of a client has left."""
         self._subscribers.remove_all(module)
 
     def onClientDisconnected(self, _event: str, contents: Any, _message: str) -> None:
@@ -188,7 +172,6 @@ class ALVideoDevice:
 
 
 def container(frame: Frame) -> tuple:
-    """A frame as NAOqi hands it over."""
     seconds, microseconds = frame.stamp
     left, top = frame.hfov / 2.0, frame.vfov / 2.0
     return (

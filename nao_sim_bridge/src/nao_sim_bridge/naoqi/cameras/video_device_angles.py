@@ -14,11 +14,7 @@ LIMIT = 1.57
 
 
 class VideoDeviceAngles:
-    """Places are normalised, (0, 0) upper left and (1, 1) lower right; angles are positive to the left and downwards.
-
-    Args:
-        cameras: Of the robot.
-    """
+    """Places are normalised, (0, 0) upper left, (1, 1) lower right; angles are positive to the left and downwards."""
 
     def __init__(self, cameras: Cameras) -> None:
         self._cameras = cameras

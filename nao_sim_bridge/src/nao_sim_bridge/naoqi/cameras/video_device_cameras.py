@@ -9,13 +9,7 @@ from nao_sim_bridge.naoqi.cameras.video_device_subscribers import VideoSubscribe
 
 
 class VideoDeviceCameras:
-    """What cameras there are, and turning them on and off.
-
-    Args:
-        cameras: Of the robot.
-        subscribers: Who looks.
-        states: Which cameras run.
-    """
+    """What cameras there are, and turning them on and off."""
 
     def __init__(self, cameras: Cameras, subscribers: VideoSubscribers, states: CameraStates) -> None:
         self._cameras = cameras

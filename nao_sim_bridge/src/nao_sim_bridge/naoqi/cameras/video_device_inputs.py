@@ -17,11 +17,7 @@ IDLE_RESOLUTION, IDLE_RATE = 1, 5
 
 
 class VideoDeviceInputs:
-    """The first picture takes a camera's place in the world; `resetCamera` gives it back.
-
-    Args:
-        cameras: Of the robot.
-    """
+    """The first picture takes a camera's place in the world; `resetCamera` gives it back."""
 
     def __init__(self, cameras: Cameras) -> None:
         self._cameras = cameras

@@ -16,15 +16,7 @@ UNKNOWN = -1
 
 
 class VideoDeviceOld:
-    """See above.
-
-    Args:
-        cameras: Of the robot.
-        subscribers: Who looks.
-        settings: The part with settings.
-        device: The part with the cameras.
-        angles: The part with angles.
-    """
+    """See above."""
 
     def __init__(
         self,

@@ -23,12 +23,7 @@ WAITING = 15
 
 
 class RawRecordings:
-    """The recordings, by the handle of the subscriber; any thread.
-
-    Args:
-        cameras: Of the robot.
-        files: Where clients may have files written to.
-    """
+    """The recordings, by the handle of the subscriber; any thread."""
 
     def __init__(self, cameras: Cameras, files: ClientFiles) -> None:
         self._cameras = cameras
@@ -40,9 +35,7 @@ class RawRecordings:
         """Record pictures as a subscriber gets them; of several cameras the first.
 
         Args:
-            subscriber: Whose pictures.
             path: Name inside the folder for recordings.
-            total: Number of pictures.
             period: Of how many pictures that fall due one is recorded.
 
         Raises:

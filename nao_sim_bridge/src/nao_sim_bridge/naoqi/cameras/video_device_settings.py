@@ -16,13 +16,7 @@ NATIVE, IDLE_RESOLUTION, IDLE_RATE = 9, 1, 5
 
 
 class VideoDeviceSettings:
-    """Active cameras, sizes, colour spaces, rates and parameters, of cameras and of subscribers.
-
-    Args:
-        cameras: Of the robot.
-        subscribers: Who looks.
-        states: Which cameras run.
-    """
+    """Active cameras, sizes, colour spaces, rates and parameters, of cameras and of subscribers."""
 
     def __init__(self, cameras: Cameras, subscribers: VideoSubscribers, states: CameraStates) -> None:
         self._cameras = cameras

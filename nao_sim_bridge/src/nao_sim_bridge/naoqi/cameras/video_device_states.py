@@ -14,7 +14,6 @@ class CameraStates:
     """The cameras' states. A camera is open and runs by itself while somebody looks; any thread.
 
     Args:
-        cameras: Of the robot.
         fail: Called with a camera and a reason when there will be no frames.
     """
 
@@ -27,11 +26,9 @@ class CameraStates:
         self._closed = [False for _ in CAMERAS]
 
     def is_open(self, camera: int) -> bool:
-        """Whether the camera is in use."""
         return not self._closed[camera] and (self._opened[camera] or self._wanted(camera))
 
     def runs(self, camera: int) -> bool:
-        """Whether it takes pictures."""
         return not self._cameras.stopped(camera) and (self._started[camera] or self._wanted(camera))
 
     def open(self, camera: int) -> None:
@@ -58,7 +55,6 @@ class CameraStates:
             self._cameras.set_stopped(camera, False)
 
     def stop(self, camera: int) -> None:
-        """Let it take no pictures."""
         with self._lock:
             self._stop(camera, "stopped: startCamera")
 

@@ -52,7 +52,6 @@ class Subscriber:
         views: What it sees; several if it asked for several cameras.
         fps: Frames a second that it asked for.
         several: Whether it asked for several cameras, if only for one of them.
-        streams: Its looks through the cameras, in the order of the views.
         waiting: Calls that wait for a frame.
         used: When it was used last, s of wall time.
     """
@@ -71,7 +70,6 @@ class VideoSubscribers:
     """Who looks, and the pictures for them. Any thread.
 
     Args:
-        cameras: Of the robot.
         clock: Wall time, s.
     """
 
@@ -139,7 +137,6 @@ class VideoSubscribers:
             return found
 
     def handles(self) -> list[str]:
-        """All handles."""
         with self._lock:
             self.clean_up()
             return list(self._known)
@@ -182,7 +179,6 @@ class VideoSubscribers:
                 self._let_go(subscriber)
 
     def close(self) -> None:
-        """End of everything."""
         with self._lock:
             for subscriber in self._known.values():
                 _close(subscriber)
@@ -195,8 +191,6 @@ class VideoSubscribers:
         """The next frame of each camera of a subscriber.
 
         Args:
-            handle: Of the subscriber.
-            call: Name of the call, for the task.
             change: Makes what the task ends with.
 
         Raises:

@@ -18,7 +18,6 @@ class WaitingCall:
     by a cycle.
 
     Args:
-        call: Its name.
         count: Number of cameras.
         change: Makes the answer from the frames.
         on_end: Called when it is over.

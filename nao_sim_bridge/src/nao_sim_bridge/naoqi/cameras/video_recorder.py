@@ -25,13 +25,7 @@ MOST_FPS, MOST_FPS_VGA, ABOVE_FPS_MJPG = 30.0, 15.0, 2.0
 
 
 class ALVideoRecorder(PictureSettings):
-    """ALVideoRecorder as the simulated robot offers it.
-
-    Args:
-        recorder: Records.
-        files: Where clients may have files written to.
-        tables: What the cameras can do.
-    """
+    """ALVideoRecorder as the simulated robot offers it."""
 
     def __init__(self, recorder: VideoRecorder, files: ClientFiles, tables: CameraTables) -> None:
         first = FilmSettings(camera=0, resolution=QVGA, color_space=BGR, rate=15.0, kind="MJPG")

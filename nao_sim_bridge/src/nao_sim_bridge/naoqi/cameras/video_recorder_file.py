@@ -21,14 +21,8 @@ class Film:
 
     It can be played at any moment, also when its process is killed or the disk is full.
 
-    Attributes:
-        frames: How many are in it.
-
     Args:
         path: The file; one that is there is replaced in the end.
-        kind: "MJPG" or "IYUV".
-        width: Pixels.
-        height: Pixels.
         rate: Frames a second.
 
     Raises:
@@ -53,7 +47,6 @@ class Film:
 
     @property
     def path(self) -> Path:
-        """The file; see `WholeFile`."""
         return self._file.path
 
     def write(self, picture: np.ndarray) -> None:

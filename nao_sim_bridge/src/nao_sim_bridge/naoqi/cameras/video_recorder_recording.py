@@ -48,9 +48,6 @@ class VideoRecorder:
     """One recording at a time.
 
     Args:
-        cameras: Of the robot.
-        runner: The simulation's thread.
-        tables: What the cameras can do.
         name: What its streams are called.
     """
 
@@ -64,7 +61,6 @@ class VideoRecorder:
 
     @property
     def records(self) -> bool:
-        """Whether a recording is under way."""
         return self._recording is not None
 
     def start(self, path: Path, settings: FilmSettings) -> Task:
@@ -122,7 +118,6 @@ class _Recording:
     """A film that grows with every frame of a camera, in a thread of its own.
 
     Attributes:
-        path: The file.
         ended: A task that ends with [frames, path] when the film is complete.
     """
 
@@ -137,7 +132,6 @@ class _Recording:
         self._thread = threading.Thread(target=self._run, name="film", daemon=True)
 
     def begin(self, stream: Any) -> None:
-        """Record the frames of a stream."""
         self._stream = stream
         self._thread.start()
 

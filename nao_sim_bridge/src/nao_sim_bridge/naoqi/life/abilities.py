@@ -19,18 +19,12 @@ ALL = "All"
 
 @dataclass(frozen=True)
 class Ability:
-    """What begins and ends an ability."""
-
     start: Callable[[], Any]
     stop: Callable[[], Any]
 
 
 class Abilities:
-    """Which abilities are enabled, and which run.
-
-    Args:
-        abilities: By name.
-    """
+    """Which abilities are enabled, and which run."""
 
     def __init__(self, abilities: Mapping[str, Ability]) -> None:
         self._abilities = dict(abilities)

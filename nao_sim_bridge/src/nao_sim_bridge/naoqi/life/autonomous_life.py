@@ -22,12 +22,7 @@ class ALAutonomousLife:
     No activity is launched by conditions: those that are installed have none.
 
     Args:
-        life: Does the work.
-        safeguards: Watch over it.
-        launchpad: Facts about the robot.
         installed: The behaviours that may be activities.
-        stimuli: What basic awareness takes notice of.
-        runner: Runs commands in the simulation thread.
     """
 
     def __init__(

@@ -11,13 +11,7 @@ NAME = "ALAutonomousMoves"
 
 
 class ALAutonomousMoves:
-    """ALAutonomousMoves as the simulated robot offers it.
-
-    Args:
-        background: What chains do that nobody moves.
-        listening: What the robot does while somebody speaks to it.
-        runner: Runs commands in the simulation thread.
-    """
+    """ALAutonomousMoves as the simulated robot offers it."""
 
     def __init__(self, background: BackgroundMovement, listening: ListeningMovement, runner: SimulationRunner) -> None:
         self._background = background

@@ -21,12 +21,7 @@ from nao_sim_bridge.naoqi.life.stimuli import check
 
 
 class ALBasicAwareness:
-    """ALBasicAwareness as the simulated robot offers it; a NAO has no tablet, and nothing that sees motion but eyes.
-
-    Args:
-        awareness: Does the work.
-        runner: Runs commands in the simulation thread.
-    """
+    """ALBasicAwareness as the simulated robot offers it; a NAO has no tablet, and nothing that sees motion but eyes."""
 
     def __init__(self, awareness: Awareness, runner: SimulationRunner) -> None:
         self._awareness = awareness

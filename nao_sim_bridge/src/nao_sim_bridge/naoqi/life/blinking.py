@@ -14,11 +14,7 @@ CLOSE, CLOSED, OPEN = 0.06, 0.05, 0.1
 
 
 class Blinking:
-    """Blinks while it is switched on, and not while somebody else changes the LEDs of the eyes.
-
-    Args:
-        simulation: Whose eyes they are.
-    """
+    """Blinks while it is switched on, and not while somebody else changes the LEDs of the eyes."""
 
     def __init__(self, simulation: Any) -> None:
         self._simulation = simulation
@@ -28,11 +24,9 @@ class Blinking:
         simulation.after_tick.append(self._tick)
 
     def start(self) -> None:
-        """Blink from now on."""
         self._next = self._simulation.time + self._chance.uniform(*PAUSES)
 
     def stop(self) -> None:
-        """Keep the eyes open."""
         self._next = None
 
     def _tick(self, now: Any) -> None:

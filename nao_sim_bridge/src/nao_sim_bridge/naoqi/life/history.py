@@ -33,7 +33,6 @@ class LifeRecord:
 
     @property
     def life_time(self) -> int:
-        """How long the robot has lived, s."""
         return int(self._lived + (0.0 if self._since is None else self._clock() - self._since))
 
     @property
@@ -50,7 +49,6 @@ class LifeRecord:
         return _newest(self._focus, depth)
 
     def entered(self, state: str, alive: bool) -> None:
-        """There is a new state."""
         now = self._clock()
         self._states.append((state, int(now)))
         if alive and self._since is None:
@@ -59,7 +57,6 @@ class LifeRecord:
             self._lived, self._since = self._lived + now - self._since, None
 
     def focused(self, activity: str) -> None:
-        """An activity has got the focus."""
         now = int(self._clock())
         self._focus.append((activity, now))
         entry = self._statistics.setdefault(activity, dict.fromkeys((FOCUS_COUNT, COMPLETION_COUNT, TOTAL), 0))
@@ -67,7 +64,6 @@ class LifeRecord:
         entry[START] = now
 
     def left(self, activity: str, completed: bool) -> None:
-        """An activity has lost the focus."""
         now, entry = int(self._clock()), self._statistics[activity]
         entry[DURATION] = now - entry[START]
         entry[TOTAL] += entry[DURATION]

@@ -29,11 +29,7 @@ class Launchpad:
         monitors: Whether it writes.
 
     Args:
-        simulation: Whose robot it is.
-        life: Its life.
-        memory: Where the keys are.
         tracked: Number of the person who is followed, -1 for nobody.
-        zone: What the robot's clock shows.
     """
 
     def __init__(
@@ -61,7 +57,6 @@ class Launchpad:
 
     @property
     def enabled(self) -> list[str]:
-        """Names of the plugins that are on."""
         return [name for name, on in self._enabled.items() if on]
 
     def enable(self, name: str, on: bool) -> None:

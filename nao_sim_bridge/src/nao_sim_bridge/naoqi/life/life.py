@@ -38,17 +38,11 @@ class Life:
     """The life of one robot.
 
     Attributes:
-        abilities: What it does by itself.
-        record: What it has done.
         state: One of `STATES`.
         focused: Name of the activity that has the focus, empty when none has.
         entered: Called with the state before, when there is a new one.
 
     Args:
-        simulation: Whose robot it is.
-        running: Starts and stops behaviours.
-        memory: Where events go.
-        abilities: See above.
         wake: Wakes the robot up; its task may end with a further task.
         stand: Has it stand up from wherever it is; ends with whether it stands.
     """
@@ -130,11 +124,9 @@ class Life:
         follow(recover(), recovered, lambda error: log.warning("autonomous life stays in safeguard: %s", error))
 
     def stand_up(self) -> Task:
-        """Have the robot stand up."""
         return self._stand()
 
     def all_clear(self) -> None:
-        """What was wrong is over."""
         if self.state == SAFEGUARD:
             self.set_state(SOLITARY)
 
@@ -228,7 +220,6 @@ class Life:
         self._enter(SOLITARY)
 
     def _after_reset(self) -> None:
-        """The robot is another one: it does not live yet."""
         self._wanted = None
         self._stacked.clear()
         if self.state != DISABLED:

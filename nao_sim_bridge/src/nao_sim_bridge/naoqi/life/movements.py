@@ -33,9 +33,6 @@ class BackgroundMovement:
 
     Attributes:
         strategy: One of `STRATEGIES`: what they do while they do not breathe.
-
-    Args:
-        simulation: Whose robot it is.
     """
 
     def __init__(self, simulation: Any) -> None:
@@ -44,7 +41,6 @@ class BackgroundMovement:
         self._breathes = False
 
     def start(self) -> None:
-        """Breathe from now on."""
         self._breathes = True
         self.update()
 
@@ -54,20 +50,12 @@ class BackgroundMovement:
         self.update()
 
     def update(self) -> None:
-        """Do what is wanted now."""
         mode = Mode.BREATH if self._breathes else Mode.POSTURE if self.strategy == BACK_TO_NEUTRAL else Mode.NOTHING
         self._simulation.robot.reflexes.idle.set_mode(BODY, mode)
 
 
 class SpeakingMovement:
-    """Moves arms and head while ALTextToSpeech speaks. ALAnimatedSpeech plans gestures of its own, which replace these.
-
-    Args:
-        mouth: Whose words they are.
-        animator: Moves arms and head.
-        library: The gestures.
-        seed: Of the choice among them.
-    """
+    """Moves arms and head while ALTextToSpeech speaks; gestures that ALAnimatedSpeech plans replace these."""
 
     def __init__(self, mouth: Speaker, animator: Animator, library: AnimationLibrary, seed: int) -> None:
         self._animator = animator
@@ -77,7 +65,6 @@ class SpeakingMovement:
         mouth.listeners.insert(0, self._hear)
 
     def start(self) -> None:
-        """Move along from now on."""
         self._on = True
 
     def stop(self) -> None:
@@ -101,12 +88,6 @@ class ListeningMovement:
 
     Attributes:
         enabled: Whether it does so when it is switched on.
-
-    Args:
-        simulation: Whose robot it is.
-        runner: Its thread.
-        memory: Where voices are told.
-        animator: Moves the head.
     """
 
     def __init__(self, simulation: Any, runner: SimulationRunner, memory: MemoryStore, animator: Animator) -> None:
@@ -119,7 +100,6 @@ class ListeningMovement:
         memory.listen(VOICE, self._hear)
 
     def start(self) -> None:
-        """Nod from now on."""
         self._on = True
 
     def stop(self) -> None:

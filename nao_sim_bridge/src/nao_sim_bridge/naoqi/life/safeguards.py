@@ -29,9 +29,6 @@ class Safeguards:
         enabled: Which safeguards are on, by name.
 
     Args:
-        life: Whose it is.
-        runner: Runs commands in the simulation thread.
-        memory: Where events come from.
         rest: Has the robot rest; its task may end with a further task.
     """
 

@@ -34,18 +34,7 @@ STAND, STAND_SPEED = "Stand", 0.8
 
 
 class LifeModules:
-    """ALAutonomousLife, ALAutonomousMoves, ALBasicAwareness and ALTracker of one robot.
-
-    Args:
-        simulation: Whose robot it is.
-        runner: Its thread.
-        memory: Where events come from and go to.
-        broker: Finds the modules that see and hear.
-        speech: The robot's voice and gestures.
-        posture: Takes the robot to postures.
-        running: Starts and stops behaviours.
-        zone: What the robot's clock shows.
-    """
+    """ALAutonomousLife, ALAutonomousMoves, ALBasicAwareness and ALTracker of one robot."""
 
     def __init__(
         self,
@@ -95,7 +84,6 @@ class LifeModules:
         }
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
         return dict(self._modules)
 
     def close(self) -> None:

@@ -32,11 +32,6 @@ class ALAudioDevice:
 
     Args:
         simulation: Whose loudspeakers and microphones these are; touched in the simulation thread only.
-        runner: That thread.
-        sounds: Reads files of clients.
-        clients: Modules that hear the microphones.
-        energy: How loud it is.
-        recorder: Records to files.
     """
 
     def __init__(
@@ -109,7 +104,6 @@ class ALAudioDevice:
         return _in_thread(lambda: self._clients.unsubscribe(module), "unsubscribe")
 
     def client_gone(self, module: str) -> None:
-        """A module of a client has left."""
         self._clients.gone(module)
 
     def openAudioInputs(self) -> Task:
@@ -211,7 +205,6 @@ class ALAudioDevice:
 
 
 def _in_thread(action: Callable[[], Any], name: str) -> Task:
-    """Do something in a thread of its own; the task ends with it."""
     task = Task(name, 0)
 
     def run() -> None:

@@ -30,10 +30,6 @@ class ALAudioPlayer:
 
     Args:
         simulation: Whose loudspeakers these are; touched in the simulation thread only.
-        runner: That thread.
-        sounds: Reads files of clients.
-        background: Where sounds are read and changed.
-        memory: Keeps when the last one was played.
         allow_private_streams: Whether streams may come from this computer and from private networks.
     """
 

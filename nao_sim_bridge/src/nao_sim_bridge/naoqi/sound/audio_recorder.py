@@ -11,11 +11,7 @@ from nao_sim_bridge.naoqi.sound.recorder import KINDS, Recorder, RecordingOrder,
 
 
 class ALAudioRecorder:
-    """ALAudioRecorder as the simulated robot offers it.
-
-    Args:
-        recorder: Does the work.
-    """
+    """ALAudioRecorder as the simulated robot offers it."""
 
     def __init__(self, recorder: Recorder) -> None:
         self._recorder = recorder

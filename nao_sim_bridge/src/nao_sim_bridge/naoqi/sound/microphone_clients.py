@@ -93,7 +93,6 @@ class MicrophoneClients:
         client.end()
 
     def gone(self, module: str) -> None:
-        """A module has left."""
         with self._lock:
             client = self._clients.pop(module, None)
             self._formats.pop(module, None)
@@ -102,7 +101,6 @@ class MicrophoneClients:
             client.end()
 
     def names(self) -> list[str]:
-        """Subscribed modules."""
         with self._lock:
             return list(self._clients)
 
@@ -135,7 +133,6 @@ class MicrophoneClients:
                 client.at_once = blocks
 
     def close(self) -> None:
-        """Call nobody any more."""
         with self._lock:
             clients, self._clients = list(self._clients.values()), {}
         for client in clients:
@@ -179,7 +176,6 @@ class _Client:
 
     @property
     def alive(self) -> bool:
-        """Whether it is still called."""
         return not self._ended
 
     @property
@@ -190,7 +186,6 @@ class _Client:
         return len(self._blocks) > HELD_UP and not hangs
 
     def listen(self, wanted: MicrophoneFormat) -> None:
-        """Begin to hear in this format."""
         begun = self.silence()
         listener = self._ears.listen(
             self.module, lambda block: self._hear(wanted, begun, block), wants=wanted.wants, channel=wanted.channel_name
@@ -284,7 +279,6 @@ class _Client:
 
 
 def _joined(blocks: Sequence[Any]) -> Any:
-    """Blocks that follow each other as one."""
     if len(blocks) == 1:
         return blocks[0]
     return replace(blocks[0], samples=np.concatenate([block.samples for block in blocks]))

@@ -27,7 +27,6 @@ class MicrophoneEnergy:
         self._energies = dict.fromkeys(sides, 0.0)
 
     def enable(self, enabled: bool) -> None:
-        """Begin to compute, or end it."""
         with self._lock:
             self._enabled = enabled
             self._update()

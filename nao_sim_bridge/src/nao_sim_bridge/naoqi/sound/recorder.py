@@ -59,7 +59,6 @@ class FilesInUse:
             self._paths.add(path)
 
     def give_back(self, path: Path) -> None:
-        """It is complete."""
         with self._lock:
             self._paths.discard(path)
 
@@ -68,9 +67,6 @@ class Recorder:
     """One recording at a time.
 
     Args:
-        simulation: Whose microphones these are.
-        runner: Its thread.
-        files: Where clients may have files written to.
         in_use: Shared by all recorders.
     """
 
@@ -148,7 +144,6 @@ class _Recording:
 
     Attributes:
         name: Name of the file as it was given.
-        path: The file.
         until: Simulated time at which it ends, s; known once it is stopped.
     """
 
@@ -162,7 +157,6 @@ class _Recording:
         self._failure: Exception | None = None
 
     def begin(self, ears: Any) -> None:
-        """Begin to hear."""
         wants, channel = self._heard.wants, self._heard.channel_name
         self._listener = ears.listen(f"recording {self.name}", self._on_block, wants, channel, exact=True)
 

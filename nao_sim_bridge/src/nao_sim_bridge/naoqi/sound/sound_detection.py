@@ -21,10 +21,6 @@ class ALSoundDetection(ListeningModule):
     The event `SoundDetected` has [[index, type, confidence, time], ...], one for each beginning (type 1) and end (0)
     in a buffer of 170 ms: index of the sample in the buffer, confidence 0..1, time in us of simulated time. An end is
     told when it has been quiet for a moment; its time is that of the end, its index 0 when that was before the buffer.
-
-    Args:
-        simulation: Whose ears these are.
-        memory: Where events go.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore) -> None:

@@ -12,16 +12,7 @@ from nao_sim_bridge.sound.reader import SoundReader
 
 
 class SoundFiles:
-    """Reads sounds for clients.
-
-    Attributes:
-        files: Where they may have files read from.
-        reader: Decodes them.
-
-    Args:
-        files: See above.
-        reader: See above.
-    """
+    """Reads sounds for clients."""
 
     def __init__(self, files: ClientFiles, reader: SoundReader) -> None:
         self.files = files
@@ -40,7 +31,6 @@ class SoundFiles:
         """The sound in a file, at the rate of the simulated world.
 
         Args:
-            path: The file.
             name: What to call it in errors.
 
         Raises:

@@ -29,11 +29,6 @@ class SoundLocalization(ListeningModule):
     in FRAME_TORSO], [the same in FRAME_ROBOT]]; angles in rad in the frame of the head, energy 0 unless the parameter
     EnergyComputation asks for it. While the robot's own voice is not far weaker than what else there is, nothing is
     located: the robot never takes itself for somebody else.
-
-    Args:
-        module: NAOqi name.
-        simulation: Whose ears these are.
-        memory: Where events go.
     """
 
     def __init__(self, module: str, simulation: Simulation, memory: MemoryStore) -> None:

@@ -16,7 +16,6 @@ class SoundSets:
     """Installed and loaded sound sets.
 
     Args:
-        sounds: Reads their files.
         check_room: Called with a name and bytes before a sound of that name is kept; raises an error if they are too
             many.
         folders: Folders whose subfolders are the sets, the first that has one of a name counts.
@@ -29,7 +28,6 @@ class SoundSets:
         self._loaded: dict[str, Mapping[str, Sound]] = {}
 
     def installed(self) -> list[str]:
-        """Names of the sets there are."""
         found = {path.name for folder in self._folders if folder.is_dir() for path in folder.iterdir() if path.is_dir()}
         return sorted(found)
 
@@ -85,7 +83,6 @@ class SoundSets:
         """A sound by its name, with or without ending.
 
         Args:
-            file: Name of the sound.
             name: Its set, which is loaded when it is not yet; without one, all loaded sets are searched.
 
         Raises:
@@ -104,7 +101,6 @@ class SoundSets:
         raise NaoqiError(f"no sound {file!r}; there are {_listed(known)}")
 
     def has(self, name: str, file: str) -> bool:
-        """Whether a set is there and has a sound."""
         return name in self.installed() and _without_ending(file) in self.files(name)
 
 

@@ -25,19 +25,8 @@ log = logging.getLogger("nao_sim.speech")
 class SpeechModules:
     """ALTextToSpeech and ALAnimatedSpeech of one robot.
 
-    Attributes:
-        studio: Makes the sound.
-        speaker: The mouth.
-        animator: Moves arms and head through gestures.
-        library: The gestures.
-
     Args:
-        simulation: Whose voice it is.
-        runner: Its thread.
-        memory: Where events are raised.
-        files: Where clients may have files read from and written to.
         broker: Finds modules that a text calls: `service(name)`.
-        studio: Makes the sound.
     """
 
     def __init__(
@@ -73,7 +62,6 @@ class SpeechModules:
         )
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
         return {"ALTextToSpeech": [self._text_to_speech], "ALAnimatedSpeech": [self._animated_speech]}
 
     def say(self, text: str, animated: bool = False) -> Task:

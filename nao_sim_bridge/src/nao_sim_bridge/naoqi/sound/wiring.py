@@ -21,17 +21,9 @@ from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 class AudioModules:
     """ALAudioPlayer, ALAudioDevice and ALAudioRecorder of one robot.
 
-    Attributes:
-        clients: Modules that hear the microphones.
-        recorders: Of the device, and of ALAudioRecorder.
-
     Args:
-        simulation: Whose sound it is.
-        runner: Its thread.
         sounds: Reads sound files of clients, from where they may have files read from and written to.
         broker: Finds modules of clients: `service(name)`.
-        memory: Of the robot.
-        allow_private_streams: See `ALAudioPlayer`.
     """
 
     def __init__(
@@ -55,7 +47,6 @@ class AudioModules:
         simulation.holds += [self.clients.behind, background.holds]
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
         return {
             "ALAudioPlayer": [self._player],
             "ALAudioDevice": [self._device],

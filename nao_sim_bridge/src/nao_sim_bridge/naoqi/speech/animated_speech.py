@@ -28,15 +28,6 @@ class ALAnimatedSpeech:
 
     Args:
         simulation: Whose robot it is; touched in the simulation thread only.
-        runner: That thread.
-        memory: Where the end of a text is told.
-        speaker: The robot's mouth.
-        studio: Who makes sound of text.
-        settings: The voice that clients have chosen.
-        files: Where files of clients are.
-        call: For texts that call methods.
-        animator: Moves arms and head.
-        library: The animations that it knows.
     """
 
     def __init__(
@@ -148,7 +139,6 @@ def _mode(value: Any) -> str:
 
 
 def _lists(value: Any, field: str) -> dict[str, list[str]]:
-    """A map of texts to lists of texts."""
     if not isinstance(value, Mapping):
         raise BadValue(field, value, "a map of tags to lists")
     for tag, names in value.items():

@@ -36,11 +36,7 @@ class HeadPose:
 
 
 class HeadTrack:
-    """Remembers the last snapshots. Written in the simulation thread, read in any.
-
-    Args:
-        simulation: Of the robot.
-    """
+    """Remembers the last snapshots. Written in the simulation thread, read in any."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation

@@ -16,8 +16,6 @@ class Listening(Switch):
     """Opens and closes the ears of one module. Any thread.
 
     Args:
-        ears: Of the robot.
-        name: Of the module.
         begin: Called each time that listening begins; what it returns gets the blocks, four channels of 48 kHz.
     """
 
@@ -30,7 +28,6 @@ class Listening(Switch):
 
     @property
     def hears(self) -> bool:
-        """Whether it hears."""
         return self._listener is not None
 
     def _update(self) -> None:
@@ -44,11 +41,7 @@ class Listening(Switch):
 class ListeningModule:
     """Methods that NAOqi's listening extractors have in common. No other methods are public.
 
-    Attributes:
-        listening: See below.
-
     Args:
-        listening: The ears of the module.
         setters: What takes the value of a parameter, by its name.
     """
 
@@ -57,19 +50,15 @@ class ListeningModule:
         self._setters = setters
 
     def pause(self, status: bool) -> None:
-        """Stop listening for a while, or go on; subscribers stay."""
         self.listening.pause(status)
 
     def isPaused(self) -> bool:
-        """Whether it is paused."""
         return self.listening.paused
 
     def isProcessing(self) -> bool:
-        """Whether it listens: somebody is subscribed, and it is not paused."""
         return self.listening.hears
 
     def setParameter(self, parameter: str, value: Any) -> None:
-        """Change how it listens."""
         if parameter not in self._setters:
             raise NaoqiError(f"unknown parameter {parameter!r}; there are {', '.join(self._setters)}")
         self._setters[parameter](value)

@@ -40,9 +40,7 @@ class RecognitionEngine(Switch):
     Methods may be called from any thread; events are raised in the recogniser's.
 
     Args:
-        simulation: Whose ears.
         execute: Has something done in the simulation thread: what, and what to call it.
-        memory: Where events go.
         on_listen: Called with True when listening begins and with False when it ends; it returns how long, in s, what
             is heard next should be left out (the bip that it makes).
         accepts: Tells whether a hypothesis is good enough for its grammar.
@@ -113,7 +111,6 @@ class RecognitionEngine(Switch):
         self._recogniser.listen(listening)
 
     def catch_up(self) -> None:
-        """Wait until everything that the ears delivered has been worked through."""
         self._recogniser.catch_up()
 
     @property
@@ -122,7 +119,6 @@ class RecognitionEngine(Switch):
         return self._recogniser.pid
 
     def close(self) -> None:
-        """End the process."""
         with self._lock:
             listener, self._listener = self._listener, None
         if listener is not None:

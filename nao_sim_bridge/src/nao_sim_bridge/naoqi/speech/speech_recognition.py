@@ -30,14 +30,7 @@ PARAMETERS: Mapping[str, tuple[float, float, float]] = {"Sensitivity": (0.5, 0.0
 
 
 class ALSpeechRecognition:
-    """ALSpeechRecognition as the simulated robot offers it.
-
-    Args:
-        engine: Recognises.
-        expression: Shows that it listens.
-        contexts: Grammars beside the vocabulary.
-        files: Where grammars are read from and written to.
-    """
+    """ALSpeechRecognition as the simulated robot offers it."""
 
     def __init__(
         self, engine: RecognitionEngine, expression: ListeningExpression, contexts: Contexts, files: ClientFiles
@@ -70,21 +63,17 @@ class ALSpeechRecognition:
         self._change("the vocabulary", change)
 
     def setWordListAsVocabulary(self, phrases: Sequence[str]) -> None:
-        """As `setVocabulary`, without word spotting."""
         self.setVocabulary(phrases, False)
 
     def loadVocabulary(self, name: str) -> None:
-        """Phrases of a file, one a line."""
         self.setVocabulary(read_vocabulary(self._files.to_read(name)), False)
 
     # --- engine ---------------------------------------------------------------------------------------------------
 
     def pause(self, paused: bool) -> None:
-        """Stop listening for a while, or go on; subscribers stay."""
         self._engine.pause(paused)
 
     def setParameter(self, name: str, value: Any) -> None:
-        """Change a parameter of the engine."""
         _, least, most = self._parameter(name)
         wanted = number(value, name, least, most)
 
@@ -94,21 +83,17 @@ class ALSpeechRecognition:
         self._change("", change)
 
     def getParameter(self, name: str) -> float:
-        """A parameter of the engine."""
         self._parameter(name)
         return float(self._parameters[name])
 
     def setLanguage(self, language: str) -> None:
-        """Language to listen for."""
         self._check_language(language)
         self._language = language
 
     def getLanguage(self) -> str:
-        """Language that is listened for."""
         return self._language
 
     def getAvailableLanguages(self) -> list[str]:
-        """Languages there are."""
         return list(self._languages)
 
     # --- expression -----------------------------------------------------------------------------------------------
@@ -118,7 +103,6 @@ class ALSpeechRecognition:
         self._expression.audio = on
 
     def getAudioExpression(self) -> bool:
-        """Whether it bips."""
         return self._expression.audio
 
     def setVisualExpression(self, on: bool) -> None:
@@ -144,11 +128,9 @@ class ALSpeechRecognition:
         self._change("contexts", lambda: self._contexts.add(context, bnf))
 
     def removeContext(self, context: str) -> None:
-        """Forget a context."""
         self._change("contexts", lambda: self._contexts.remove(context))
 
     def removeAllContext(self) -> None:
-        """Forget all contexts."""
         self._change("contexts", self._contexts.clear)
 
     def pushContexts(self) -> None:
@@ -165,8 +147,6 @@ class ALSpeechRecognition:
         self._change("contexts", push)
 
     def popContexts(self) -> None:
-        """Take contexts and vocabulary back that were put aside last."""
-
         def pop() -> None:
             self._contexts.pop()
             self._vocabulary = self._vocabularies.pop()
@@ -184,24 +164,19 @@ class ALSpeechRecognition:
         self._change("contexts", lambda: self._contexts.load(name))
 
     def eraseContextSet(self, name: str) -> None:
-        """Forget saved contexts."""
         with self._lock:
             self._contexts.erase(name)
 
     def activateRule(self, context: str, rule: str) -> None:
-        """Switch a rule on."""
         self._change_context(context, lambda c: c.switched(rule, True))
 
     def deactivateRule(self, context: str, rule: str) -> None:
-        """Switch a rule off."""
         self._change_context(context, lambda c: c.switched(rule, False))
 
     def activateAllRules(self, context: str) -> None:
-        """Switch all rules of a context on."""
         self._change_context(context, lambda c: c.all_switched(True))
 
     def deactivateAllRules(self, context: str) -> None:
-        """Switch all rules of a context off."""
         self._change_context(context, lambda c: c.all_switched(False))
 
     def getRules(self, context: str, kind: str) -> list[str]:
@@ -216,7 +191,6 @@ class ALSpeechRecognition:
         self._change_context(context, lambda c: c.with_slot(slot, words))
 
     def removeWordListFromSlot(self, context: str, slot: str) -> None:
-        """Empty a slot."""
         self._change_context(context, lambda c: c.with_slot(slot, ()))
 
     def setContextParam(self, context: str, name: str, value: float) -> None:
@@ -225,7 +199,6 @@ class ALSpeechRecognition:
             self._contexts.put(context, self._contexts.get(context).with_parameter(name, number(value, name)))
 
     def getContextParam(self, context: str, name: str) -> float:
-        """A parameter of a context."""
         with self._lock:
             return self._contexts.get(context).parameter(name)
 
@@ -239,7 +212,6 @@ class ALSpeechRecognition:
 
         Args:
             what: What is changed, when that is refused while the engine listens; else empty.
-            change: Does it.
         """
         with self._lock:
             if what:
@@ -267,14 +239,7 @@ class ALSpeechRecognition:
 class RecognitionModule:
     """ALSpeechRecognition of one robot, put together.
 
-    Attributes:
-        engine: Recognises.
-
     Args:
-        simulation: Whose ears, loudspeakers and LEDs.
-        runner: Its thread.
-        memory: Where events go.
-        files: Where grammars are read from and written to.
         spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
     """
 
@@ -297,9 +262,7 @@ class RecognitionModule:
         self._parts = [service, Extractor(NAME, memory, self.engine.start, self.engine.stop, EVENTS, KEYS)]
 
     def modules(self) -> dict[str, list[Any]]:
-        """The module by name, as `make_service` wants it."""
         return {NAME: self._parts}
 
     def close(self) -> None:
-        """Recognise nothing any more."""
         self.engine.close()

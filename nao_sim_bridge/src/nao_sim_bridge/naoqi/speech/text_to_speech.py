@@ -33,11 +33,6 @@ class ALTextToSpeech:
 
     Args:
         speaker: The robot's mouth; touched in the simulation thread only.
-        studio: Who makes sound of text.
-        settings: The voice that clients have chosen.
-        events: Raises the events.
-        runner: The simulation thread.
-        files: Where files of clients are.
     """
 
     def __init__(

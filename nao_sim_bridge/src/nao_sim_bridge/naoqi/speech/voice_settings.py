@@ -27,9 +27,6 @@ PREFERENCE_KEYS = ("language", "voice", "volume", "parameters")
 class VoiceSettings:
     """Language, voice, parameters, volume and pronunciations. Any thread may call anything.
 
-    Attributes:
-        voices: All that the robot knows.
-
     Args:
         engine: Who says which of them can speak.
     """
@@ -47,17 +44,14 @@ class VoiceSettings:
 
     @property
     def language(self) -> Language:
-        """What is spoken."""
         return self._language
 
     @property
     def voice(self) -> str:
-        """Who speaks."""
         return self._voice
 
     @property
     def volume(self) -> float:
-        """0 to 1."""
         return self._volume
 
     def style(self, language: str | None = None) -> Style:
@@ -108,11 +102,9 @@ class VoiceSettings:
                 self._voice = voice
 
     def set_volume(self, volume: Any) -> None:
-        """0 to 1."""
         self._volume = number(volume, "volume", 0.0, 1.0)
 
     def parameter(self, name: str) -> float:
-        """Value of a voice parameter."""
         return self._values[parameters.known(name)]
 
     def set_parameter(self, name: str, value: Any) -> None:
@@ -124,7 +116,6 @@ class VoiceSettings:
                 self.reset_speed()
 
     def reset_speed(self) -> None:
-        """Speed back to its default."""
         with self._lock:
             self._values[parameters.SPEED] = self._values[parameters.DEFAULT_SPEED]
 

@@ -27,11 +27,6 @@ class BarcodeReader:
     The event `BarcodeReader/BarcodeDetected` has [[text, [[x, y], [x, y], [x, y], [x, y]]], ...], corners in pixels of
     the picture, from the upper left one as the code is read, clockwise. When no code is seen any more, its value is
     an empty list, and nobody is told. At the start it looks at 640x480.
-
-    Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        vision: Where pictures are looked at.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> None:

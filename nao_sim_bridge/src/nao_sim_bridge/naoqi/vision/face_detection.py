@@ -35,16 +35,6 @@ class ALFaceDetection:
 
     The event `FaceDetected` is raised with each picture in which there is a face, as `faces_value` says, and once with
     an empty list when the last one has gone. Learning takes five pictures in a row; each has to show exactly one face.
-
-    Attributes:
-        watching: The eyes of the module.
-        learner: Learns faces.
-
-    Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        vision: Where pictures are looked at.
-        files: Where known faces are kept.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess, files: ClientFiles) -> None:

@@ -26,7 +26,6 @@ class NamedFace:
     """A face and whose it is.
 
     Attributes:
-        face: What was seen.
         name: Of the person, empty when unknown.
         score: How sure it is, 0..1; of the best guess, also when that was not good enough.
     """

@@ -29,11 +29,6 @@ class LandMarkDetection:
     middle, width and height of its black disc as angles in the picture (alpha positive to the left, beta downwards),
     heading its turn in the picture, counterclockwise. When the last mark has disappeared, the event is raised once
     with an empty list.
-
-    Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        vision: Where pictures are looked at.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> None:
@@ -55,7 +50,6 @@ class LandMarkDetection:
 
 
 def landmark_value(frame: Frame, found: list[Landmark]) -> list[Any]:
-    """Value of the event."""
     marks = [[[SHAPE, m.alpha, m.beta, m.width, m.height, m.heading], [m.number]] for m in found]
     poses = [list(frame.pose_in_torso), list(frame.pose_in_robot)]
     return [list(frame.stamp), marks, *poses, CAMERA_NAMES[frame.camera]]

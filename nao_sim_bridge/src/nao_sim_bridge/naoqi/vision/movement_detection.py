@@ -31,14 +31,6 @@ class ALMovementDetection:
     in FRAME_ROBOT, camera], with a cluster as [[x, y] of its centre of gravity, [x, y, width, height] of the rectangle
     around it, [share of the picture, share of the rectangle] that moves]; angles in rad, x and y of the rectangle are
     its upper left corner.
-
-    Attributes:
-        watching: The eyes of the module.
-
-    Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        vision: Where pictures are looked at.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> None:

@@ -24,11 +24,6 @@ class RedBallDetection:
     in FRAME_TORSO, the same in FRAME_ROBOT, index of the camera]; angles in rad from the middle of the picture, X
     positive to the left and Y downwards, sizes are angular radii. When the ball is gone, its value is an empty list,
     and nobody is told. It looks through the camera that ALVideoDevice has active: it has no methods to choose one.
-
-    Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        vision: Where pictures are looked at.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> None:
@@ -51,7 +46,6 @@ class RedBallDetection:
 
 
 def ball_value(frame: Frame, ball: Ball) -> list[Any]:
-    """Value of the event."""
     place = [ball.alpha, ball.beta, ball.radius, ball.radius]
     return [list(frame.stamp), place, list(frame.pose_in_torso), list(frame.pose_in_robot), frame.camera]
 

@@ -11,8 +11,6 @@ class Sight:
     """The event of one extractor. Used by its watching only, so in one thread at a time.
 
     Args:
-        memory: Where the event goes.
-        event: Its name.
         tell_end: Also tell subscribers when nothing is seen any more, with an empty list; else that is only written,
             for those who read the key.
     """
@@ -25,12 +23,10 @@ class Sight:
         memory.put_quietly(event, [])
 
     def show(self, value: list[Any]) -> None:
-        """Something was seen."""
         self._something = True
         self._memory.raise_event(self._event, value)
 
     def nothing(self) -> None:
-        """Nothing was seen in a picture."""
         if self._something and self._tell_end:
             self._memory.raise_event(self._event, [])
         elif self._something:

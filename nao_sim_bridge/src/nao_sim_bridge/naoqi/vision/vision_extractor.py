@@ -11,15 +11,7 @@ from nao_sim_bridge.naoqi.vision.watching import MOST_FPS, Watching
 
 
 class VisionExtractor:
-    """Camera, resolution, frame rate and pause of an extractor. No other methods are public.
-
-    Attributes:
-        watching: See below.
-
-    Args:
-        watching: The eyes of the module.
-        tables: What the cameras can do.
-    """
+    """Camera, resolution, frame rate and pause of an extractor. No other methods are public."""
 
     def __init__(self, watching: Watching, tables: CameraTables) -> None:
         self.watching = watching
@@ -27,16 +19,13 @@ class VisionExtractor:
         self._parameters: dict[str, Callable[[Any], Any]] = {"pause": self.pause, "resolution": self.setResolution}
 
     def getActiveCamera(self) -> int:
-        """Camera that it looks through: 0 top, 1 bottom."""
         return self.watching.camera
 
     def setActiveCamera(self, camera: int) -> bool:
-        """Look through another camera."""
         self.watching.set_camera(self._tables.camera(camera))
         return True
 
     def getFrameRate(self) -> int:
-        """The most pictures a second that it looks at."""
         return self.watching.fps
 
     def setFrameRate(self, *arguments: Any) -> bool:
@@ -48,24 +37,19 @@ class VisionExtractor:
         return True
 
     def getResolution(self) -> int:
-        """Id of the resolution of the pictures that it looks at."""
         return self.watching.resolution
 
     def setResolution(self, resolution: int) -> bool:
-        """Look at pictures of another size."""
         self.watching.set_resolution(self._tables.resolution(resolution).id)
         return True
 
     def pause(self, status: bool) -> None:
-        """Stop looking for a while, or go on; subscribers stay."""
         self.watching.pause(bool(status))
 
     def isPaused(self) -> bool:
-        """Whether it is paused."""
         return self.watching.paused
 
     def isProcessing(self) -> bool:
-        """Whether it looks: somebody is subscribed, and it is not paused."""
         return self.watching.looks
 
     def setParameter(self, parameter: str, value: Any) -> None:

@@ -21,13 +21,7 @@ from nao_sim_bridge.vision.client import VisionProcess
 class VisionModules:
     """ALRedBallDetection, ALLandMarkDetection, ALBarcodeReader, ALFaceDetection and ALMovementDetection of one robot.
 
-    Attributes:
-        watchings: What looks through the cameras.
-
     Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        files: Where known faces are kept.
         process: The vision process; it starts when somebody is subscribed first.
     """
 
@@ -48,7 +42,6 @@ class VisionModules:
         ]
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
         return {
             red_ball_detection.NAME: red_ball_detection.parts(self._ball, self._memory),
             landmark_detection.NAME: landmark_detection.parts(self._landmarks, self._memory, self._tables),
