@@ -23,7 +23,7 @@ from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.body.posture_events import PostureEvents
 from nao_sim_bridge.naoqi.body.senses_wiring import SenseModules
 from nao_sim_bridge.naoqi.cameras import video_device
-from nao_sim_bridge.naoqi.cameras.photo_capture_wiring import PictureModules
+from nao_sim_bridge.naoqi.cameras.photos_and_films import PictureModules
 from nao_sim_bridge.naoqi.life.wiring import LifeModules
 from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
@@ -123,7 +123,7 @@ class RobotModules:
         zone = TimeZone()
         self._life = LifeModules(simulation, runner, memory, broker, self.speech, posture, behaviors.running, zone)
         self.recognition = RecognitionModule(simulation, runner, memory, files, workers.recogniser)
-        self.video = video_device.VideoDevice(simulation.cameras, files)
+        self.video = video_device.ALVideoDevice(simulation.cameras, files)
         self.vision = VisionModules(simulation, memory, files, workers.vision)
         self._pictures_taken = PictureModules(simulation, runner, files)
         self._senses = SenseModules(simulation, runner, memory)
