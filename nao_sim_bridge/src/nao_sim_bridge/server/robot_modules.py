@@ -29,10 +29,9 @@ from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.wake import AWAKE
-from nao_sim_bridge.naoqi.sound import sound_detection, sound_localization
+from nao_sim_bridge.naoqi.sound.sound_extractors import DETECTION, LOCALIZATIONS, ALSoundDetection, SoundLocalization
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
-from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
-from nao_sim_bridge.naoqi.sound.wiring import AudioModules
+from nao_sim_bridge.naoqi.sound.wiring import AudioModules, SpeechModules
 from nao_sim_bridge.naoqi.speech.speech_recognition import RecognitionModule
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
@@ -143,8 +142,8 @@ class RobotModules:
             **behaviors.modules(),
             **self._life.modules(),
             **self.recognition.modules(),
-            sound_detection.NAME: sound_detection.parts(simulation, memory),
-            **{name: sound_localization.parts(name, simulation, memory) for name in sound_localization.NAMES},
+            DETECTION: ALSoundDetection(simulation, memory).parts(),
+            **{name: SoundLocalization(name, simulation, memory).parts() for name in LOCALIZATIONS},
             video_device.NAME: self.video.parts(),
             **self.vision.modules(),
             **self._pictures_taken.modules(),

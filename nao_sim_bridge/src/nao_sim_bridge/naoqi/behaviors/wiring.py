@@ -18,7 +18,7 @@ from nao_sim_bridge.naoqi.behaviors.frame_manager import ALFrameManager
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
+from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
 
 
 class BehaviorModules:

@@ -23,7 +23,7 @@ from nao_sim_bridge.naoqi.life.movements import BackgroundMovement, ListeningMov
 from nao_sim_bridge.naoqi.life.safeguards import Safeguards
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.wake import Wake
-from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
+from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.tracker import tracking
 from nao_sim_bridge.naoqi.tracker.looking import Looking

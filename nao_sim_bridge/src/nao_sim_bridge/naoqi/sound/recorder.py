@@ -15,7 +15,7 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, MicrophoneFormat
+from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, MicrophoneFormat, flags_to_channel, microphone_format
 from nao_sim_bridge.sound.wav_file import OggFile, WavFile
 
 log = logging.getLogger("nao_sim.recorder")
@@ -197,3 +197,21 @@ def kind_of(name: str) -> str:
     if ending not in KINDS:
         raise BadValue("filename", name, "a name that ends in .wav or .ogg")
     return ending
+
+
+class ALAudioRecorder:
+    """ALAudioRecorder as the simulated robot offers it."""
+
+    def __init__(self, recorder: Recorder) -> None:
+        self._recorder = recorder
+
+    def startMicrophonesRecording(self, filename: str, kind: str, rate: int, channels: Any) -> Task:
+        if kind not in KINDS:
+            raise BadValue("type", kind, " or ".join(KINDS))
+        if kind_of(filename) != kind:
+            raise BadValue("filename", filename, f"a name that ends in .{kind}, as the type says")
+        heard = microphone_format(rate, flags_to_channel(channels), 0)
+        return self._recorder.start(RecordingOrder(filename, kind, heard))
+
+    def stopMicrophonesRecording(self) -> Task:
+        return self._recorder.stop()

@@ -1,14 +1,17 @@
-"""Sound files that clients name: found, checked and read."""
+"""Sound files that clients name, found, checked and read; and sound sets: folders of short sounds."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Callable, Iterable, Mapping
 
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.sound.files import SoundFileError
 from nao_sim_bridge.sound.reader import SoundReader
+
+ENDINGS = (".wav", ".ogg", ".flac", ".mp3")
 
 
 class SoundFiles:
@@ -40,3 +43,103 @@ class SoundFiles:
             return self.reader.read(path, self.reader.sizes.sound.client_s).at_rate(RATE)
         except SoundFileError as error:
             raise NaoqiError(str(error).replace(f"sound file {path}:", repr(name))) from error
+
+
+class SoundSets:
+    """Installed and loaded sound sets.
+
+    Args:
+        check_room: Called with a name and bytes before a sound of that name is kept; raises an error if they are too
+            many.
+        folders: Folders whose subfolders are the sets, the first that has one of a name counts.
+    """
+
+    def __init__(self, sounds: SoundFiles, check_room: Callable[[str, int], None], *folders: Path) -> None:
+        self._sounds = sounds
+        self._check_room = check_room
+        self._folders = folders
+        self._loaded: dict[str, Mapping[str, Sound]] = {}
+
+    def installed(self) -> list[str]:
+        found = {path.name for folder in self._folders if folder.is_dir() for path in folder.iterdir() if path.is_dir()}
+        return sorted(found)
+
+    def loaded(self) -> list[str]:
+        """Names of the sets that are loaded, in the order of loading."""
+        return list(self._loaded)
+
+    def files(self, name: str) -> dict[str, Path]:
+        """Sounds of a set: name without ending to file.
+
+        Raises:
+            NaoqiError: There is no such set.
+        """
+        installed = self.installed()
+        if name not in installed:
+            raise NaoqiError(f"no sound set {name!r}; installed are {_listed(installed)}")
+        folder = next(path for path in (folder / name for folder in self._folders) if path.is_dir())
+        return {path.stem: path for path in sorted(folder.iterdir()) if path.suffix.lower() in ENDINGS}
+
+    def load(self, name: str) -> None:
+        """Read all sounds of a set into memory.
+
+        Raises:
+            NaoqiError: There is no such set, one of its files cannot be read, or there is no room for it.
+        """
+        if name in self._loaded:
+            return
+        sounds: dict[str, Sound] = {}
+        for key, path in self.files(name).items():
+            sounds[key] = self._sounds.read_path(path, path.name)
+            self._check_room(f"sound set {name}", sum(sound.samples.nbytes for sound in sounds.values()))
+        self._loaded[name] = sounds
+
+    def kept(self) -> list[tuple[str, int]]:
+        """Names of the loaded sets and their bytes."""
+        loaded = dict(self._loaded)
+        return [
+            (f"sound set {name}", sum(sound.samples.nbytes for sound in sounds.values()))
+            for name, sounds in loaded.items()
+        ]
+
+    def unload(self, name: str) -> None:
+        """Forget a set.
+
+        Raises:
+            NaoqiError: It is not loaded.
+        """
+        if name not in self._loaded:
+            raise NaoqiError(f"sound set {name!r} is not loaded; loaded are {_listed(self._loaded)}")
+        del self._loaded[name]
+
+    def sound(self, file: str, name: str | None = None) -> Sound:
+        """A sound by its name, with or without ending.
+
+        Args:
+            name: Its set, which is loaded when it is not yet; without one, all loaded sets are searched.
+
+        Raises:
+            NaoqiError: There is no such set or sound, or no set is loaded.
+        """
+        if name is not None:
+            self.load(name)
+        sets = self._loaded if name is None else {name: self._loaded[name]}
+        if not sets:
+            raise NaoqiError(f"no sound set is loaded; installed are {_listed(self.installed())}")
+        key = _without_ending(file)
+        for sounds in sets.values():
+            if key in sounds:
+                return sounds[key]
+        known = [f"{of_set}/{sound}" for of_set, sounds in sets.items() for sound in sounds]
+        raise NaoqiError(f"no sound {file!r}; there are {_listed(known)}")
+
+    def has(self, name: str, file: str) -> bool:
+        return name in self.installed() and _without_ending(file) in self.files(name)
+
+
+def _without_ending(file: str) -> str:
+    return Path(file).stem if Path(file).suffix.lower() in ENDINGS else file
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(names) or "none"

@@ -89,7 +89,7 @@ class Watching(Switch):
         self._failed = False
 
     @property
-    def looks(self) -> bool:
+    def runs(self) -> bool:
         return self._stream is not None
 
     @property
