@@ -32,7 +32,7 @@ from nao_sim_bridge.naoqi.motion.wake import AWAKE
 from nao_sim_bridge.naoqi.sound.sound_extractors import DETECTION, LOCALIZATIONS, ALSoundDetection, SoundLocalization
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.sound.wiring import AudioModules, SpeechModules
-from nao_sim_bridge.naoqi.speech.speech_recognition import RecognitionModule
+from nao_sim_bridge.naoqi.speech.speech_recognition import ALSpeechRecognition
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
@@ -121,7 +121,7 @@ class RobotModules:
         behaviors = BehaviorModules(simulation, runner, memory, files, self.speech, posture)
         zone = TimeZone()
         self._life = LifeModules(simulation, runner, memory, broker, self.speech, posture, behaviors.running, zone)
-        self.recognition = RecognitionModule(simulation, runner, memory, files, workers.recogniser)
+        self.recognition = ALSpeechRecognition(simulation, runner, memory, files, workers.recogniser)
         self.video = video_device.ALVideoDevice(simulation.cameras, files)
         self.vision = VisionModules(simulation, memory, files, workers.vision)
         self._pictures_taken = PictureModules(simulation, runner, files)

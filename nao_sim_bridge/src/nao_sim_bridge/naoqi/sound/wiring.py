@@ -96,7 +96,7 @@ class SpeechModules:
         self.speaker = Speaker(simulation, self.studio)
         self.animator = Animator(simulation)
         self.library = load_animations()
-        self._settings = VoiceSettings(self.studio.engines)
+        self._settings = VoiceSettings(studio.engines, files)
         events = SpeechEvents(memory, lambda: simulation.sound.time)
         self.speaker.listeners.append(events)
         self._text_to_speech = ALTextToSpeech(self.speaker, self.studio, self._settings, events, runner, files)
@@ -114,7 +114,10 @@ class SpeechModules:
         )
 
     def modules(self) -> dict[str, list[Any]]:
-        return {"ALTextToSpeech": [self._text_to_speech], "ALAnimatedSpeech": [self._animated_speech]}
+        return {
+            "ALTextToSpeech": [self._text_to_speech, self._settings],
+            "ALAnimatedSpeech": [self._animated_speech],
+        }
 
     def say(self, text: str, animated: bool = False) -> Task:
         """Say a text of a behaviour, with gestures or without; it calls no methods."""

@@ -58,14 +58,13 @@ class ALAnimatedSpeech:
         memory.declare_event(END, "ALAnimatedSpeech")
 
     def say(self, text: str, configuration: Any = None) -> Task:
-        return self.say_with(text, self._mode if configuration is None else self._configured(configuration), self._call)
+        return self._say(text, self._mode if configuration is None else self._configured(configuration), self._call)
 
     def say_without_calls(self, text: str) -> Task:
         """What a behaviour says: instructions that call methods are left out."""
-        return self.say_with(text, self._mode, None)
+        return self._say(text, self._mode, None)
 
-    def say_with(self, text: str, mode: str, call: Caller | None) -> Task:
-        """See `AnimatedTalk`."""
+    def _say(self, text: str, mode: str, call: Caller | None) -> Task:
         talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, call)
 
         def start() -> Task:
@@ -83,11 +82,10 @@ class ALAnimatedSpeech:
     def getBodyLanguageModeToStr(self) -> str:
         return self._mode
 
-    def setBodyLanguageMode(self, mode: int) -> None:
+    def setBodyLanguageMode(self, mode: int | str) -> None:
         self._mode = _mode(mode)
 
-    def setBodyLanguageModeFromStr(self, mode: str) -> None:
-        self._mode = _mode(mode)
+    setBodyLanguageModeFromStr = setBodyLanguageMode
 
     def isBodyLanguageEnabled(self) -> bool:
         return self._mode != DISABLED
@@ -95,11 +93,7 @@ class ALAnimatedSpeech:
     def setBodyLanguageEnabled(self, enable: bool) -> None:
         self._mode = CONTEXTUAL if enable else DISABLED
 
-    def isBodyTalkEnabled(self) -> bool:
-        return self.isBodyLanguageEnabled()
-
-    def setBodyTalkEnabled(self, enable: bool) -> None:
-        self.setBodyLanguageEnabled(enable)
+    isBodyTalkEnabled, setBodyTalkEnabled = isBodyLanguageEnabled, setBodyLanguageEnabled
 
     # --- animations -----------------------------------------------------------------------------------------------
 

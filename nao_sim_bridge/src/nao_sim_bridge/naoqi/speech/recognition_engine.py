@@ -110,14 +110,6 @@ class RecognitionEngine(Switch):
         """
         self._recogniser.listen(listening)
 
-    def catch_up(self) -> None:
-        self._recogniser.catch_up()
-
-    @property
-    def pid(self) -> int | None:
-        """Id of the recogniser's process; None while there is none."""
-        return self._recogniser.pid
-
     def close(self) -> None:
         with self._lock:
             listener, self._listener = self._listener, None

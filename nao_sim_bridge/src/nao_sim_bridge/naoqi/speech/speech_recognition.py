@@ -1,4 +1,4 @@
-"""ALSpeechRecognition of the simulated robot. Only NAOqi methods live in the service."""
+"""ALSpeechRecognition of the simulated robot."""
 
 from __future__ import annotations
 
@@ -30,14 +30,26 @@ PARAMETERS: Mapping[str, tuple[float, float, float]] = {"Sensitivity": (0.5, 0.0
 
 
 class ALSpeechRecognition:
-    """ALSpeechRecognition as the simulated robot offers it."""
+    """ALSpeechRecognition as the simulated robot offers it. Only NAOqi methods are published.
+
+    Args:
+        spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
+    """
 
     def __init__(
-        self, engine: RecognitionEngine, expression: ListeningExpression, contexts: Contexts, files: ClientFiles
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        memory: MemoryStore,
+        files: ClientFiles,
+        spare: SpareProcess | None = None,
     ) -> None:
-        self._engine = engine
-        self._expression = expression
-        self._contexts = contexts
+        self._contexts = Contexts()
+        self._expression = ListeningExpression(simulation, runner)
+        self._engine = engine = RecognitionEngine(
+            simulation, runner.execute, memory, self._expression.show, self._accepts, spare
+        )
+        self._extractor = Extractor(NAME, memory, engine.start, engine.stop, EVENTS, KEYS)
         self._files = files
         self._languages = load_recognition().languages
         self._language = self._languages[0]
@@ -45,6 +57,13 @@ class ALSpeechRecognition:
         self._vocabulary: Grammar | None = None
         self._vocabularies: list[Grammar | None] = []
         self._parameters = {name: value for name, (value, _, _) in PARAMETERS.items()}
+
+    def modules(self) -> dict[str, list[Any]]:
+        """The module by name, as `make_service` wants it."""
+        return {NAME: [self, self._extractor]}
+
+    def close(self) -> None:
+        self._engine.close()
 
     # --- vocabulary -----------------------------------------------------------------------------------------------
 
@@ -226,6 +245,9 @@ class ALSpeechRecognition:
                 self._contexts.restore(contexts)
                 raise
 
+    def _accepts(self, hypothesis: Hypothesis) -> bool:
+        return hypothesis.confidence >= self._contexts.threshold(hypothesis.grammar)
+
     def _check_language(self, language: str) -> None:
         if language not in self._languages:
             raise BadValue("language", language, f"{', '.join(self._languages)}: no other language is installed")
@@ -234,35 +256,3 @@ class ALSpeechRecognition:
         if name not in PARAMETERS:
             raise UnknownName(f"parameter (there are {', '.join(PARAMETERS)})", name, PARAMETERS)
         return PARAMETERS[name]
-
-
-class RecognitionModule:
-    """ALSpeechRecognition of one robot, put together.
-
-    Args:
-        spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
-    """
-
-    def __init__(
-        self,
-        simulation: Simulation,
-        runner: SimulationRunner,
-        memory: MemoryStore,
-        files: ClientFiles,
-        spare: SpareProcess | None = None,
-    ) -> None:
-        contexts = Contexts()
-        expression = ListeningExpression(simulation, runner)
-
-        def accepts(hypothesis: Hypothesis) -> bool:
-            return hypothesis.confidence >= contexts.threshold(hypothesis.grammar)
-
-        self.engine = RecognitionEngine(simulation, runner.execute, memory, expression.show, accepts, spare)
-        service = ALSpeechRecognition(self.engine, expression, contexts, files)
-        self._parts = [service, Extractor(NAME, memory, self.engine.start, self.engine.stop, EVENTS, KEYS)]
-
-    def modules(self) -> dict[str, list[Any]]:
-        return {NAME: self._parts}
-
-    def close(self) -> None:
-        self.engine.close()
