@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from typing import Callable
+from typing import Callable, Iterable
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.installed import InstalledBehaviors
@@ -63,6 +63,11 @@ class RunningBehaviors:
             known = ", ".join(self._tasks) or "none"
             raise NaoqiError(f"{name} does not run; running is {known}")
         self._tasks[name].kill()
+
+    def stop_those(self, names: Iterable[str]) -> None:
+        """Stop those of them that run."""
+        for name in set(names) & set(self._tasks):
+            self.stop(name)
 
     def stop_all(self) -> None:
         for task in list(self._tasks.values()):

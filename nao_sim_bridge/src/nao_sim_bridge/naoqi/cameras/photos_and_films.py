@@ -12,7 +12,7 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.cameras.settings import CameraTables
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number, text, whole_number
+from nao_sim_bridge.naoqi.binding.arguments import number, one_of, text, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.cameras.film_recorder import FORMATS as FILM_FORMATS
 from nao_sim_bridge.naoqi.cameras.film_recorder import FilmSettings, VideoRecorder
@@ -106,9 +106,7 @@ class ALPhotoCapture(PictureSettings):
         return round(1000.0 * self._settings.interval)
 
     def setPictureFormat(self, name: str) -> None:
-        if name not in FORMATS:
-            raise BadValue("pictureFormat", name, "one of " + ", ".join(FORMATS))
-        self._format = name
+        self._format = one_of(name, "pictureFormat", FORMATS)
 
     def getPictureFormat(self) -> str:
         return self._format

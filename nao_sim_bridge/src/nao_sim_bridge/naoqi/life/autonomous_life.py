@@ -65,7 +65,7 @@ class ALAutonomousLife:
         return self._life.abilities.enabled(ability)
 
     def setAutonomousAbilityEnabled(self, ability: str, enabled: bool) -> Task:
-        self._life.abilities.check(ability)
+        self._life.abilities.named(ability)  # an unknown one is refused at once
         return self._runner.execute(
             lambda: self._life.abilities.enable(ability, bool(enabled)), "setAutonomousAbilityEnabled"
         )

@@ -106,11 +106,8 @@ class Launchpad:
             "Robot": {"RobotType": lambda _: "Nao"},
             "People": {"TrackedHumanIsLookingAtRobot": lambda _: self._tracked() >= 0},
             "Time": {
-                "Hour": lambda _: self._zone.now().hour,
-                "Minute": lambda _: self._zone.now().minute,
-                "Day": lambda _: self._zone.now().day,
-                "Month": lambda _: self._zone.now().month,
-                "Year": lambda _: self._zone.now().year,
+                unit.capitalize(): lambda _, unit=unit: getattr(self._zone.now(), unit)
+                for unit in ("hour", "minute", "day", "month", "year")
             },
         }
 

@@ -1,4 +1,4 @@
-"""ALAudioPlayer of the simulated robot. Only NAOqi methods live here."""
+"""ALAudioPlayer of the simulated robot; `SoundSets` has its methods about sound sets."""
 
 from __future__ import annotations
 
@@ -54,6 +54,10 @@ class ALAudioPlayer:
             lambda: sounds.reader.sizes.loaded_sounds.bytes,
             self._sets.kept,
         )
+
+    def parts(self) -> list[Any]:
+        """The objects that together have the methods of the module."""
+        return [self, self._sets]
 
     # --- files ----------------------------------------------------------------------------------------------------
 
@@ -149,32 +153,6 @@ class ALAudioPlayer:
 
     def disablePitch(self, sound_id: int) -> Task:
         return self._player.change_pitch(sound_id, 1.0)
-
-    # --- sound sets -----------------------------------------------------------------------------------------------
-
-    def getInstalledSoundSetsList(self) -> list[str]:
-        return self._sets.installed()
-
-    def getLoadedSoundSetsList(self) -> list[str]:
-        return self._sets.loaded()
-
-    def getSoundSetFileNames(self, name: str) -> list[str]:
-        return sorted(self._sets.files(name))
-
-    def isSoundSetInstalled(self, name: str) -> bool:
-        return name in self._sets.installed()
-
-    def isSoundSetFileInstalled(self, name: str, file: str) -> bool:
-        return self._sets.has(name, file)
-
-    def isSoundSetLoaded(self, name: str) -> bool:
-        return name in self._sets.loaded()
-
-    def loadSoundSet(self, name: str) -> None:
-        self._sets.load(name)
-
-    def unloadSoundSet(self, name: str) -> None:
-        self._sets.unload(name)
 
     def playSoundSetFile(self, *args: Any) -> Task:
         names = [argument for argument in args if isinstance(argument, str)]

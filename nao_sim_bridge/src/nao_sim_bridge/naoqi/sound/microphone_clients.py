@@ -104,11 +104,6 @@ class MicrophoneClients:
         with self._lock:
             return list(self._clients)
 
-    def lost(self, module: str) -> int:
-        """How many blocks a subscribed module was too slow for."""
-        with self._lock:
-            return self._clients[module].lost
-
     def behind(self) -> bool:
         """Whether a module has more to do than it should; one that hangs does not count."""
         with self._lock:

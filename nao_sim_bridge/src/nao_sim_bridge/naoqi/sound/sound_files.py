@@ -46,7 +46,7 @@ class SoundFiles:
 
 
 class SoundSets:
-    """Installed and loaded sound sets.
+    """Part of ALAudioPlayer: installed and loaded sound sets.
 
     Args:
         check_room: Called with a name and bytes before a sound of that name is kept; raises an error if they are too
@@ -60,27 +60,39 @@ class SoundSets:
         self._folders = folders
         self._loaded: dict[str, Mapping[str, Sound]] = {}
 
-    def installed(self) -> list[str]:
+    def getInstalledSoundSetsList(self) -> list[str]:
         found = {path.name for folder in self._folders if folder.is_dir() for path in folder.iterdir() if path.is_dir()}
         return sorted(found)
 
-    def loaded(self) -> list[str]:
-        """Names of the sets that are loaded, in the order of loading."""
+    def isSoundSetInstalled(self, name: str) -> bool:
+        return name in self.getInstalledSoundSetsList()
+
+    def getLoadedSoundSetsList(self) -> list[str]:
+        """In the order of loading."""
         return list(self._loaded)
 
-    def files(self, name: str) -> dict[str, Path]:
+    def isSoundSetLoaded(self, name: str) -> bool:
+        return name in self._loaded
+
+    def getSoundSetFileNames(self, name: str) -> list[str]:
+        return sorted(self._files(name))
+
+    def isSoundSetFileInstalled(self, name: str, file: str) -> bool:
+        return self.isSoundSetInstalled(name) and _without_ending(file) in self._files(name)
+
+    def _files(self, name: str) -> dict[str, Path]:
         """Sounds of a set: name without ending to file.
 
         Raises:
             NaoqiError: There is no such set.
         """
-        installed = self.installed()
+        installed = self.getInstalledSoundSetsList()
         if name not in installed:
             raise NaoqiError(f"no sound set {name!r}; installed are {_listed(installed)}")
         folder = next(path for path in (folder / name for folder in self._folders) if path.is_dir())
         return {path.stem: path for path in sorted(folder.iterdir()) if path.suffix.lower() in ENDINGS}
 
-    def load(self, name: str) -> None:
+    def loadSoundSet(self, name: str) -> None:
         """Read all sounds of a set into memory.
 
         Raises:
@@ -89,7 +101,7 @@ class SoundSets:
         if name in self._loaded:
             return
         sounds: dict[str, Sound] = {}
-        for key, path in self.files(name).items():
+        for key, path in self._files(name).items():
             sounds[key] = self._sounds.read_path(path, path.name)
             self._check_room(f"sound set {name}", sum(sound.samples.nbytes for sound in sounds.values()))
         self._loaded[name] = sounds
@@ -102,7 +114,7 @@ class SoundSets:
             for name, sounds in loaded.items()
         ]
 
-    def unload(self, name: str) -> None:
+    def unloadSoundSet(self, name: str) -> None:
         """Forget a set.
 
         Raises:
@@ -122,19 +134,16 @@ class SoundSets:
             NaoqiError: There is no such set or sound, or no set is loaded.
         """
         if name is not None:
-            self.load(name)
+            self.loadSoundSet(name)
         sets = self._loaded if name is None else {name: self._loaded[name]}
         if not sets:
-            raise NaoqiError(f"no sound set is loaded; installed are {_listed(self.installed())}")
+            raise NaoqiError(f"no sound set is loaded; installed are {_listed(self.getInstalledSoundSetsList())}")
         key = _without_ending(file)
         for sounds in sets.values():
             if key in sounds:
                 return sounds[key]
         known = [f"{of_set}/{sound}" for of_set, sounds in sets.items() for sound in sounds]
         raise NaoqiError(f"no sound {file!r}; there are {_listed(known)}")
-
-    def has(self, name: str, file: str) -> bool:
-        return name in self.installed() and _without_ending(file) in self.files(name)
 
 
 def _without_ending(file: str) -> str:

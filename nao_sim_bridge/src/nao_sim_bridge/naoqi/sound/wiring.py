@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-from functools import partial
 from typing import Any, Callable
 
 from nao_sim_bridge.base.record_dir import ClientFiles
@@ -12,10 +11,9 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.sound.audio_device import ALAudioDevice
+from nao_sim_bridge.naoqi.sound.audio_device import ALAudioDevice, MicrophoneEnergy
 from nao_sim_bridge.naoqi.sound.audio_player import ALAudioPlayer
 from nao_sim_bridge.naoqi.sound.microphone_clients import MicrophoneClients
-from nao_sim_bridge.naoqi.sound.microphone_energy import MicrophoneEnergy
 from nao_sim_bridge.naoqi.sound.recorder import ALAudioRecorder, FilesInUse, Recorder
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.speech.animated_speech import ALAnimatedSpeech
@@ -60,8 +58,8 @@ class AudioModules:
 
     def modules(self) -> dict[str, list[Any]]:
         return {
-            "ALAudioPlayer": [self._player],
-            "ALAudioDevice": [self._device],
+            "ALAudioPlayer": self._player.parts(),
+            "ALAudioDevice": self._device.parts(),
             "ALAudioRecorder": [self._recorder],
         }
 
@@ -69,7 +67,7 @@ class AudioModules:
         """Steps that complete recordings and call no client any more; blocking."""
         return [
             *(recorder.close for recorder in self.recorders),
-            partial(self._energy.enable, False),
+            self._energy.disableEnergyComputation,
             self.clients.close,
         ]
 

@@ -10,6 +10,7 @@ from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import one_of
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
@@ -104,8 +105,7 @@ class ALAnimatedSpeech:
     def declareTagForAnimations(self, tags: Any) -> None:
         for tag, names in _lists(tags, "tagsToAnimations").items():
             for name in names:
-                if name not in self._library.animations:
-                    raise BadValue("animation", name, f"one of {', '.join(self._library.animations)}")
+                one_of(name, "animation", self._library.animations)
             self._library.add_tag(tag, names)
 
     def addTagsToWords(self, tags: Any) -> None:

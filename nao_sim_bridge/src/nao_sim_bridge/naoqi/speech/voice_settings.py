@@ -12,7 +12,7 @@ from nao_sim_bridge.base.config import LARGEST_FILE
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.speech import parameters
 from nao_sim_bridge.speech.clips import Style
@@ -76,9 +76,7 @@ class VoiceSettings:
 
     def getLanguageEncoding(self, language: str) -> str:
         languages = self._voices.languages
-        if language not in languages:
-            raise BadValue("pLanguage", language, f"one of {', '.join(languages)}")
-        return languages[language].encoding
+        return languages[one_of(language, "pLanguage", languages)].encoding
 
     def locale(self) -> str:
         return self._language.locale
