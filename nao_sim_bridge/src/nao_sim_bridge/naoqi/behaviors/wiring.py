@@ -9,11 +9,9 @@ from nao_sim_bridge.behaviors.installed import InstalledBehaviors
 from nao_sim_bridge.behaviors.player import BehaviorPlayer
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.behaviors.animation_player import NAME as ANIMATION_PLAYER
+from nao_sim_bridge.naoqi.behaviors import animation_player, behavior_manager, frame_manager
 from nao_sim_bridge.naoqi.behaviors.animation_player import ALAnimationPlayer
-from nao_sim_bridge.naoqi.behaviors.behavior_manager import NAME as BEHAVIOR_MANAGER
 from nao_sim_bridge.naoqi.behaviors.behavior_manager import ALBehaviorManager
-from nao_sim_bridge.naoqi.behaviors.frame_manager import NAME as FRAME_MANAGER
 from nao_sim_bridge.naoqi.behaviors.frame_manager import ALFrameManager
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
@@ -41,7 +39,7 @@ class BehaviorModules:
 
     def modules(self) -> dict[str, list[Any]]:
         return {
-            BEHAVIOR_MANAGER: [self._manager],
-            ANIMATION_PLAYER: [self._animations],
-            FRAME_MANAGER: [self._frames],
+            behavior_manager.NAME: [self._manager],
+            animation_player.NAME: [self._animations],
+            frame_manager.NAME: [self._frames],
         }

@@ -118,7 +118,7 @@ class Photographer:
             series = _Series(paths, settings.interval, held, stream)
             self._series.add(series)
         series.task.add_done_callback(lambda _: self._series.discard(series))
-        series.start()
+        series.thread.start()
         return series.task
 
     def close(self) -> None:
@@ -160,10 +160,7 @@ class _Series:
         self._held, self._stream = held, stream
         self._ended = threading.Event()
         self.task = Task("takePictures", 0, ask=self._cancel)
-        self._thread = threading.Thread(target=self._run, name="pictures", daemon=True)
-
-    def start(self) -> None:
-        self._thread.start()
+        self.thread = threading.Thread(target=self._run, name="pictures", daemon=True)
 
     def end(self, error: Exception | None = None) -> None:
         """Take no more; the task ends, with this error."""

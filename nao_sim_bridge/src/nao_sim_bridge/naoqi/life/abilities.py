@@ -17,7 +17,7 @@ ALL = "All"
 
 
 class Abilities:
-    """Which abilities are enabled, and which run.
+    """Part of ALAutonomousLife: which abilities are enabled, and which run.
 
     Args:
         abilities: By name, what begins (True) and ends it.
@@ -29,17 +29,12 @@ class Abilities:
         self._running = dict.fromkeys(abilities, False)
         self._alive = False
 
-    @property
-    def status(self) -> list[tuple[str, bool, bool]]:
+    def getAutonomousAbilitiesStatus(self) -> list[tuple[str, bool, bool]]:
         """Name, whether it is enabled, and whether it runs, of each."""
         return [(name, enabled, self._running[name]) for name, enabled in self._enabled.items()]
 
-    def enabled(self, name: str) -> bool:
-        """Whether an ability is enabled; "All": whether all are.
-
-        Raises:
-            UnknownName: There is no such ability.
-        """
+    def getAutonomousAbilityEnabled(self, name: str) -> bool:
+        """Of "All": whether all are enabled."""
         return all(self._enabled[one] for one in self.named(name))
 
     def enable(self, name: str, enabled: bool) -> None:

@@ -17,7 +17,7 @@ START, COMPLETION, DURATION, TOTAL = (
 
 
 class LifeRecord:
-    """Histories and statistics of one life; times in whole s of simulated time.
+    """Part of ALAutonomousLife: histories and statistics; times in whole s of simulated time.
 
     Args:
         clock: Simulated time, s.
@@ -31,20 +31,18 @@ class LifeRecord:
         self._lived = 0.0
         self._since: float | None = None
 
-    @property
-    def life_time(self) -> int:
+    def getLifeTime(self) -> int:
         return int(self._lived + (0.0 if self._since is None else self._clock() - self._since))
 
-    @property
-    def statistics(self) -> dict[str, dict[str, int]]:
+    def getActivityStatistics(self) -> dict[str, dict[str, int]]:
         """Counts and times by activity."""
         return {name: dict(entry) for name, entry in self._statistics.items()}
 
-    def states(self, depth: int | None = None) -> list[tuple[str, int]]:
+    def getStateHistory(self, depth: int | None = None) -> list[tuple[str, int]]:
         """The last states and when they began, newest first."""
         return _newest(self._states, depth)
 
-    def focus(self, depth: int | None = None) -> list[tuple[str, int]]:
+    def getFocusHistory(self, depth: int | None = None) -> list[tuple[str, int]]:
         """The last activities and when they got the focus, newest first."""
         return _newest(self._focus, depth)
 

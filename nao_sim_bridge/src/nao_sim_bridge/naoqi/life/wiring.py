@@ -79,7 +79,11 @@ class LifeModules:
         safeguards = Safeguards(self._life, runner, memory, wake.rest)
         self._modules: dict[str, list[Any]] = {
             autonomous_life.NAME: [
-                ALAutonomousLife(self._life, safeguards, launchpad, running.installed, self._awareness.stimuli, runner)
+                ALAutonomousLife(self._life, running.installed, self._awareness.stimuli, runner),
+                self._life.record,
+                self._life.abilities,
+                launchpad,
+                safeguards,
             ],
             movements.NAME: [ALAutonomousMoves(background, listening, runner)],
             awareness.NAME: [ALBasicAwareness(self._awareness, runner)],

@@ -217,7 +217,9 @@ class Player:
         return task
 
     def pause(self, loaded: LoadedSound) -> None:
-        self._running(loaded).playing.pause()
+        if loaded.run is None:
+            raise NaoqiError(f"the sound {loaded.number} ({loaded.name}) does not play")
+        loaded.run.playing.pause()
 
     def position(self, loaded: LoadedSound) -> float:
         """Where a sound is, s; where it will begin when it does not play."""
@@ -308,11 +310,6 @@ class Player:
         if loaded.run is not None:
             loaded.run.playing.set_volume(loaded.volume * self._volume)
             loaded.run.playing.set_pan(max(-1.0, min(1.0, loaded.pan + self._panorama)))
-
-    def _running(self, loaded: LoadedSound) -> Run:
-        if loaded.run is None:
-            raise NaoqiError(f"the sound {loaded.number} ({loaded.name}) does not play")
-        return loaded.run
 
 
 def _megabytes(size: int) -> str:

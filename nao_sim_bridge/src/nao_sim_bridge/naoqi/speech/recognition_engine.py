@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from typing import Any, Callable, Mapping
+from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.samples import frame_at
 from nao_sim_bridge.core.simulation import Simulation
@@ -68,11 +68,9 @@ class RecognitionEngine(Switch):
         self._speech = False
         self._recogniser = Recogniser(self._on_event, on_progress=lambda: simulation.wake(), spare=spare)
         simulation.holds.append(self.behind)
-        for key in KEYS:
-            memory.insert(key, NO_WORD)
+        memory.insert(LAST_WORD, NO_WORD)
         memory.insert(TIMES, [NO_WORD, []])
-        memory.put_quietly(WORD, NO_WORD)
-        memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+        self._put_no_word()
         memory.put_quietly(SPEECH, False)
         memory.put_quietly(RUNNING, False)
         memory.put_quietly(ACTIVE, False)
@@ -102,13 +100,16 @@ class RecognitionEngine(Switch):
         if self.runs:
             raise NaoqiError(f"{what} cannot be changed while the engine runs; call pause(True) first")
 
-    def listen_for(self, listening: Listening) -> None:
+    def listen_for(self, grammars: Sequence[Any], parameters: Mapping[str, float]) -> None:
         """What to listen for from now on; returns when it is prepared.
+
+        Args:
+            parameters: "NbHypotheses" and "Sensitivity".
 
         Raises:
             RecogniserError: It cannot be listened for; the text says why, and what was before stays.
         """
-        self._recogniser.listen(listening)
+        self._recogniser.listen(Listening(tuple(grammars), int(parameters["NbHypotheses"]), parameters["Sensitivity"]))
 
     def close(self) -> None:
         with self._lock:
@@ -124,8 +125,7 @@ class RecognitionEngine(Switch):
         if runs == self.runs:
             return
         if runs:
-            self._memory.put_quietly(WORD, NO_WORD)
-            self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+            self._put_no_word()
             self._open()
         else:
             with self._status_lock:
@@ -136,6 +136,10 @@ class RecognitionEngine(Switch):
             self._on_listen(False)
             self._memory.raise_event(RUNNING, False)
             self._tell_hearing(False)
+
+    def _put_no_word(self) -> None:
+        self._memory.put_quietly(WORD, NO_WORD)
+        self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
 
     def _open(self) -> None:
         """Listen from now on, or from when the own bip is over; what was heard before tells what the room is like."""
@@ -181,8 +185,7 @@ class RecognitionEngine(Switch):
             return
         found = [h for h in event.hypotheses if self._accepts(h)]
         if not found:
-            self._memory.put_quietly(WORD, NO_WORD)
-            self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+            self._put_no_word()
             return
         words: list[Any] = [item for h in found for item in (h.phrase, h.confidence)]
         with_grammar: list[Any] = [item for h in found for item in (h.phrase, h.confidence, h.grammar)]
@@ -191,8 +194,3 @@ class RecognitionEngine(Switch):
         self._memory.insert(TIMES, [words, [[h.onset, h.end] for h in found]])
         self._memory.raise_event(WORD, words)
         self._memory.raise_event(WORD_AND_GRAMMAR, with_grammar)
-
-
-def listening_of(grammars: Any, parameters: Mapping[str, float]) -> Listening:
-    """What to listen for, from grammars and the values of the engine's parameters."""
-    return Listening(tuple(grammars), int(parameters["NbHypotheses"]), parameters["Sensitivity"])

@@ -21,7 +21,7 @@ from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.speech.grammar_files import compile_grammar, load_grammar, read_vocabulary
 from nao_sim_bridge.naoqi.speech.listening_expression import MODES, ListeningExpression
-from nao_sim_bridge.naoqi.speech.recognition_engine import EVENTS, KEYS, NAME, RecognitionEngine, listening_of
+from nao_sim_bridge.naoqi.speech.recognition_engine import EVENTS, KEYS, NAME, RecognitionEngine
 
 # Name of the grammar that setVocabulary fills, as on the robot.
 VOCABULARY = "modifiable_grammar"
@@ -239,7 +239,7 @@ class ALSpeechRecognition:
             try:
                 change()
                 own = [self._vocabulary] if self._vocabulary is not None else []
-                self._engine.listen_for(listening_of([*own, *self._contexts.grammars()], self._parameters))
+                self._engine.listen_for([*own, *self._contexts.grammars()], self._parameters)
             except Exception:
                 contexts, self._vocabulary, self._vocabularies, self._parameters = before
                 self._contexts.restore(contexts)
