@@ -14,7 +14,6 @@ import numpy as np
 from nao_sim_bridge.base.errors import SimulationError, SimulationStopped
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.whole_file import FileTrouble, WholeFile
-from nao_sim_bridge.cameras.settings import CameraTables
 from nao_sim_bridge.cameras.stream import CameraClosed
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -60,10 +59,9 @@ class VideoRecorder:
         name: What its streams are called.
     """
 
-    def __init__(self, cameras: Any, runner: SimulationRunner, tables: CameraTables, name: str) -> None:
+    def __init__(self, cameras: Any, runner: SimulationRunner, name: str) -> None:
         self._cameras = cameras
         self._runner = runner
-        self._tables = tables
         self._name = name
         self._lock = threading.Lock()
         self._recording: _Recording | None = None
@@ -79,7 +77,7 @@ class VideoRecorder:
             NaoqiError: A recording is under way.
             FileTrouble: The file cannot be written.
         """
-        size = self._tables.resolution(settings.resolution)
+        size = self._cameras.tables.resolution(settings.resolution)
         with self._lock:
             if self._recording is not None:
                 raise NaoqiError(f"a recording to {str(self._recording.path)!r} is under way; stop it first")

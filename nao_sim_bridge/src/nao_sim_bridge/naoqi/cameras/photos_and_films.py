@@ -122,13 +122,11 @@ class ALVideoRecorder(PictureSettings):
     """ALVideoRecorder as the simulated robot offers it."""
 
     def __init__(self, recorder: VideoRecorder, files: ClientFiles, tables: CameraTables) -> None:
-        first = FilmSettings(camera=0, resolution=QVGA, color_space=BGR, rate=15.0, kind="MJPG")
-        super().__init__(tables, first)
+        super().__init__(tables, FilmSettings(camera=0, resolution=QVGA, color_space=BGR, rate=15.0, kind="MJPG"))
         self._recorder = recorder
         self._files = files
 
     def startRecording(self, folder: str, name: str, overwrite: bool = True) -> Task:
-        """Record from now on, with the present settings."""
         settings = self._settings
         if settings.kind == "IYUV" and settings.color_space == GREY:
             raise NaoqiError("IYUV has no grey films: set the colour space 13 (BGR), or the format MJPG")
@@ -176,7 +174,7 @@ class PictureModules:
     def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
         cameras = simulation.cameras
         self.photographer = Photographer(cameras, PHOTOS)
-        self.recorder = VideoRecorder(cameras, runner, cameras.tables, FILMS)
+        self.recorder = VideoRecorder(cameras, runner, FILMS)
         self._photos = ALPhotoCapture(self.photographer, files, cameras.tables)
         self._films = ALVideoRecorder(self.recorder, files, cameras.tables)
 

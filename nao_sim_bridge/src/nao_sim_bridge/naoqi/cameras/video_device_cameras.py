@@ -79,7 +79,6 @@ class CameraStates:
             self._cameras.set_stopped(camera, False)
 
     def reset(self, camera: int) -> None:
-        """As at the start."""
         with self._lock:
             self._opened[camera] = self._started[camera] = False
             self.use(camera)

@@ -251,19 +251,19 @@ class _Client:
             answer(call, self._news, lambda: not self._ended)
             self._failing = False
         except NoAnswer as error:
-            if not self._ended:
-                log.warning("%s: %s, so it is unsubscribed from the microphones", self.module, error)
-            self.end()
-            self._gone(self)
+            self._leave(f"{self.module}: {error}")
         except (RuntimeError, AttributeError) as error:
             if not self._is_there():
-                if not self._ended:
-                    log.warning("%s is gone, so it is unsubscribed from the microphones", self.module)
-                self.end()
-                self._gone(self)
+                self._leave(f"{self.module} is gone")
             elif not self._failing:
                 self._failing = True
                 log.warning("%s.%s failed: %s", self.module, METHOD, error)
+
+    def _leave(self, reason: str) -> None:
+        if not self._ended:
+            log.warning("%s, so it is unsubscribed from the microphones", reason)
+        self.end()
+        self._gone(self)
 
     def _is_there(self) -> bool:
         try:

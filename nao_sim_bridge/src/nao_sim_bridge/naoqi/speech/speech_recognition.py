@@ -118,14 +118,12 @@ class ALSpeechRecognition:
     # --- expression -----------------------------------------------------------------------------------------------
 
     def setAudioExpression(self, on: bool) -> None:
-        """Bip when listening begins and ends, or be silent."""
         self._expression.audio = on
 
     def getAudioExpression(self) -> bool:
         return self._expression.audio
 
     def setVisualExpression(self, on: bool) -> None:
-        """Show with LEDs that it listens, from the next time on, or do not."""
         self._expression.visual = on
 
     def setVisualExpressionMode(self, mode: int) -> None:
@@ -142,7 +140,6 @@ class ALSpeechRecognition:
         compile_grammar(self._files.to_read(source), self._files.to_write(target), language)
 
     def addContext(self, name: str, context: str) -> None:
-        """Listen for what a compiled grammar has, too."""
         bnf = load_grammar(self._files.to_read(name))
         self._change("contexts", lambda: self._contexts.add(context, bnf))
 
@@ -153,8 +150,6 @@ class ALSpeechRecognition:
         self._change("contexts", self._contexts.clear)
 
     def pushContexts(self) -> None:
-        """Put contexts and vocabulary aside."""
-
         def push() -> None:
             most = load_sizes().vocabulary.put_aside
             if len(self._vocabularies) >= most:
@@ -173,13 +168,11 @@ class ALSpeechRecognition:
         self._change("contexts", pop)
 
     def saveContextSet(self, name: str) -> bool:
-        """Keep the contexts as they are under a name; true."""
         with self._lock:
             self._contexts.save(name)
         return True
 
     def loadContextSet(self, name: str) -> None:
-        """Put saved contexts in the place of those there are."""
         self._change("contexts", lambda: self._contexts.load(name))
 
     def eraseContextSet(self, name: str) -> None:
@@ -204,7 +197,6 @@ class ALSpeechRecognition:
             return self._contexts.get(context).rules(kind)
 
     def addWordListToSlot(self, context: str, slot: str, words: Sequence[str]) -> None:
-        """Fill a slot with words, beside those that it has."""
         if not words:
             raise BadValue("wordList", words, "at least one word")
         self._change_context(context, lambda c: c.with_slot(slot, words))

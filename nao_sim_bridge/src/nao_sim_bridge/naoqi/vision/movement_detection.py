@@ -60,12 +60,10 @@ class ALMovementDetection:
 
     def _on_result(self, frame: Frame, found: list[MovingCluster] | None) -> None:
         if found:
-            clusters = [[[c.alpha, c.beta], [*c.corner, *c.size], _shares(c)] for c in found]
+            clusters = [
+                [[c.alpha, c.beta], [*c.corner, *c.size], [c.share_of_picture, c.share_of_rectangle]] for c in found
+            ]
             self._memory.insert(INFO, in_picture(frame, clusters, frame.camera))
             self._memory.raise_event(DETECTED, None)
         elif found is not None:
             self._memory.raise_event(NONE, None)
-
-
-def _shares(cluster: MovingCluster) -> list[float]:
-    return [cluster.share_of_picture, cluster.share_of_rectangle]
