@@ -17,8 +17,7 @@ from nao_sim_bridge.naoqi.sound.microphone_clients import MicrophoneClients
 from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, HIGH, LOW, MicrophoneFormat, microphone_format
 from nao_sim_bridge.naoqi.sound.output_buffers import RATES, OutputBuffers, samples_of
 from nao_sim_bridge.naoqi.sound.recorder import Recorder, RecordingOrder, kind_of
-from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
-from nao_sim_bridge.naoqi.sound.tones import side, sine
+from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles, side, sine
 
 OUTPUT_RATE, INPUT_SIZE = "outputSampleRate", "inputBufferSize"
 # Frames that clients get at once; the first is about a block.

@@ -13,8 +13,7 @@ from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.sound.player import LoadedSound, Player
-from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles, SoundSets
-from nao_sim_bridge.naoqi.sound.tones import side, sine
+from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles, SoundSets, side, sine
 from nao_sim_bridge.naoqi.sound.web_stream import WebStreams
 from nao_sim_bridge.sound.pitch import HIGHEST, LOWEST
 
