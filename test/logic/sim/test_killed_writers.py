@@ -29,7 +29,7 @@ for number in range(150):
     film.sound(sound(), 4800 * number)
 """
 RECORDING = """
-from nao_sim_bridge.naoqi.cameras.video_recorder_file import Film
+from nao_sim_bridge.naoqi.cameras.film_recorder import Film
 film = Film(path, sys.argv[2], 96, 96, 10.0)
 for number in range(150):
     film.write(picture())

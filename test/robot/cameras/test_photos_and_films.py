@@ -4,7 +4,7 @@ import av
 import cv2
 import pytest
 
-from nao_sim_bridge.naoqi.cameras.photo_capture_files import FORMATS
+from nao_sim_bridge.naoqi.cameras.photographer import FORMATS
 
 MAGIC = {"bmp": b"BM", "jpg": b"\xff\xd8\xff", "png": b"\x89PNG", "pbm": b"P4", "pgm": b"P5", "ppm": b"P6"}
 MAGIC.update(sr=b"\x59\xa6\x6a\x95", tif=b"II*\0", dib=MAGIC["bmp"], jpeg=MAGIC["jpg"], jpe=MAGIC["jpg"])

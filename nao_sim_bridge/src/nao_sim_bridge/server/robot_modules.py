@@ -23,17 +23,16 @@ from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.body.posture_events import PostureEvents
 from nao_sim_bridge.naoqi.body.senses_wiring import SenseModules
 from nao_sim_bridge.naoqi.cameras import video_device
-from nao_sim_bridge.naoqi.cameras.photo_capture_wiring import PictureModules
+from nao_sim_bridge.naoqi.cameras.photos_and_films import PictureModules
 from nao_sim_bridge.naoqi.life.wiring import LifeModules
 from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.wake import AWAKE
-from nao_sim_bridge.naoqi.sound import sound_detection, sound_localization
+from nao_sim_bridge.naoqi.sound.sound_extractors import DETECTION, LOCALIZATIONS, ALSoundDetection, SoundLocalization
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
-from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
-from nao_sim_bridge.naoqi.sound.wiring import AudioModules
-from nao_sim_bridge.naoqi.speech.speech_recognition import RecognitionModule
+from nao_sim_bridge.naoqi.sound.wiring import AudioModules, SpeechModules
+from nao_sim_bridge.naoqi.speech.speech_recognition import ALSpeechRecognition
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
@@ -122,8 +121,8 @@ class RobotModules:
         behaviors = BehaviorModules(simulation, runner, memory, files, self.speech, posture)
         zone = TimeZone()
         self._life = LifeModules(simulation, runner, memory, broker, self.speech, posture, behaviors.running, zone)
-        self.recognition = RecognitionModule(simulation, runner, memory, files, workers.recogniser)
-        self.video = video_device.VideoDevice(simulation.cameras, files)
+        self.recognition = ALSpeechRecognition(simulation, runner, memory, files, workers.recogniser)
+        self.video = video_device.ALVideoDevice(simulation.cameras, files)
         self.vision = VisionModules(simulation, memory, files, workers.vision)
         self._pictures_taken = PictureModules(simulation, runner, files)
         self._senses = SenseModules(simulation, runner, memory)
@@ -143,8 +142,8 @@ class RobotModules:
             **behaviors.modules(),
             **self._life.modules(),
             **self.recognition.modules(),
-            sound_detection.NAME: sound_detection.parts(simulation, memory),
-            **{name: sound_localization.parts(name, simulation, memory) for name in sound_localization.NAMES},
+            DETECTION: ALSoundDetection(simulation, memory).parts(),
+            **{name: SoundLocalization(name, simulation, memory).parts() for name in LOCALIZATIONS},
             video_device.NAME: self.video.parts(),
             **self.vision.modules(),
             **self._pictures_taken.modules(),

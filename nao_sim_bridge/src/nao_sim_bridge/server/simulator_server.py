@@ -20,7 +20,7 @@ from nao_sim_bridge.core.simulation import Scene, Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, numbers
 from nao_sim_bridge.naoqi.binding.binding import Service
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
+from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
 from nao_sim_bridge.naoqi.system.nao_simulation import NAME as NAO_SIMULATION
 from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
 from nao_sim_bridge.naoqi.system.system import ALSystem

@@ -8,7 +8,7 @@ import pytest
 from disks import files, room
 
 from nao_sim_bridge.base.whole_file import FileTrouble
-from nao_sim_bridge.naoqi.cameras.photo_capture_series import Photographer, PhotoSettings
+from nao_sim_bridge.naoqi.cameras.photographer import Photographer, PhotoSettings
 from nao_sim_bridge.naoqi.cameras.video_device_subscribers import IDLE, VideoSubscribers, View
 
 TOP, BOTTOM = View(0, 1, 11), View(1, 0, 13)

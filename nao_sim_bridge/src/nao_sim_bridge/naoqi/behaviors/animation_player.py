@@ -22,13 +22,7 @@ ANIMATIONS = "animations/"
 
 
 class ALAnimationPlayer:
-    """ALAnimationPlayer as the simulated robot offers it: an animation is a behaviour whose name says its posture.
-
-    Args:
-        running: Starts behaviours.
-        simulation: Whose robot it is.
-        runner: Its thread.
-    """
+    """ALAnimationPlayer as the simulated robot offers it: an animation is a behaviour whose name says its posture."""
 
     def __init__(self, running: RunningBehaviors, simulation: Simulation, runner: SimulationRunner) -> None:
         self._running = running

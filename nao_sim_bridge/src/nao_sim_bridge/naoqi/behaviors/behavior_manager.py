@@ -24,12 +24,6 @@ class ALBehaviorManager:
     """ALBehaviorManager as the simulated robot offers it.
 
     Behaviours that are installed, and the list of default behaviours, are kept as long as the simulator runs.
-
-    Args:
-        running: Starts and stops behaviours.
-        runner: Runs commands in the simulation thread.
-        memory: Where events go.
-        files: Where clients have files to install.
     """
 
     def __init__(
@@ -51,8 +45,7 @@ class ALBehaviorManager:
     def getBehaviorNames(self) -> list[str]:
         return list(self._installed.all)
 
-    def getInstalledBehaviors(self) -> list[str]:
-        return list(self._installed.all)
+    getInstalledBehaviors = getBehaviorNames
 
     def getSystemBehaviorNames(self) -> list[str]:
         return sorted(self._installed.system)
@@ -63,8 +56,7 @@ class ALBehaviorManager:
     def isBehaviorInstalled(self, name: str) -> bool:
         return self._installed.knows(name)
 
-    def isBehaviorPresent(self, name: str) -> bool:
-        return self._installed.knows(name)
+    isBehaviorPresent = isBehaviorInstalled
 
     def resolveBehaviorName(self, name: str) -> str:
         return self._installed.resolve(name).name
@@ -104,8 +96,7 @@ class ALBehaviorManager:
             self._defaults = [one for one in self._defaults if one not in gone]
 
         def stop() -> bool:
-            for one in set(gone) & set(self._running.names):
-                self._running.stop(one)
+            self._running.stop_those(gone)
             for one in gone:
                 self._memory.raise_event(REMOVED, one)
             return True

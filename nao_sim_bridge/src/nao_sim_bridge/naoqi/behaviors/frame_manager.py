@@ -35,8 +35,6 @@ class ALFrameManager:
 
     Args:
         running: Starts and stops behaviours; those of this module are called by their ids.
-        runner: Runs commands in the simulation thread.
-        files: Where clients have files.
     """
 
     def __init__(self, running: RunningBehaviors, runner: SimulationRunner, files: ClientFiles) -> None:
@@ -87,8 +85,7 @@ class ALFrameManager:
         behavior = self._of(number).behavior
         return self._runner.execute(lambda: self._running.start(behavior), "playBehavior").then(lambda _: None)
 
-    def playTimeline(self, number: str) -> Task:
-        return self.playBehavior(number)
+    playTimeline = playBehavior
 
     def completeBehavior(self, number: str) -> Task:
         """Ends with the behaviour."""
@@ -98,8 +95,7 @@ class ALFrameManager:
     def exitBehavior(self, number: str) -> Task:
         return self._stop([self._of(number).behavior.name], "exitBehavior")
 
-    def stopTimeline(self, number: str) -> Task:
-        return self.exitBehavior(number)
+    stopTimeline = exitBehavior
 
     # --- looking --------------------------------------------------------------------------------------------------
 
@@ -133,8 +129,4 @@ class ALFrameManager:
             return self._made[number]
 
     def _stop(self, names: list[str], call: str) -> Task:
-        def stop() -> None:
-            for name in set(names) & set(self._running.names):
-                self._running.stop(name)
-
-        return self._runner.execute(stop, call)
+        return self._runner.execute(lambda: self._running.stop_those(names), call)

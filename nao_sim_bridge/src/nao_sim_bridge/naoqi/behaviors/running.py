@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from typing import Callable
+from typing import Callable, Iterable
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.installed import InstalledBehaviors
@@ -22,11 +22,6 @@ class RunningBehaviors:
     Attributes:
         installed: What there is.
         ended: Called with the name of each that has ended, and whether it came to its end by itself.
-
-    Args:
-        player: Who plays them.
-        installed: See above.
-        memory: Where the event is raised.
     """
 
     def __init__(self, player: BehaviorPlayer, installed: InstalledBehaviors, memory: MemoryStore) -> None:
@@ -69,8 +64,12 @@ class RunningBehaviors:
             raise NaoqiError(f"{name} does not run; running is {known}")
         self._tasks[name].kill()
 
+    def stop_those(self, names: Iterable[str]) -> None:
+        """Stop those of them that run."""
+        for name in set(names) & set(self._tasks):
+            self.stop(name)
+
     def stop_all(self) -> None:
-        """Stop all behaviours."""
         for task in list(self._tasks.values()):
             task.kill()
 

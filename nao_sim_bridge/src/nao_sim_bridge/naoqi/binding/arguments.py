@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Collection
 
 from nao_sim_bridge.base.errors import BadValue
 
@@ -30,6 +30,13 @@ def text(value: Any, field: str, longest: int) -> str:
         raise BadValue(field, value, "a text")
     if len(value) > longest:
         raise BadValue(field, value[:40] + "...", f"{longest} characters at most")
+    return value
+
+
+def one_of(value: Any, field: str, allowed: Collection[Any]) -> Any:
+    """`value`, if it is one of those that are allowed."""
+    if value not in allowed:
+        raise BadValue(field, value, f"one of {', '.join(map(str, allowed))}")
     return value
 
 

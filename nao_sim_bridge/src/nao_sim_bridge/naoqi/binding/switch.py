@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import threading
 from abc import ABC, abstractmethod
+from typing import Any, Callable, Mapping
+
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 
 class Switch(ABC):
@@ -21,6 +24,11 @@ class Switch(ABC):
     def paused(self) -> bool:
         """Whether it does nothing although somebody is subscribed."""
         return self._paused
+
+    @property
+    @abstractmethod
+    def runs(self) -> bool:
+        """Whether it works: somebody is subscribed, and it is not paused."""
 
     @property
     def _works(self) -> bool:
@@ -48,3 +56,30 @@ class Switch(ABC):
     @abstractmethod
     def _update(self) -> None:
         """Begin or end to work."""
+
+
+class SwitchModule:
+    """Methods that NAOqi's extractors with ears or eyes have in common. No other methods are public.
+
+    Args:
+        switch: The ears or eyes.
+        setters: What takes the value of a parameter, by its name.
+    """
+
+    def __init__(self, switch: Switch, setters: Mapping[str, Callable[[Any], Any]]) -> None:
+        self._switch = switch
+        self._setters = setters
+
+    def pause(self, status: bool) -> None:
+        self._switch.pause(bool(status))
+
+    def isPaused(self) -> bool:
+        return self._switch.paused
+
+    def isProcessing(self) -> bool:
+        return self._switch.runs
+
+    def setParameter(self, parameter: str, value: Any) -> None:
+        if parameter not in self._setters:
+            raise NaoqiError(f"unknown parameter {parameter!r}; there are {', '.join(self._setters)}")
+        self._setters[parameter](value)

@@ -1,4 +1,4 @@
-"""ALVideoDevice: subscribers and their pictures. Only NAOqi methods live here; `parts` has those of the other files."""
+"""ALVideoDevice: subscribers and their pictures."""
 
 from __future__ import annotations
 
@@ -11,73 +11,44 @@ from nao_sim_bridge.cameras.cameras import Cameras
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.cameras.video_device_angles import VideoDeviceAngles
-from nao_sim_bridge.naoqi.cameras.video_device_cameras import VideoDeviceCameras
-from nao_sim_bridge.naoqi.cameras.video_device_inputs import VideoDeviceInputs
-from nao_sim_bridge.naoqi.cameras.video_device_old import VideoDeviceOld
+from nao_sim_bridge.naoqi.cameras.video_device_cameras import CameraStates, VideoDeviceCameras
 from nao_sim_bridge.naoqi.cameras.video_device_recordings import RawRecordings
-from nao_sim_bridge.naoqi.cameras.video_device_settings import VideoDeviceSettings
-from nao_sim_bridge.naoqi.cameras.video_device_states import CameraStates
-from nao_sim_bridge.naoqi.cameras.video_device_subscribers import Subscriber, VideoSubscribers, View
+from nao_sim_bridge.naoqi.cameras.video_device_settings import NATIVE, VideoDeviceSettings
+from nao_sim_bridge.naoqi.cameras.video_device_subscribers import VideoSubscribers, View
 
 NAME = "ALVideoDevice"
-NATIVE = 9
-"""NAOqi's id of what the cameras themselves give: YUV422."""
-LOCAL = "addresses are for modules inside the robot's own process; use {}"
 
 
-class VideoDevice:
-    """ALVideoDevice of one robot.
+def _only_inside(remote: str) -> Callable[..., int]:
+    """A method that answers an address; `remote` is the one for everybody else."""
 
-    Attributes:
-        subscribers: Who looks.
+    def refused(_self: Any, _handle: str) -> int:
+        raise NaoqiError(f"addresses are for modules inside the robot's own process; use {remote}")
 
-    Args:
-        cameras: Of the robot.
-        files: Where clients may have files written to.
-    """
+    return refused
+
+
+class ALVideoDevice:
+    """Subscriptions and pictures; `parts` has the other methods of the module."""
 
     def __init__(self, cameras: Cameras, files: ClientFiles) -> None:
-        self.subscribers = VideoSubscribers(cameras)
-        self._states = CameraStates(cameras, self.subscribers.fail)
-        self._recordings = RawRecordings(cameras, files)
         self._cameras = cameras
+        self._subscribers = VideoSubscribers(cameras)
+        self._states = CameraStates(cameras, self._subscribers.fail)
+        self._recordings = RawRecordings(cameras, files)
 
     def parts(self) -> list[Any]:
-        """The objects that together have its methods."""
-        settings = VideoDeviceSettings(self._cameras, self.subscribers, self._states)
-        cameras = VideoDeviceCameras(self._cameras, self.subscribers, self._states)
-        angles = VideoDeviceAngles(self._cameras)
+        """The objects that together have the methods of the module."""
         return [
-            ALVideoDevice(self._cameras, self.subscribers, self._states, self._recordings),
-            settings,
-            cameras,
-            angles,
-            VideoDeviceInputs(self._cameras),
-            VideoDeviceOld(self._cameras, self.subscribers, settings, cameras, angles),
+            self,
+            VideoDeviceSettings(self._cameras, self._subscribers, self._states),
+            VideoDeviceCameras(self._cameras, self._subscribers, self._states),
+            VideoDeviceAngles(self._cameras),
         ]
 
     def closing(self) -> list[Callable[[], None]]:
         """Steps that end recordings and all subscriptions."""
-        return [self._recordings.close, self.subscribers.close]
-
-
-class ALVideoDevice:
-    """Subscriptions and pictures.
-
-    Args:
-        cameras: Of the robot.
-        subscribers: Who looks.
-        states: Which cameras run.
-        recordings: Pictures that go to files.
-    """
-
-    def __init__(
-        self, cameras: Cameras, subscribers: VideoSubscribers, states: CameraStates, recordings: RawRecordings
-    ) -> None:
-        self._cameras = cameras
-        self._subscribers = subscribers
-        self._states = states
-        self._recordings = recordings
+        return [self._recordings.close, self._subscribers.close]
 
     # --- subscriptions --------------------------------------------------------------------------------------------
 
@@ -88,9 +59,9 @@ class ALVideoDevice:
         return self._subscribe(name, [View(camera, resolution, color_space)], fps, False)
 
     def subscribeCameras(self, name: str, cameras: Any, resolutions: Any, color_spaces: Any, fps: int) -> str:
-        indexes = whole_numbers(cameras, "cameraIndexes")
-        sizes = whole_numbers(resolutions, "resolutions", len(indexes))
-        spaces = whole_numbers(color_spaces, "colorSpaces", len(indexes))
+        indexes = _whole_numbers(cameras, "cameraIndexes")
+        sizes = _whole_numbers(resolutions, "resolutions", len(indexes))
+        spaces = _whole_numbers(color_spaces, "colorSpaces", len(indexes))
         return self._subscribe(name, list(map(View, indexes, sizes, spaces)), fps, True)
 
     def unsubscribe(self, handle: str) -> bool:
@@ -100,9 +71,7 @@ class ALVideoDevice:
     def unsubscribeAllInstances(self, name: str) -> None:
         self._subscribers.remove_all(name)
 
-    def client_gone(self, module: str) -> None:
-        """A module of a client has left."""
-        self._subscribers.remove_all(module)
+    client_gone = unsubscribeAllInstances
 
     def onClientDisconnected(self, _event: str, contents: Any, _message: str) -> None:
         self._subscribers.remove_all(str(contents))
@@ -133,23 +102,12 @@ class ALVideoDevice:
     def releaseImages(self, handle: str) -> list:
         return [True for _ in self._subscribers.get(handle).views]
 
-    def releaseDirectRawImage(self, handle: str) -> bool:
-        return self.releaseImage(handle)
+    releaseDirectRawImage, releaseDirectRawImages = releaseImage, releaseImages
 
-    def releaseDirectRawImages(self, handle: str) -> list:
-        return self.releaseImages(handle)
-
-    def getImageLocal(self, _handle: str) -> int:
-        raise NaoqiError(LOCAL.format("getImageRemote"))
-
-    def getImagesLocal(self, _handle: str) -> int:
-        raise NaoqiError(LOCAL.format("getImagesRemote"))
-
-    def getDirectRawImageLocal(self, _handle: str) -> int:
-        raise NaoqiError(LOCAL.format("getDirectRawImageRemote"))
-
-    def getDirectRawImagesLocal(self, _handle: str) -> int:
-        raise NaoqiError(LOCAL.format("getDirectRawImagesRemote"))
+    getImageLocal = _only_inside("getImageRemote")
+    getImagesLocal = _only_inside("getImagesRemote")
+    getDirectRawImageLocal = _only_inside("getDirectRawImageRemote")
+    getDirectRawImagesLocal = _only_inside("getDirectRawImagesRemote")
 
     # --- files ----------------------------------------------------------------------------------------------------
 
@@ -176,35 +134,20 @@ class ALVideoDevice:
             self._states.check(view.camera)
         return self._subscribers.ask(handle, call, answer)
 
-    def _check_native(self, handle: str) -> Subscriber:
-        subscriber = self._subscribers.get(handle)
-        wrong = [view.color_space for view in subscriber.views if view.color_space != NATIVE]
+    def _check_native(self, handle: str) -> None:
+        wrong = [v.color_space for v in self._subscribers.get(handle).views if v.color_space != NATIVE]
         if wrong:
             raise NaoqiError(
                 f"{handle!r} asked for colour space {wrong[0]}, raw images are those of {NATIVE} (YUV422) only;"
                 " subscribe with that one, or use getImageRemote"
             )
-        return subscriber
 
 
 def container(frame: Frame) -> tuple:
     """A frame as NAOqi hands it over."""
-    seconds, microseconds = frame.stamp
     left, top = frame.hfov / 2.0, frame.vfov / 2.0
-    return (
-        frame.width,
-        frame.height,
-        frame.layers,
-        frame.color_space,
-        seconds,
-        microseconds,
-        frame.data,
-        frame.camera,
-        left,
-        top,
-        -left,
-        -top,
-    )
+    size = (frame.width, frame.height, frame.layers)
+    return (*size, frame.color_space, *frame.stamp, frame.data, frame.camera, left, top, -left, -top)
 
 
 def _first(frames: list[Frame]) -> tuple:
@@ -215,7 +158,7 @@ def _all(frames: list[Frame]) -> list[tuple]:
     return list(map(container, frames))
 
 
-def whole_numbers(values: Any, field: str, count: int | None = None) -> list[int]:
+def _whole_numbers(values: Any, field: str, count: int | None = None) -> list[int]:
     """A list of whole numbers, `count` of them if that is given.
 
     Raises:

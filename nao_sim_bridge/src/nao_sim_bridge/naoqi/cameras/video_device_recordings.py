@@ -18,17 +18,14 @@ from nao_sim_bridge.naoqi.cameras.video_device_subscribers import Subscriber
 log = logging.getLogger("nao_sim.cameras")
 
 MOST_PICTURES = 100000
+CLOSING = 10.0
+"""How long the end of the simulator waits for a file, s of wall time."""
 WAITING = 15
 """Pictures that wait for the file before the oldest is dropped."""
 
 
 class RawRecordings:
-    """The recordings, by the handle of the subscriber; any thread.
-
-    Args:
-        cameras: Of the robot.
-        files: Where clients may have files written to.
-    """
+    """The recordings, by the handle of the subscriber; any thread."""
 
     def __init__(self, cameras: Cameras, files: ClientFiles) -> None:
         self._cameras = cameras
@@ -40,9 +37,7 @@ class RawRecordings:
         """Record pictures as a subscriber gets them; of several cameras the first.
 
         Args:
-            subscriber: Whose pictures.
             path: Name inside the folder for recordings.
-            total: Number of pictures.
             period: Of how many pictures that fall due one is recorded.
 
         Raises:
@@ -63,7 +58,7 @@ class RawRecordings:
             stream = self._cameras.open(f"recording of {subscriber.handle}", *look, every=True, keep=WAITING)
             recording = _Recording(stream, file, target, total, period, lambda: self._ended(subscriber.handle))
             self._running[subscriber.handle] = recording
-        recording.start()
+        recording.thread.start()
 
     def stop(self, handle: str) -> Task:
         """End the recording of a subscriber; the task ends when the file is complete, or tells why it ended early.
@@ -78,7 +73,7 @@ class RawRecordings:
             known = ", ".join(map(repr, self._running)) or "nobody"
         if recording is None:
             raise NaoqiError(f"{handle!r} does not record; recording is {known}")
-        recording.stop()
+        recording.stream.finish()
         return recording.task
 
     def close(self) -> None:
@@ -86,8 +81,8 @@ class RawRecordings:
         with self._lock:
             running = list(self._running.values())
         for recording in running:
-            recording.stop()
-            recording.join()
+            recording.stream.finish()
+            recording.thread.join(CLOSING)
 
     def _ended(self, handle: str) -> None:
         with self._lock:
@@ -101,22 +96,13 @@ class _Recording:
         self, stream: CameraStream, file: WholeFile, path: Path, total: int, period: int, on_end: object
     ) -> None:
         self.task = Task("stopVideo", 0)
-        self._stream = stream
+        self.stream = stream
         self._file = file
         self._path = path
         self._left = total
         self._period = period
         self._on_end = on_end
-        self._thread = threading.Thread(target=self._run, name="raw video", daemon=True)
-
-    def start(self) -> None:
-        self._thread.start()
-
-    def stop(self) -> None:
-        self._stream.finish()
-
-    def join(self, timeout: float = 10.0) -> None:
-        self._thread.join(timeout)
+        self.thread = threading.Thread(target=self._run, name="raw video", daemon=True)
 
     def _run(self) -> None:
         error: Exception | None = None
@@ -128,7 +114,7 @@ class _Recording:
         except Exception as failure:
             error = failure
             log.warning("recording %s ends: %s", self._path.name, failure)
-        self._stream.close()
+        self.stream.close()
         if error is None:
             self._on_end()
         self.task.finish(error is None, error)
@@ -137,7 +123,7 @@ class _Recording:
         count = 0
         while self._left > 0:
             try:
-                frame = self._stream.take()
+                frame = self.stream.take()
             except CameraClosed:
                 return
             if count % self._period == 0:

@@ -8,21 +8,50 @@ from typing import Any, Callable
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.cameras.cameras import Cameras
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.cameras.video_device_states import CameraStates
+from nao_sim_bridge.naoqi.cameras.video_device_cameras import CameraStates, of_active
 from nao_sim_bridge.naoqi.cameras.video_device_subscribers import Subscriber, VideoSubscribers
 
 NATIVE, IDLE_RESOLUTION, IDLE_RATE = 9, 1, 5
 """Colour space that the cameras themselves give, and size and rate of a camera that nobody looks through."""
+SELECT, SET_DEFAULTS = 18, 19
+"""Numbers of what once were parameters: the active camera, and setting all to their defaults."""
+
+
+def _of_views(field: str) -> Callable[..., list]:
+    """A method that answers a field of all views of a subscriber."""
+
+    def read(self: VideoDeviceSettings, handle: str) -> list:
+        return [getattr(view, field) for view in self._subscribers.get(handle).views]
+
+    return read
+
+
+def _changes_views(field: str, name: str) -> Callable[..., list]:
+    """A method that changes a field of all views of a subscriber: a value for each, called `name` in errors."""
+
+    def change(self: VideoDeviceSettings, handle: str, values: Any) -> list:
+        views = self._subscribers.get(handle).views
+        if not isinstance(values, (list, tuple)) or len(values) != len(views):
+            raise BadValue(name, values, f"a list of {len(views)} whole numbers, one a camera")
+        changed = [replace(view, **{field: value}) for view, value in zip(views, values)]
+        if len({view.camera for view in changed}) < len(changed):
+            raise BadValue(name, values, "different cameras")
+        self._subscribers.change(handle, changed)
+        if field == "camera":
+            for view in changed:
+                self._states.use(view.camera)
+        return [True for _ in views]
+
+    return change
+
+
+def _by_handle(method: Callable[..., Any]) -> Callable[..., Any]:
+    """The method for the camera that a subscriber looks through."""
+    return lambda self, handle, *arguments: method(self, self.getActiveCamera(handle), *arguments)
 
 
 class VideoDeviceSettings:
-    """Active cameras, sizes, colour spaces, rates and parameters, of cameras and of subscribers.
-
-    Args:
-        cameras: Of the robot.
-        subscribers: Who looks.
-        states: Which cameras run.
-    """
+    """Active cameras, sizes, colour spaces, rates and parameters, of cameras and of subscribers."""
 
     def __init__(self, cameras: Cameras, subscribers: VideoSubscribers, states: CameraStates) -> None:
         self._cameras = cameras
@@ -39,16 +68,11 @@ class VideoDeviceSettings:
         if len(arguments) == 1:
             self._cameras.active = camera
         else:
-            view = self._one(arguments[0]).views[0]
-            self._subscribers.change(arguments[0], [replace(view, camera=camera)])
+            self._change_one(arguments[0], camera=camera)
             self._states.use(camera)
         return True
 
-    def getActiveCameras(self, handle: str) -> list:
-        return [view.camera for view in self._subscribers.get(handle).views]
-
-    def setActiveCameras(self, handle: str, cameras: Any) -> list:
-        return self._set_each(handle, cameras, "cameraIndexes", "camera")
+    getActiveCameras, setActiveCameras = _of_views("camera"), _changes_views("camera", "cameraIndexes")
 
     # --- sizes, colour spaces and rates ---------------------------------------------------------------------------
 
@@ -60,14 +84,9 @@ class VideoDeviceSettings:
         return max(used, key=lambda size: size.width).id if used else IDLE_RESOLUTION
 
     def setResolution(self, handle: str, resolution: int) -> bool:
-        self._subscribers.change(handle, [replace(self._one(handle).views[0], resolution=resolution)])
-        return True
+        return self._change_one(handle, resolution=resolution)
 
-    def getResolutions(self, handle: str) -> list:
-        return [view.resolution for view in self._subscribers.get(handle).views]
-
-    def setResolutions(self, handle: str, resolutions: Any) -> list:
-        return self._set_each(handle, resolutions, "resolutions", "resolution")
+    getResolutions, setResolutions = _of_views("resolution"), _changes_views("resolution", "resolutions")
 
     def getColorSpace(self, of: Any) -> int:
         if isinstance(of, str):
@@ -76,14 +95,9 @@ class VideoDeviceSettings:
         return NATIVE
 
     def setColorSpace(self, handle: str, color_space: int) -> bool:
-        self._subscribers.change(handle, [replace(self._one(handle).views[0], color_space=color_space)])
-        return True
+        return self._change_one(handle, color_space=color_space)
 
-    def getColorSpaces(self, handle: str) -> list:
-        return [view.color_space for view in self._subscribers.get(handle).views]
-
-    def setColorSpaces(self, handle: str, color_spaces: Any) -> list:
-        return self._set_each(handle, color_spaces, "colorSpaces", "color_space")
+    getColorSpaces, setColorSpaces = _of_views("color_space"), _changes_views("color_space", "colorSpaces")
 
     def getFrameRate(self, of: Any) -> int:
         if isinstance(of, str):
@@ -93,6 +107,14 @@ class VideoDeviceSettings:
     def setFrameRate(self, handle: str, fps: int) -> bool:
         self._subscribers.change(handle, fps=fps)
         return True
+
+    def getExpectedImageParameters(self, *camera: int) -> list:
+        index = self._cameras.tables.camera(camera[0]) if camera else self._cameras.active
+        return [self.getResolution(index), self.getFrameRate(index)]
+
+    getGVMResolution, getVIMResolution = getResolution, of_active(getResolution)
+    getGVMColorSpace, getVIMColorSpace = getColorSpace, of_active(getColorSpace)
+    getGVMFrameRate, getVIMFrameRate = getFrameRate, of_active(getFrameRate)
 
     # --- parameters of cameras ------------------------------------------------------------------------------------
 
@@ -111,14 +133,8 @@ class VideoDeviceSettings:
     def getParameterInfo(self, camera: int, number: int) -> list:
         parameter = self._cameras.tables.parameter(number)
         value = self._cameras.parameter(camera, number)
-        facts = (
-            ("name", parameter.name),
-            ("value", value),
-            ("min", parameter.least),
-            ("max", parameter.most),
-            ("default", parameter.default),
-        )
-        return [list(fact) for fact in facts]
+        limits = [["min", parameter.least], ["max", parameter.most], ["default", parameter.default]]
+        return [["name", parameter.name], ["value", value], *limits]
 
     def setParameterToDefault(self, camera: int, number: int) -> bool:
         return self.setParameter(camera, number, self._cameras.tables.parameter(number).default)
@@ -127,28 +143,36 @@ class VideoDeviceSettings:
         self._cameras.reset_parameters(camera)
         return True
 
+    def getParam(self, number: int, *camera: int) -> int:
+        if number == SELECT:
+            return self._cameras.active
+        return self.getParameter(self._camera(*camera), number)
+
+    def setParam(self, number: int, value: int, *camera: int) -> None:
+        if number == SELECT:
+            self.setActiveCamera(value)
+        elif number == SET_DEFAULTS:
+            self.setAllParametersToDefault(self._camera(*camera))
+        else:
+            self.setParameter(self._camera(*camera), number, value)
+
+    def setParamDefault(self, number: int) -> None:
+        if number == SELECT:
+            self.setActiveCamera(0)
+        else:
+            self.setParameterToDefault(self._cameras.active, number)
+
     # --- parameters by subscriber ---------------------------------------------------------------------------------
 
-    def getCameraParameter(self, handle: str, number: int) -> int:
-        return self.getParameter(self.getActiveCamera(handle), number)
-
-    def setCameraParameter(self, handle: str, number: int, value: int) -> bool:
-        return self.setParameter(self.getActiveCamera(handle), number, value)
-
-    def getCameraParameterRange(self, handle: str, number: int) -> list:
-        return self.getParameterRange(self.getActiveCamera(handle), number)
-
-    def getCameraParameterInfo(self, handle: str, number: int) -> list:
-        return self.getParameterInfo(self.getActiveCamera(handle), number)
-
-    def setCameraParameterToDefault(self, handle: str, number: int) -> bool:
-        return self.setParameterToDefault(self.getActiveCamera(handle), number)
+    getCameraParameter, setCameraParameter = _by_handle(getParameter), _by_handle(setParameter)
+    getCameraParameterRange, getCameraParameterInfo = _by_handle(getParameterRange), _by_handle(getParameterInfo)
+    setCameraParameterToDefault = _by_handle(setParameterToDefault)
 
     def setAllCameraParametersToDefault(self, handle: str) -> bool:
         return all([self.setAllParametersToDefault(camera) for camera in self.getActiveCameras(handle)])
 
     def getCamerasParameter(self, handle: str, number: int) -> list:
-        return self._each(handle, lambda camera: self.getParameter(camera, number))
+        return [self.getParameter(camera, number) for camera in self.getActiveCameras(handle)]
 
     def setCamerasParameter(self, handle: str, number: int, values: Any) -> list:
         cameras = self.getActiveCameras(handle)
@@ -157,7 +181,7 @@ class VideoDeviceSettings:
         return [self.setParameter(camera, number, value) for camera, value in zip(cameras, values)]
 
     def setCamerasParameterToDefault(self, handle: str, number: int) -> list:
-        return self._each(handle, lambda camera: self.setParameterToDefault(camera, number))
+        return [self.setParameterToDefault(camera, number) for camera in self.getActiveCameras(handle)]
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
@@ -168,18 +192,9 @@ class VideoDeviceSettings:
             raise NaoqiError(f"{handle!r} looks through several cameras; use the method for several of them")
         return subscriber
 
-    def _each(self, handle: str, action: Callable[[int], Any]) -> list:
-        return [action(camera) for camera in self.getActiveCameras(handle)]
+    def _change_one(self, handle: str, **changed: int) -> bool:
+        self._subscribers.change(handle, [replace(self._one(handle).views[0], **changed)])
+        return True
 
-    def _set_each(self, handle: str, values: Any, name: str, field: str) -> list:
-        views = self._subscribers.get(handle).views
-        if not isinstance(values, (list, tuple)) or len(values) != len(views):
-            raise BadValue(name, values, f"a list of {len(views)} whole numbers, one a camera")
-        changed = [replace(view, **{field: value}) for view, value in zip(views, values)]
-        if len({view.camera for view in changed}) < len(changed):
-            raise BadValue(name, values, "different cameras")
-        self._subscribers.change(handle, changed)
-        if field == "camera":
-            for view in changed:
-                self._states.use(view.camera)
-        return [True for _ in views]
+    def _camera(self, *camera: int) -> int:
+        return camera[0] if camera else self._cameras.active

@@ -13,13 +13,12 @@ import time
 from dataclasses import dataclass, field
 from typing import Any, Callable, Sequence, Tuple
 
-from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue, SimulationError
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.cameras.cameras import Cameras, CameraStream
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.cameras.video_device_waiting import WaitingCall
 
 log = logging.getLogger("nao_sim.cameras")
 
@@ -52,7 +51,6 @@ class Subscriber:
         views: What it sees; several if it asked for several cameras.
         fps: Frames a second that it asked for.
         several: Whether it asked for several cameras, if only for one of them.
-        streams: Its looks through the cameras, in the order of the views.
         waiting: Calls that wait for a frame.
         used: When it was used last, s of wall time.
     """
@@ -71,7 +69,6 @@ class VideoSubscribers:
     """Who looks, and the pictures for them. Any thread.
 
     Args:
-        cameras: Of the robot.
         clock: Wall time, s.
     """
 
@@ -112,15 +109,13 @@ class VideoSubscribers:
             if self._gone.pop(handle, None) is None:
                 _close(self._known.pop(self._find(handle).handle))
 
-    def remove_all(self, name: str) -> int:
-        """The same for all who have called themselves `name`; returns how many there were."""
+    def remove_all(self, name: str) -> None:
+        """The same for all who have called themselves `name`."""
         with self._lock:
             for handle in [handle for handle, gone in self._gone.items() if gone.name == name]:
                 del self._gone[handle]
-            of_name = [subscriber for subscriber in self._known.values() if subscriber.name == name]
-            for subscriber in of_name:
+            for subscriber in [one for one in self._known.values() if one.name == name]:
                 _close(self._known.pop(subscriber.handle))
-            return len(of_name)
 
     def get(self, handle: str) -> Subscriber:
         """The subscriber with a handle; it counts as used.
@@ -139,16 +134,9 @@ class VideoSubscribers:
             return found
 
     def handles(self) -> list[str]:
-        """All handles."""
         with self._lock:
             self.clean_up()
             return list(self._known)
-
-    def of_camera(self, camera: int) -> list[CameraStream]:
-        """The looks through one camera."""
-        with self._lock:
-            self.clean_up()
-            return [s for subscriber in self._known.values() for s in subscriber.streams if s.camera == camera]
 
     def change(self, handle: str, views: Sequence[View] | None = None, fps: int | None = None) -> None:
         """Change what somebody sees; with other cameras as many as before.
@@ -182,7 +170,6 @@ class VideoSubscribers:
                 self._let_go(subscriber)
 
     def close(self) -> None:
-        """End of everything."""
         with self._lock:
             for subscriber in self._known.values():
                 _close(subscriber)
@@ -195,8 +182,6 @@ class VideoSubscribers:
         """The next frame of each camera of a subscriber.
 
         Args:
-            handle: Of the subscriber.
-            call: Name of the call, for the task.
             change: Makes what the task ends with.
 
         Raises:
@@ -283,3 +268,70 @@ def _check_fps(fps: Any, cameras: Cameras) -> None:
     most = cameras.tables.most_fps
     if isinstance(fps, bool) or not isinstance(fps, int) or not 1 <= fps <= most:
         raise BadValue("fps", fps, f"1 to {most} frames a second")
+
+
+class WaitingCall:
+    """A call that waits for a frame of each camera of a subscriber.
+
+    The task leads here until it is over, and this leads to it no longer then: pictures are large, and must not be kept
+    by a cycle.
+
+    Args:
+        count: Number of cameras.
+        change: Makes the answer from the frames.
+        on_end: Called when it is over.
+    """
+
+    def __init__(self, call: str, count: int, change: Callable[[list[Frame]], Any], on_end: Callable[[], None]) -> None:
+        self._frames: list[Frame | None] = [None] * count
+        self._asked: list[tuple[CameraStream, Any]] = []
+        self._change = change
+        self._lock = threading.Lock()
+        self._task: Task | None = Task(call, 0, ask=lambda _: self._give_up())
+        self._task.add_done_callback(lambda _: on_end())
+
+    def begin(self, streams: Sequence[CameraStream]) -> Task:
+        """Ask the cameras; the task ends with what `change` makes of their frames."""
+        task = self._task
+        for index, stream in enumerate(streams):
+            try:
+                ask = stream.ask(lambda answer, index=index: self._hear(index, answer))
+            except SimulationError as error:
+                self.fail(error)  # what the other cameras were asked for is given up, too
+                break
+            with self._lock:
+                self._asked.append((stream, ask))
+        return task
+
+    def fail(self, error: Exception) -> None:
+        """End with an error; frames that come all the same wait for the next call."""
+        task = self._end()
+        if task is not None:
+            task.finish(error=error)
+
+    def _hear(self, index: int, answer: Frame | Exception) -> None:
+        if isinstance(answer, Exception):
+            self.fail(answer)
+            return
+        with self._lock:
+            self._frames[index] = answer
+            frames = list(self._frames)
+        if all(frame is not None for frame in frames):
+            task = self._end()
+            if task is not None:
+                task.finish(self._change(frames))
+
+    def _give_up(self) -> None:
+        task = self._end()
+        if task is not None:
+            task.kill()
+
+    def _end(self) -> Task | None:
+        """The task, if nobody has ended it yet."""
+        with self._lock:
+            task, self._task = self._task, None
+            asked, self._asked = self._asked, []
+            self._frames = [None] * len(self._frames)
+        for stream, ask in asked:
+            stream.give_up(ask)
+        return task

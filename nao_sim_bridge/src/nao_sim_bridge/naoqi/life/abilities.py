@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.base.errors import UnknownName
@@ -17,47 +16,26 @@ BLINKING, BACKGROUND, AWARENESS, LISTENING, SPEAKING = NAMES = (
 ALL = "All"
 
 
-@dataclass(frozen=True)
-class Ability:
-    """What begins and ends an ability."""
-
-    start: Callable[[], Any]
-    stop: Callable[[], Any]
-
-
 class Abilities:
-    """Which abilities are enabled, and which run.
+    """Part of ALAutonomousLife: which abilities are enabled, and which run.
 
     Args:
-        abilities: By name.
+        abilities: By name, what begins (True) and ends it.
     """
 
-    def __init__(self, abilities: Mapping[str, Ability]) -> None:
+    def __init__(self, abilities: Mapping[str, Callable[[bool], Any]]) -> None:
         self._abilities = dict(abilities)
         self._enabled = dict.fromkeys(abilities, True)
         self._running = dict.fromkeys(abilities, False)
         self._alive = False
 
-    @property
-    def status(self) -> list[tuple[str, bool, bool]]:
+    def getAutonomousAbilitiesStatus(self) -> list[tuple[str, bool, bool]]:
         """Name, whether it is enabled, and whether it runs, of each."""
         return [(name, enabled, self._running[name]) for name, enabled in self._enabled.items()]
 
-    def enabled(self, name: str) -> bool:
-        """Whether an ability is enabled; "All": whether all are.
-
-        Raises:
-            UnknownName: There is no such ability.
-        """
-        return all(self._enabled[one] for one in self._named(name))
-
-    def check(self, name: str) -> None:
-        """Whether there is such an ability.
-
-        Raises:
-            UnknownName: There is none.
-        """
-        self._named(name)
+    def getAutonomousAbilityEnabled(self, name: str) -> bool:
+        """Of "All": whether all are enabled."""
+        return all(self._enabled[one] for one in self.named(name))
 
     def enable(self, name: str, enabled: bool) -> None:
         """Switch an ability, or all of them.
@@ -65,7 +43,7 @@ class Abilities:
         Raises:
             UnknownName: There is no such ability.
         """
-        for one in self._named(name):
+        for one in self.named(name):
             self._enabled[one] = enabled
         self._update()
 
@@ -74,7 +52,12 @@ class Abilities:
         self._alive = alive
         self._update()
 
-    def _named(self, name: str) -> list[str]:
+    def named(self, name: str) -> list[str]:
+        """The ability of a name; "All": all of them.
+
+        Raises:
+            UnknownName: There is no such ability.
+        """
         if name == ALL:
             return list(self._abilities)
         if name not in self._abilities:
@@ -82,8 +65,8 @@ class Abilities:
         return [name]
 
     def _update(self) -> None:
-        for name, ability in self._abilities.items():
+        for name, switch in self._abilities.items():
             wanted = self._alive and self._enabled[name]
             if wanted != self._running[name]:
                 self._running[name] = wanted
-                (ability.start if wanted else ability.stop)()
+                switch(wanted)

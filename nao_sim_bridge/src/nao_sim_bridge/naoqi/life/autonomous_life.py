@@ -1,16 +1,12 @@
-"""ALAutonomousLife of the simulated robot. Only NAOqi methods live here."""
+"""ALAutonomousLife of the simulated robot: states and activities; `LifeModules` has its other parts."""
 
 from __future__ import annotations
-
-from typing import Any
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.installed import InstalledBehaviors
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.naoqi.binding.arguments import number, whole_number
-from nao_sim_bridge.naoqi.life.launchpad import Launchpad
 from nao_sim_bridge.naoqi.life.life import ALIVE, STACK, STOP, Life
-from nao_sim_bridge.naoqi.life.safeguards import Safeguards
 from nao_sim_bridge.naoqi.life.stimuli import Stimuli
 
 NAME = "ALAutonomousLife"
@@ -22,26 +18,11 @@ class ALAutonomousLife:
     No activity is launched by conditions: those that are installed have none.
 
     Args:
-        life: Does the work.
-        safeguards: Watch over it.
-        launchpad: Facts about the robot.
         installed: The behaviours that may be activities.
-        stimuli: What basic awareness takes notice of.
-        runner: Runs commands in the simulation thread.
     """
 
-    def __init__(
-        self,
-        life: Life,
-        safeguards: Safeguards,
-        launchpad: Launchpad,
-        installed: InstalledBehaviors,
-        stimuli: Stimuli,
-        runner: SimulationRunner,
-    ) -> None:
+    def __init__(self, life: Life, installed: InstalledBehaviors, stimuli: Stimuli, runner: SimulationRunner) -> None:
         self._life = life
-        self._safeguards = safeguards
-        self._launchpad = launchpad
         self._installed = installed
         self._stimuli = stimuli
         self._runner = runner
@@ -55,22 +36,8 @@ class ALAutonomousLife:
         """Ends when the robot is in the state: it wakes up before it lives."""
         return self._runner.execute(lambda: self._life.set_state(state), "setState")
 
-    def getStateHistory(self, depth: int | None = None) -> list:
-        return self._life.record.states(depth)
-
-    def getLifeTime(self) -> int:
-        return self._life.record.life_time
-
-    # --- abilities ------------------------------------------------------------------------------------------------
-
-    def getAutonomousAbilitiesStatus(self) -> list:
-        return self._life.abilities.status
-
-    def getAutonomousAbilityEnabled(self, ability: str) -> bool:
-        return self._life.abilities.enabled(ability)
-
     def setAutonomousAbilityEnabled(self, ability: str, enabled: bool) -> Task:
-        self._life.abilities.check(ability)
+        self._life.abilities.named(ability)  # an unknown one is refused at once
         return self._runner.execute(
             lambda: self._life.abilities.enable(ability, bool(enabled)), "setAutonomousAbilityEnabled"
         )
@@ -104,12 +71,6 @@ class ALAutonomousLife:
             return f"nature: {nature}"
         return "" if self._life.state in ALIVE else f"state: {self._life.state}"
 
-    def getFocusHistory(self, depth: int | None = None) -> list:
-        return self._life.record.focus(depth)
-
-    def getActivityStatistics(self) -> dict:
-        return self._life.record.statistics
-
     def getAutonomousActivityStatistics(self) -> dict:
         """Of those with launch conditions: an installed behaviour has none."""
         return {}
@@ -119,35 +80,6 @@ class ALAutonomousLife:
         for behavior in self._installed.all.values():
             if behavior.nature in ALIVE:
                 self._installed.resolve(behavior.name)
-
-    def getFocusContext(self, key: str) -> Any:
-        return self._launchpad.at_focus(key)
-
-    # --- launch pad, safeguards -----------------------------------------------------------------------------------
-
-    def getEnabledLaunchpadPlugins(self) -> list[str]:
-        return self._launchpad.enabled
-
-    def getLaunchpadPluginsForGroup(self, group: str) -> list[str]:
-        return self._launchpad.of_group(group)
-
-    def setLaunchpadPluginEnabled(self, name: str, enabled: bool) -> None:
-        self._launchpad.enable(name, bool(enabled))
-
-    def isMonitoringLaunchpadConditions(self) -> bool:
-        return self._launchpad.monitors
-
-    def startMonitoringLaunchpadConditions(self) -> None:
-        self._launchpad.monitors = True
-
-    def stopMonitoringLaunchpadConditions(self) -> None:
-        self._launchpad.monitors = False
-
-    def isSafeguardEnabled(self, name: str) -> bool:
-        return self._safeguards.enabled[self._safeguards.check(name)]
-
-    def setSafeguardEnabled(self, name: str, enabled: bool) -> None:
-        self._safeguards.enabled[self._safeguards.check(name)] = bool(enabled)
 
     def getRobotOffsetFromFloor(self) -> float:
         return self._stimuli.offset

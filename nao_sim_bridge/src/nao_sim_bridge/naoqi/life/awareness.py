@@ -73,14 +73,8 @@ class Awareness:
         paused: Whether it does nothing all the same.
         engagement: How easily it turns away from a person: one of `ENGAGEMENTS`.
         tracking: What moves: one of `TRACKINGS`.
-        stimuli: What interests it.
-        settings: Parameters.
 
     Args:
-        simulation: Whose robot it is.
-        runner: Its thread.
-        memory: Where events come from and go to.
-        calls: Calls the modules that see and hear.
         busy: Whether somebody else has the head now.
     """
 
@@ -112,7 +106,6 @@ class Awareness:
 
     @property
     def running(self) -> bool:
-        """Whether it works."""
         return self.enabled and not self.paused
 
     @property

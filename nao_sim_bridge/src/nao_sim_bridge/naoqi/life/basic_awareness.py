@@ -7,7 +7,7 @@ from typing import Any, Callable
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.naoqi.binding.arguments import numbers
+from nao_sim_bridge.naoqi.binding.arguments import numbers, one_of
 from nao_sim_bridge.naoqi.life.awareness import (
     ENGAGEMENTS,
     HEAD,
@@ -21,12 +21,7 @@ from nao_sim_bridge.naoqi.life.stimuli import check
 
 
 class ALBasicAwareness:
-    """ALBasicAwareness as the simulated robot offers it; a NAO has no tablet, and nothing that sees motion but eyes.
-
-    Args:
-        awareness: Does the work.
-        runner: Runs commands in the simulation thread.
-    """
+    """ALBasicAwareness as the simulated robot offers it; a NAO has no tablet, and nothing that sees motion but eyes."""
 
     def __init__(self, awareness: Awareness, runner: SimulationRunner) -> None:
         self._awareness = awareness
@@ -60,14 +55,14 @@ class ALBasicAwareness:
         return self._awareness.engagement
 
     def setEngagementMode(self, mode: str) -> Task:
-        _one_of("modeName", mode, ENGAGEMENTS)
+        one_of(mode, "modeName", ENGAGEMENTS)
         return self._change("setEngagementMode", lambda: setattr(self._awareness, "engagement", mode))
 
     def getTrackingMode(self) -> str:
         return self._awareness.tracking
 
     def setTrackingMode(self, mode: str) -> Task:
-        _one_of("modeName", mode, TRACKINGS)
+        one_of(mode, "modeName", TRACKINGS)
         return self._change("setTrackingMode", lambda: setattr(self._awareness, "tracking", mode))
 
     def isStimulusDetectionEnabled(self, stimulus: str) -> bool:
@@ -112,8 +107,3 @@ class ALBasicAwareness:
             self._awareness.update()
 
         return self._runner.execute(run, call)
-
-
-def _one_of(field: str, value: str, allowed: tuple[str, ...]) -> None:
-    if value not in allowed:
-        raise BadValue(field, value, f"one of {', '.join(allowed)}")

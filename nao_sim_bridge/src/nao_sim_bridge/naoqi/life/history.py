@@ -17,7 +17,7 @@ START, COMPLETION, DURATION, TOTAL = (
 
 
 class LifeRecord:
-    """Histories and statistics of one life; times in whole s of simulated time.
+    """Part of ALAutonomousLife: histories and statistics; times in whole s of simulated time.
 
     Args:
         clock: Simulated time, s.
@@ -31,26 +31,22 @@ class LifeRecord:
         self._lived = 0.0
         self._since: float | None = None
 
-    @property
-    def life_time(self) -> int:
-        """How long the robot has lived, s."""
+    def getLifeTime(self) -> int:
         return int(self._lived + (0.0 if self._since is None else self._clock() - self._since))
 
-    @property
-    def statistics(self) -> dict[str, dict[str, int]]:
+    def getActivityStatistics(self) -> dict[str, dict[str, int]]:
         """Counts and times by activity."""
         return {name: dict(entry) for name, entry in self._statistics.items()}
 
-    def states(self, depth: int | None = None) -> list[tuple[str, int]]:
+    def getStateHistory(self, depth: int | None = None) -> list[tuple[str, int]]:
         """The last states and when they began, newest first."""
         return _newest(self._states, depth)
 
-    def focus(self, depth: int | None = None) -> list[tuple[str, int]]:
+    def getFocusHistory(self, depth: int | None = None) -> list[tuple[str, int]]:
         """The last activities and when they got the focus, newest first."""
         return _newest(self._focus, depth)
 
     def entered(self, state: str, alive: bool) -> None:
-        """There is a new state."""
         now = self._clock()
         self._states.append((state, int(now)))
         if alive and self._since is None:
@@ -59,7 +55,6 @@ class LifeRecord:
             self._lived, self._since = self._lived + now - self._since, None
 
     def focused(self, activity: str) -> None:
-        """An activity has got the focus."""
         now = int(self._clock())
         self._focus.append((activity, now))
         entry = self._statistics.setdefault(activity, dict.fromkeys((FOCUS_COUNT, COMPLETION_COUNT, TOTAL), 0))
@@ -67,7 +62,6 @@ class LifeRecord:
         entry[START] = now
 
     def left(self, activity: str, completed: bool) -> None:
-        """An activity has lost the focus."""
         now, entry = int(self._clock()), self._statistics[activity]
         entry[DURATION] = now - entry[START]
         entry[TOTAL] += entry[DURATION]

@@ -23,23 +23,18 @@ Fact = Callable[[Snapshot], Any]
 
 
 class Launchpad:
-    """Writes the keys while it monitors and the robot lives. Simulation thread only, but for switches.
+    """Part of ALAutonomousLife: writes the keys while it monitors and the robot lives.
 
-    Attributes:
-        monitors: Whether it writes.
+    Simulation thread only, but for NAOqi's methods.
 
     Args:
-        simulation: Whose robot it is.
-        life: Its life.
-        memory: Where the keys are.
         tracked: Number of the person who is followed, -1 for nobody.
-        zone: What the robot's clock shows.
     """
 
     def __init__(
         self, simulation: Simulation, life: Life, memory: MemoryStore, tracked: Callable[[], int], zone: TimeZone
     ) -> None:
-        self.monitors = True
+        self._monitors = True
         self._simulation = simulation
         self._life = life
         self._memory = memory
@@ -59,31 +54,29 @@ class Launchpad:
         life.entered.append(self._note_state)
         simulation.after_tick.append(self._tick)
 
-    @property
-    def enabled(self) -> list[str]:
-        """Names of the plugins that are on."""
+    def getEnabledLaunchpadPlugins(self) -> list[str]:
         return [name for name, on in self._enabled.items() if on]
 
-    def enable(self, name: str, on: bool) -> None:
-        """Switch a plugin.
-
-        Raises:
-            UnknownName: There is no such plugin.
-        """
+    def setLaunchpadPluginEnabled(self, name: str, enabled: bool) -> None:
         if name not in self._enabled:
             raise UnknownName("launch pad plugin", name, self._enabled)
-        self._enabled[name] = on
+        self._enabled[name] = bool(enabled)
 
-    def of_group(self, group: str) -> list[str]:
-        """Plugins of a group: they are groups of themselves, and there is one of all."""
+    def getLaunchpadPluginsForGroup(self, group: str) -> list[str]:
+        """Plugins are groups of themselves, and there is one of all."""
         return list(self._plugins) if group in GROUPS else [name for name in self._plugins if name == group]
 
-    def at_focus(self, key: str) -> Any:
-        """What a key was when an activity was about to get the focus last.
+    def isMonitoringLaunchpadConditions(self) -> bool:
+        return self._monitors
 
-        Raises:
-            UnknownName: It was nothing.
-        """
+    def startMonitoringLaunchpadConditions(self) -> None:
+        self._monitors = True
+
+    def stopMonitoringLaunchpadConditions(self) -> None:
+        self._monitors = False
+
+    def getFocusContext(self, key: str) -> Any:
+        """What a key was when an activity was about to get the focus last."""
         name = key if key.startswith(PREFIX) else PREFIX + key
         if name not in self._at_focus:
             raise UnknownName("condition at the last focus", key, self._at_focus)
@@ -96,7 +89,7 @@ class Launchpad:
             "Life": {
                 "State": lambda _: life.state,
                 "PreviousState": lambda _: self._previous_state,
-                "LifeTime": lambda _: life.record.life_time,
+                "LifeTime": lambda _: life.record.getLifeTime(),
             },
             "Activity": {
                 "FocusedActivity": lambda _: life.focused,
@@ -111,11 +104,8 @@ class Launchpad:
             "Robot": {"RobotType": lambda _: "Nao"},
             "People": {"TrackedHumanIsLookingAtRobot": lambda _: self._tracked() >= 0},
             "Time": {
-                "Hour": lambda _: self._zone.now().hour,
-                "Minute": lambda _: self._zone.now().minute,
-                "Day": lambda _: self._zone.now().day,
-                "Month": lambda _: self._zone.now().month,
-                "Year": lambda _: self._zone.now().year,
+                unit.capitalize(): lambda _, unit=unit: getattr(self._zone.now(), unit)
+                for unit in ("hour", "minute", "day", "month", "year")
             },
         }
 
@@ -124,7 +114,7 @@ class Launchpad:
         return {PREFIX + key: fact(now) for facts in on for key, fact in facts.items()}
 
     def _tick(self, now: Snapshot) -> None:
-        if not self.monitors or self._life.state == DISABLED or now.time < self._next:
+        if not self._monitors or self._life.state == DISABLED or now.time < self._next:
             return
         self._next = now.time + PERIOD
         for key, value in self._values(now).items():

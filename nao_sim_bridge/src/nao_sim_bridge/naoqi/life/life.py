@@ -11,11 +11,11 @@ from __future__ import annotations
 import logging
 from typing import Any, Callable
 
-from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.steps import Behavior
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
+from nao_sim_bridge.naoqi.binding.arguments import one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.life.abilities import Abilities
 from nao_sim_bridge.naoqi.life.history import LifeRecord
@@ -38,19 +38,13 @@ class Life:
     """The life of one robot.
 
     Attributes:
-        abilities: What it does by itself.
-        record: What it has done.
         state: One of `STATES`.
         focused: Name of the activity that has the focus, empty when none has.
+        stand_up: Has the robot stand up from wherever it is; its task ends with whether it stands.
         entered: Called with the state before, when there is a new one.
 
     Args:
-        simulation: Whose robot it is.
-        running: Starts and stops behaviours.
-        memory: Where events go.
-        abilities: See above.
         wake: Wakes the robot up; its task may end with a further task.
-        stand: Has it stand up from wherever it is; ends with whether it stands.
     """
 
     def __init__(
@@ -71,7 +65,7 @@ class Life:
         self._running = running
         self._memory = memory
         self._wake = wake
-        self._stand = stand
+        self.stand_up = stand
         self._stacked: list[str] = []
         self._wanted: object | None = None
         for event in (STATE, FOCUSED, COMPLETED, NEXT):
@@ -94,8 +88,7 @@ class Life:
         Raises:
             BadValue: There is no such state.
         """
-        if state not in STATES:
-            raise BadValue("state", state, f"one of {', '.join(STATES)}")
+        one_of(state, "state", STATES)
         done = self._simulation.task_ids.make("setState")
         wanted = self._wanted = object()
         if state not in ALIVE or self.state in ALIVE:
@@ -109,7 +102,7 @@ class Life:
             done.finish()
 
         # Who lies on the floor gets up first, who sits or stands stays where it is.
-        begin = self._wake if self.upright else self._stand
+        begin = self._wake if self.upright else self.stand_up
         follow(begin(), woken, lambda error: done.finish(error=error))
         return done
 
@@ -129,12 +122,7 @@ class Life:
 
         follow(recover(), recovered, lambda error: log.warning("autonomous life stays in safeguard: %s", error))
 
-    def stand_up(self) -> Task:
-        """Have the robot stand up."""
-        return self._stand()
-
     def all_clear(self) -> None:
-        """What was wrong is over."""
         if self.state == SAFEGUARD:
             self.set_state(SOLITARY)
 
@@ -228,7 +216,6 @@ class Life:
         self._enter(SOLITARY)
 
     def _after_reset(self) -> None:
-        """The robot is another one: it does not live yet."""
         self._wanted = None
         self._stacked.clear()
         if self.state != DISABLED:

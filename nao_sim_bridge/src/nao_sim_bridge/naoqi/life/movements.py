@@ -1,6 +1,7 @@
-"""What the robot does with its body by itself: it breathes, moves while it speaks, and nods to who speaks to it.
+"""What the robot does with its body by itself, and ALAutonomousMoves.
 
-Simulation thread only, but for `SpeakingMovement`'s and `ListeningMovement`'s ears.
+It breathes, moves while it speaks, nods to who speaks to it, and blinks: each is switched on and off. Simulation thread
+only, but for `SpeakingMovement`'s and `ListeningMovement`'s ears.
 """
 
 from __future__ import annotations
@@ -8,7 +9,9 @@ from __future__ import annotations
 import random
 from typing import Any
 
-from nao_sim_bridge.base.errors import SimulationStopped
+from nao_sim_bridge.base.errors import BadValue, SimulationStopped
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.body.leds import LedKeyframe
 from nao_sim_bridge.control.joints.idle import Mode
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -19,13 +22,17 @@ from nao_sim_bridge.speech.clips import SpokenWord
 from nao_sim_bridge.speech.speaker import Speaker, SpeechEvent
 from nao_sim_bridge.tracking.geometry import HEAD
 
-BODY = "Body"
+NAME = "ALAutonomousMoves"
+BODY, EYES = "Body", "FaceLeds"
 NONE, BACK_TO_NEUTRAL = "none", "backToNeutral"
 STRATEGIES = (NONE, BACK_TO_NEUTRAL)
 VOICE = "SpeechDetected"
 NOD = Animation("nod", 1.0, (), {"HeadPitch": KeyFrames((0.4,), (0.1,))})
 # Who speaks gets a nod so often at most, s.
 NOD_PAUSE = 3.0
+# Pauses between two blinks, s; how long eyes take to close, stay closed, and take to open, s.
+PAUSES = (2.0, 6.0)
+CLOSE, CLOSED, OPEN = 0.06, 0.05, 0.1
 
 
 class BackgroundMovement:
@@ -33,9 +40,6 @@ class BackgroundMovement:
 
     Attributes:
         strategy: One of `STRATEGIES`: what they do while they do not breathe.
-
-    Args:
-        simulation: Whose robot it is.
     """
 
     def __init__(self, simulation: Any) -> None:
@@ -43,31 +47,18 @@ class BackgroundMovement:
         self._simulation = simulation
         self._breathes = False
 
-    def start(self) -> None:
-        """Breathe from now on."""
-        self._breathes = True
-        self.update()
-
-    def stop(self) -> None:
-        """Breathe no longer."""
-        self._breathes = False
+    def switch(self, on: bool) -> None:
+        """Breathe, or breathe no longer."""
+        self._breathes = on
         self.update()
 
     def update(self) -> None:
-        """Do what is wanted now."""
         mode = Mode.BREATH if self._breathes else Mode.POSTURE if self.strategy == BACK_TO_NEUTRAL else Mode.NOTHING
         self._simulation.robot.reflexes.idle.set_mode(BODY, mode)
 
 
 class SpeakingMovement:
-    """Moves arms and head while ALTextToSpeech speaks. ALAnimatedSpeech plans gestures of its own, which replace these.
-
-    Args:
-        mouth: Whose words they are.
-        animator: Moves arms and head.
-        library: The gestures.
-        seed: Of the choice among them.
-    """
+    """Moves arms and head while ALTextToSpeech speaks; gestures that ALAnimatedSpeech plans replace these."""
 
     def __init__(self, mouth: Speaker, animator: Animator, library: AnimationLibrary, seed: int) -> None:
         self._animator = animator
@@ -76,15 +67,10 @@ class SpeakingMovement:
         self._on = False
         mouth.listeners.insert(0, self._hear)
 
-    def start(self) -> None:
-        """Move along from now on."""
-        self._on = True
-
-    def stop(self) -> None:
-        """Speak without gestures."""
-        if self._on:
+    def switch(self, on: bool) -> None:
+        if self._on and not on:
             self._animator.drop_plans()
-        self._on = False
+        self._on = on
 
     def _hear(self, event: SpeechEvent) -> None:
         if not self._on or event.kind != speaker.SENTENCE or self._animator.busy:
@@ -101,12 +87,6 @@ class ListeningMovement:
 
     Attributes:
         enabled: Whether it does so when it is switched on.
-
-    Args:
-        simulation: Whose robot it is.
-        runner: Its thread.
-        memory: Where voices are told.
-        animator: Moves the head.
     """
 
     def __init__(self, simulation: Any, runner: SimulationRunner, memory: MemoryStore, animator: Animator) -> None:
@@ -118,13 +98,8 @@ class ListeningMovement:
         self._next = 0.0
         memory.listen(VOICE, self._hear)
 
-    def start(self) -> None:
-        """Nod from now on."""
-        self._on = True
-
-    def stop(self) -> None:
-        """Listen without a movement."""
-        self._on = False
+    def switch(self, on: bool) -> None:
+        self._on = on
 
     def _hear(self, voice: Any) -> None:
         if not (self._on and self.enabled and voice):
@@ -141,3 +116,65 @@ class ListeningMovement:
             return
         self._next = now + NOD_PAUSE
         self._animator.start(NOD)
+
+
+class Blinking:
+    """Blinks while it is switched on, and not while somebody else changes the LEDs of the eyes."""
+
+    def __init__(self, simulation: Any) -> None:
+        self._simulation = simulation
+        self._chance = random.Random(simulation.scene.seed)
+        self._next: float | None = None
+        self._devices = simulation.led_layout.devices_of(EYES)
+        simulation.after_tick.append(self._tick)
+
+    def switch(self, on: bool) -> None:
+        self._next = self._simulation.time + self._chance.uniform(*PAUSES) if on else None
+
+    def _tick(self, now: Any) -> None:
+        if self._next is None or now.time < self._next:
+            return
+        self._next = now.time + self._chance.uniform(*PAUSES)
+        robot = self._simulation.robot
+        if robot.leds.busy(self._devices):
+            return
+        shown = {i: robot.leds.values[i] for i in self._devices}
+        dark = dict.fromkeys(self._devices, 0.0)
+        times = (CLOSE, CLOSE + CLOSED, CLOSE + CLOSED + OPEN)
+        frames = [LedKeyframe(time, values) for time, values in zip(times, (dark, dark, shown))]
+        robot.leds.animate("blink", frames, robot.time)
+
+
+class ALAutonomousMoves:
+    """ALAutonomousMoves as the simulated robot offers it."""
+
+    def __init__(self, background: BackgroundMovement, listening: ListeningMovement, runner: SimulationRunner) -> None:
+        self._background = background
+        self._listening = listening
+        self._runner = runner
+
+    def getBackgroundStrategy(self) -> str:
+        return self._background.strategy
+
+    def setBackgroundStrategy(self, strategy: str) -> Task:
+        if strategy not in STRATEGIES:
+            raise BadValue("strategy", strategy, " or ".join(STRATEGIES))
+
+        def change() -> None:
+            self._background.strategy = strategy
+            self._background.update()
+
+        return self._runner.execute(change, "setBackgroundStrategy")
+
+    def getExpressiveListeningEnabled(self) -> bool:
+        return self._listening.enabled
+
+    def setExpressiveListeningEnabled(self, enable: bool) -> None:
+        self._listening.enabled = bool(enable)
+
+    def startSmallDisplacements(self) -> Task:
+        """Since NAOqi 2.0 this is the breath."""
+        return self._runner.execute(lambda: self._background.switch(True), "startSmallDisplacements")
+
+    def stopSmallDisplacements(self) -> Task:
+        return self._runner.execute(lambda: self._background.switch(False), "stopSmallDisplacements")

@@ -23,20 +23,14 @@ CRITICAL = 2
 
 
 class Safeguards:
-    """Watches over a life.
-
-    Attributes:
-        enabled: Which safeguards are on, by name.
+    """Part of ALAutonomousLife: watches over a life.
 
     Args:
-        life: Whose it is.
-        runner: Runs commands in the simulation thread.
-        memory: Where events come from.
         rest: Has the robot rest; its task may end with a further task.
     """
 
     def __init__(self, life: Life, runner: SimulationRunner, memory: MemoryStore, rest: Callable[[], Task]) -> None:
-        self.enabled = dict.fromkeys(SAFEGUARDS, True)
+        self._enabled = dict.fromkeys(SAFEGUARDS, True)
         self._life = life
         self._runner = runner
         self._rest = rest
@@ -46,14 +40,15 @@ class Safeguards:
         for name, event in DIAGNOSED.items():
             memory.listen(event, lambda value, what=name: self._do(lambda: self._diagnosed(what, value)))
 
-    def check(self, name: str) -> str:
-        """The name of a safeguard.
+    def isSafeguardEnabled(self, name: str) -> bool:
+        return self._enabled[self._known(name)]
 
-        Raises:
-            UnknownName: There is none of this name.
-        """
-        if name not in self.enabled:
-            raise UnknownName("safeguard", name, self.enabled)
+    def setSafeguardEnabled(self, name: str, enabled: bool) -> None:
+        self._enabled[self._known(name)] = bool(enabled)
+
+    def _known(self, name: str) -> str:
+        if name not in self._enabled:
+            raise UnknownName("safeguard", name, self._enabled)
         return name
 
     def _do(self, command: Callable[[], Any]) -> None:
@@ -63,17 +58,17 @@ class Safeguards:
             pass
 
     def _fallen(self) -> None:
-        if self.enabled[FELL]:
+        if self._enabled[FELL]:
             self._life.alarm("the robot has fallen", self._life.stand_up)
 
     def _pushed(self) -> None:
         """Activities end; the robot lives on when it stands again."""
-        if self.enabled[PUSHED] and self._life.state in ALIVE:
+        if self._enabled[PUSHED] and self._life.state in ALIVE:
             self._life.alarm("the robot was pushed", self._life.stand_up)
 
     def _diagnosed(self, what: str, value: Any) -> None:
         critical = bool(value) and value[0] >= CRITICAL
-        if critical and self.enabled[what]:
+        if critical and self._enabled[what]:
             self._life.alarm(f"{what}: {', '.join(map(str, value[1]))}")
         elif not critical:
             self._life.all_clear()

@@ -50,9 +50,6 @@ class Stimuli:
         offset: Height of what the robot stands on over the floor that people stand on, m.
 
     Args:
-        runner: The simulation's thread.
-        memory: Where events come from.
-        calls: Calls the modules that see and hear.
         react: Called in the simulation thread with a stimulus and where it is, places in FRAME_ROBOT, the first first.
     """
 

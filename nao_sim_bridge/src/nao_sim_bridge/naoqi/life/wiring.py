@@ -10,20 +10,24 @@ from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.binding.module_calls import ModuleCalls
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.life import abilities as ability_names
-from nao_sim_bridge.naoqi.life import autonomous_life, autonomous_moves, awareness
-from nao_sim_bridge.naoqi.life.abilities import Abilities, Ability
+from nao_sim_bridge.naoqi.life import autonomous_life, awareness, movements
+from nao_sim_bridge.naoqi.life.abilities import Abilities
 from nao_sim_bridge.naoqi.life.autonomous_life import ALAutonomousLife
-from nao_sim_bridge.naoqi.life.autonomous_moves import ALAutonomousMoves
 from nao_sim_bridge.naoqi.life.awareness import Awareness
 from nao_sim_bridge.naoqi.life.basic_awareness import ALBasicAwareness
-from nao_sim_bridge.naoqi.life.blinking import Blinking
 from nao_sim_bridge.naoqi.life.launchpad import Launchpad
 from nao_sim_bridge.naoqi.life.life import Life
-from nao_sim_bridge.naoqi.life.movements import BackgroundMovement, ListeningMovement, SpeakingMovement
+from nao_sim_bridge.naoqi.life.movements import (
+    ALAutonomousMoves,
+    BackgroundMovement,
+    Blinking,
+    ListeningMovement,
+    SpeakingMovement,
+)
 from nao_sim_bridge.naoqi.life.safeguards import Safeguards
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.wake import Wake
-from nao_sim_bridge.naoqi.sound.speech_wiring import SpeechModules
+from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.tracker import tracking
 from nao_sim_bridge.naoqi.tracker.looking import Looking
@@ -34,18 +38,7 @@ STAND, STAND_SPEED = "Stand", 0.8
 
 
 class LifeModules:
-    """ALAutonomousLife, ALAutonomousMoves, ALBasicAwareness and ALTracker of one robot.
-
-    Args:
-        simulation: Whose robot it is.
-        runner: Its thread.
-        memory: Where events come from and go to.
-        broker: Finds the modules that see and hear.
-        speech: The robot's voice and gestures.
-        posture: Takes the robot to postures.
-        running: Starts and stops behaviours.
-        zone: What the robot's clock shows.
-    """
+    """ALAutonomousLife, ALAutonomousMoves, ALBasicAwareness and ALTracker of one robot."""
 
     def __init__(
         self,
@@ -66,18 +59,17 @@ class LifeModules:
         background = BackgroundMovement(simulation)
         listening = ListeningMovement(simulation, runner, memory, speech.animator)
         speaking = SpeakingMovement(speech.speaker, speech.animator, speech.library, simulation.scene.seed)
-        blinking = Blinking(simulation)
         self._life = Life(
             simulation,
             running,
             memory,
             Abilities(
                 {
-                    ability_names.BLINKING: Ability(blinking.start, blinking.stop),
-                    ability_names.BACKGROUND: Ability(background.start, background.stop),
-                    ability_names.AWARENESS: Ability(lambda: self._be_aware(True), lambda: self._be_aware(False)),
-                    ability_names.LISTENING: Ability(listening.start, listening.stop),
-                    ability_names.SPEAKING: Ability(speaking.start, speaking.stop),
+                    ability_names.BLINKING: Blinking(simulation).switch,
+                    ability_names.BACKGROUND: background.switch,
+                    ability_names.AWARENESS: self._be_aware,
+                    ability_names.LISTENING: listening.switch,
+                    ability_names.SPEAKING: speaking.switch,
                 }
             ),
             wake.wakeUp,
@@ -87,15 +79,18 @@ class LifeModules:
         safeguards = Safeguards(self._life, runner, memory, wake.rest)
         self._modules: dict[str, list[Any]] = {
             autonomous_life.NAME: [
-                ALAutonomousLife(self._life, safeguards, launchpad, running.installed, self._awareness.stimuli, runner)
+                ALAutonomousLife(self._life, running.installed, self._awareness.stimuli, runner),
+                self._life.record,
+                self._life.abilities,
+                launchpad,
+                safeguards,
             ],
-            autonomous_moves.NAME: [ALAutonomousMoves(background, listening, runner)],
+            movements.NAME: [ALAutonomousMoves(background, listening, runner)],
             awareness.NAME: [ALBasicAwareness(self._awareness, runner)],
             tracking.NAME: [ALTracker(self._tracking, runner), Looking(self._tracking, simulation, runner)],
         }
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
         return dict(self._modules)
 
     def close(self) -> None:

@@ -1,23 +1,23 @@
-"""ALAudioDevice of the simulated robot. Only NAOqi methods live here."""
+"""ALAudioDevice of the simulated robot."""
 
 from __future__ import annotations
 
 import threading
-from typing import Any, Callable
+from typing import Any, Callable, Mapping, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
+import numpy as np
+
+from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.sound.microphone_clients import MicrophoneClients
-from nao_sim_bridge.naoqi.sound.microphone_energy import MicrophoneEnergy
 from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, HIGH, LOW, MicrophoneFormat, microphone_format
 from nao_sim_bridge.naoqi.sound.output_buffers import RATES, OutputBuffers, samples_of
 from nao_sim_bridge.naoqi.sound.recorder import Recorder, RecordingOrder, kind_of
-from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
-from nao_sim_bridge.naoqi.sound.tones import side, sine
+from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles, side, sine
 
 OUTPUT_RATE, INPUT_SIZE = "outputSampleRate", "inputBufferSize"
 # Frames that clients get at once; the first is about a block.
@@ -27,16 +27,67 @@ INPUTS, OUTPUTS = ("microphones",), ("loudspeakers",)
 FRONT = 3
 
 
+def _energy_of(side: str) -> Callable[[MicrophoneEnergy], float]:
+    return lambda self: self._energies[side]
+
+
+class MicrophoneEnergy:
+    """Part of ALAudioDevice: root mean square of the newest block of 170 ms, 0 to 32768; 0 while it is not computed.
+
+    Args:
+        ears: `listen(name, callback, wants)` of the sound world.
+        sides: For left, right, front and rear: the channels of a block that are on that side.
+    """
+
+    def __init__(self, ears: Any, sides: Mapping[str, Sequence[int]]) -> None:
+        self._ears = ears
+        self._sides = sides
+        self._lock = threading.Lock()
+        self._enabled, self._closed = False, False
+        self._listener: Any = None
+        self._energies = dict.fromkeys(sides, 0.0)
+
+    getLeftMicEnergy, getRightMicEnergy = _energy_of("left"), _energy_of("right")
+    getFrontMicEnergy, getRearMicEnergy = _energy_of("front"), _energy_of("rear")
+
+    def enableEnergyComputation(self) -> None:
+        self._enable(True)
+
+    def disableEnergyComputation(self) -> None:
+        self._enable(False)
+
+    def set_closed(self, closed: bool) -> None:
+        """Whether the microphones are closed: then there is nothing to compute."""
+        with self._lock:
+            self._closed = closed
+            self._update()
+
+    def _enable(self, enabled: bool) -> None:
+        with self._lock:
+            self._enabled = enabled
+            self._update()
+
+    def _update(self) -> None:
+        wanted = self._enabled and not self._closed
+        if wanted and self._listener is None:
+            self._listener = self._ears.listen("microphone energy", self._on_block, wants="48k4")
+        elif not wanted and self._listener is not None:
+            self._listener.close()
+            self._listener = None
+            self._energies = dict.fromkeys(self._sides, 0.0)
+
+    def _on_block(self, block: Any) -> None:
+        squares = np.mean(block.samples.astype(np.float64) ** 2, axis=0)
+        self._energies = {
+            side: float(np.sqrt(np.mean(squares[list(channels)]))) for side, channels in self._sides.items()
+        }
+
+
 class ALAudioDevice:
     """ALAudioDevice as the simulated robot offers it.
 
     Args:
         simulation: Whose loudspeakers and microphones these are; touched in the simulation thread only.
-        runner: That thread.
-        sounds: Reads files of clients.
-        clients: Modules that hear the microphones.
-        energy: How loud it is.
-        recorder: Records to files.
     """
 
     def __init__(
@@ -57,6 +108,10 @@ class ALAudioDevice:
         self._buffers = OutputBuffers(simulation)
         self._input_size = INPUT_SIZES[0]
         self._input_closed = False
+
+    def parts(self) -> list[Any]:
+        """The objects that together have the methods of the module."""
+        return [self, self._energy]
 
     # --- loudspeakers ---------------------------------------------------------------------------------------------
 
@@ -109,7 +164,6 @@ class ALAudioDevice:
         return _in_thread(lambda: self._clients.unsubscribe(module), "unsubscribe")
 
     def client_gone(self, module: str) -> None:
-        """A module of a client has left."""
         self._clients.gone(module)
 
     def openAudioInputs(self) -> Task:
@@ -120,24 +174,6 @@ class ALAudioDevice:
 
     def isInputClosed(self) -> bool:
         return self._input_closed
-
-    def enableEnergyComputation(self) -> None:
-        self._energy.enable(True)
-
-    def disableEnergyComputation(self) -> None:
-        self._energy.enable(False)
-
-    def getLeftMicEnergy(self) -> float:
-        return self._energy.of("left")
-
-    def getRightMicEnergy(self) -> float:
-        return self._energy.of("right")
-
-    def getFrontMicEnergy(self) -> float:
-        return self._energy.of("front")
-
-    def getRearMicEnergy(self) -> float:
-        return self._energy.of("rear")
 
     def setFileAsInput(self, name: str) -> Task:
         sound = self._sounds.read(name) if name else None
@@ -157,12 +193,12 @@ class ALAudioDevice:
 
     def setParameter(self, name: str, value: int) -> Task | None:
         if name == INPUT_SIZE:
-            self._input_size = _one_of(value, name, INPUT_SIZES)
+            self._input_size = one_of(value, name, INPUT_SIZES)
             self._clients.set_at_once(self._input_size // INPUT_SIZES[0])
             return None
         if name != OUTPUT_RATE:
             raise UnknownName("parameter", name, (OUTPUT_RATE, INPUT_SIZE))
-        rate = _one_of(value, name, RATES)
+        rate = one_of(value, name, RATES)
         return self._do(lambda: self._buffers.set_rate(rate), "setParameter")
 
     def getParameter(self, name: str) -> int:
@@ -211,7 +247,6 @@ class ALAudioDevice:
 
 
 def _in_thread(action: Callable[[], Any], name: str) -> Task:
-    """Do something in a thread of its own; the task ends with it."""
     task = Task(name, 0)
 
     def run() -> None:
@@ -224,12 +259,6 @@ def _in_thread(action: Callable[[], Any], name: str) -> Task:
 
     threading.Thread(target=run, name=name, daemon=True).start()
     return task
-
-
-def _one_of(value: int, name: str, allowed: tuple[int, ...]) -> int:
-    if value not in allowed:
-        raise BadValue(name, value, "one of " + ", ".join(map(str, allowed)))
-    return value
 
 
 def _device(index: int, devices: tuple[str, ...]) -> str:

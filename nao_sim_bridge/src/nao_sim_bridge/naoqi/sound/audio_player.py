@@ -1,4 +1,4 @@
-"""ALAudioPlayer of the simulated robot. Only NAOqi methods live here."""
+"""ALAudioPlayer of the simulated robot; `SoundSets` has its methods about sound sets."""
 
 from __future__ import annotations
 
@@ -13,9 +13,7 @@ from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.sound.player import LoadedSound, Player
-from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
-from nao_sim_bridge.naoqi.sound.sound_sets import SoundSets
-from nao_sim_bridge.naoqi.sound.tones import side, sine
+from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles, SoundSets, side, sine
 from nao_sim_bridge.naoqi.sound.web_stream import WebStreams
 from nao_sim_bridge.sound.pitch import HIGHEST, LOWEST
 
@@ -30,10 +28,6 @@ class ALAudioPlayer:
 
     Args:
         simulation: Whose loudspeakers these are; touched in the simulation thread only.
-        runner: That thread.
-        sounds: Reads files of clients.
-        background: Where sounds are read and changed.
-        memory: Keeps when the last one was played.
         allow_private_streams: Whether streams may come from this computer and from private networks.
     """
 
@@ -59,6 +53,10 @@ class ALAudioPlayer:
             lambda: sounds.reader.sizes.loaded_sounds.bytes,
             self._sets.kept,
         )
+
+    def parts(self) -> list[Any]:
+        """The objects that together have the methods of the module."""
+        return [self, self._sets]
 
     # --- files ----------------------------------------------------------------------------------------------------
 
@@ -154,32 +152,6 @@ class ALAudioPlayer:
 
     def disablePitch(self, sound_id: int) -> Task:
         return self._player.change_pitch(sound_id, 1.0)
-
-    # --- sound sets -----------------------------------------------------------------------------------------------
-
-    def getInstalledSoundSetsList(self) -> list[str]:
-        return self._sets.installed()
-
-    def getLoadedSoundSetsList(self) -> list[str]:
-        return self._sets.loaded()
-
-    def getSoundSetFileNames(self, name: str) -> list[str]:
-        return sorted(self._sets.files(name))
-
-    def isSoundSetInstalled(self, name: str) -> bool:
-        return name in self._sets.installed()
-
-    def isSoundSetFileInstalled(self, name: str, file: str) -> bool:
-        return self._sets.has(name, file)
-
-    def isSoundSetLoaded(self, name: str) -> bool:
-        return name in self._sets.loaded()
-
-    def loadSoundSet(self, name: str) -> None:
-        self._sets.load(name)
-
-    def unloadSoundSet(self, name: str) -> None:
-        self._sets.unload(name)
 
     def playSoundSetFile(self, *args: Any) -> Task:
         names = [argument for argument in args if isinstance(argument, str)]

@@ -93,7 +93,6 @@ class MicrophoneClients:
         client.end()
 
     def gone(self, module: str) -> None:
-        """A module has left."""
         with self._lock:
             client = self._clients.pop(module, None)
             self._formats.pop(module, None)
@@ -102,14 +101,8 @@ class MicrophoneClients:
             client.end()
 
     def names(self) -> list[str]:
-        """Subscribed modules."""
         with self._lock:
             return list(self._clients)
-
-    def lost(self, module: str) -> int:
-        """How many blocks a subscribed module was too slow for."""
-        with self._lock:
-            return self._clients[module].lost
 
     def behind(self) -> bool:
         """Whether a module has more to do than it should; one that hangs does not count."""
@@ -135,7 +128,6 @@ class MicrophoneClients:
                 client.at_once = blocks
 
     def close(self) -> None:
-        """Call nobody any more."""
         with self._lock:
             clients, self._clients = list(self._clients.values()), {}
         for client in clients:
@@ -179,7 +171,6 @@ class _Client:
 
     @property
     def alive(self) -> bool:
-        """Whether it is still called."""
         return not self._ended
 
     @property
@@ -190,7 +181,6 @@ class _Client:
         return len(self._blocks) > HELD_UP and not hangs
 
     def listen(self, wanted: MicrophoneFormat) -> None:
-        """Begin to hear in this format."""
         begun = self.silence()
         listener = self._ears.listen(
             self.module, lambda block: self._hear(wanted, begun, block), wants=wanted.wants, channel=wanted.channel_name
@@ -261,19 +251,19 @@ class _Client:
             answer(call, self._news, lambda: not self._ended)
             self._failing = False
         except NoAnswer as error:
-            if not self._ended:
-                log.warning("%s: %s, so it is unsubscribed from the microphones", self.module, error)
-            self.end()
-            self._gone(self)
+            self._leave(f"{self.module}: {error}")
         except (RuntimeError, AttributeError) as error:
             if not self._is_there():
-                if not self._ended:
-                    log.warning("%s is gone, so it is unsubscribed from the microphones", self.module)
-                self.end()
-                self._gone(self)
+                self._leave(f"{self.module} is gone")
             elif not self._failing:
                 self._failing = True
                 log.warning("%s.%s failed: %s", self.module, METHOD, error)
+
+    def _leave(self, reason: str) -> None:
+        if not self._ended:
+            log.warning("%s, so it is unsubscribed from the microphones", reason)
+        self.end()
+        self._gone(self)
 
     def _is_there(self) -> bool:
         try:
@@ -284,7 +274,6 @@ class _Client:
 
 
 def _joined(blocks: Sequence[Any]) -> Any:
-    """Blocks that follow each other as one."""
     if len(blocks) == 1:
         return blocks[0]
     return replace(blocks[0], samples=np.concatenate([block.samples for block in blocks]))

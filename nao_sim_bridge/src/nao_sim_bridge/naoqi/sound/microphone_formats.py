@@ -31,7 +31,6 @@ class MicrophoneFormat:
 
     @property
     def wants(self) -> str:
-        """Name of the format for the ears."""
         return "48k4" if self.channel == ALL else "16k1"
 
     @property

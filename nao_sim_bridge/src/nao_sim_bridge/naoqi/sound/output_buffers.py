@@ -24,11 +24,7 @@ LAST_CALL = 0.05
 
 
 class OutputBuffers:
-    """The queue of pieces; simulation thread only, but for `checked`.
-
-    Args:
-        simulation: Whose loudspeakers these are.
-    """
+    """The queue of pieces; simulation thread only, but for `checked`."""
 
     def __init__(self, simulation: Any) -> None:
         self._simulation = simulation

@@ -47,7 +47,6 @@ class LoadedSound:
 
     @property
     def size(self) -> int:
-        """Bytes that it takes."""
         return self.sound.samples.nbytes + (self.altered.samples.nbytes if self.altered else 0)
 
     @property
@@ -78,8 +77,6 @@ class Player:
 
     Args:
         simulation: Whose loudspeakers these are; touched in the simulation thread only.
-        runner: That thread.
-        background: Where sounds are read and changed.
         on_end: Told the simulated times of first and last sample, s, when a sound has been played.
         largest: Answers how many bytes all sounds may take together.
         elsewhere: Names and bytes of other sounds that count with them.
@@ -139,7 +136,6 @@ class Player:
         )
 
     def loaded(self) -> list[LoadedSound]:
-        """All sounds that have a number, in its order."""
         with self._lock:
             return list(self._sounds.values())
 
@@ -161,11 +157,9 @@ class Player:
         return self._volume
 
     def in_simulation(self, action: Callable[[], Any], name: str) -> Task:
-        """Do something in the simulation thread."""
         return self._runner.execute(action, name)
 
     def load_when_there(self, fetch: Callable[[], Sound], name: str) -> Task:
-        """Give a number to a sound that takes its time to get; the task ends with the number."""
         return self._background.in_turn(lambda _: self.load(name, fetch()).number, "loadFile")
 
     def play_when_there(
@@ -176,7 +170,6 @@ class Player:
         Args:
             fetch: Gets the sound; it may ask its argument whether anybody still wants it.
             play: Begins to play it, in the simulation thread.
-            name: Name of the task.
             may_take_long: It may take so long that simulated time should not wait for it.
 
         Returns:
@@ -224,8 +217,9 @@ class Player:
         return task
 
     def pause(self, loaded: LoadedSound) -> None:
-        """Let a sound wait where it is."""
-        self._running(loaded).playing.pause()
+        if loaded.run is None:
+            raise NaoqiError(f"the sound {loaded.number} ({loaded.name}) does not play")
+        loaded.run.playing.pause()
 
     def position(self, loaded: LoadedSound) -> float:
         """Where a sound is, s; where it will begin when it does not play."""
@@ -253,12 +247,10 @@ class Player:
             self._adjust(loaded)
 
     def stop(self, loaded: LoadedSound) -> None:
-        """Silence a sound."""
         if loaded.run is not None:
             loaded.run.task.kill()
 
     def stop_all(self) -> None:
-        """Silence all that plays."""
         for loaded in self.loaded():
             self.stop(loaded)
 
@@ -269,7 +261,6 @@ class Player:
             self._sounds.pop(loaded.number, None)
 
     def unload_all(self) -> None:
-        """Forget all sounds."""
         for loaded in self.loaded():
             self.unload(loaded)
 
@@ -319,11 +310,6 @@ class Player:
         if loaded.run is not None:
             loaded.run.playing.set_volume(loaded.volume * self._volume)
             loaded.run.playing.set_pan(max(-1.0, min(1.0, loaded.pan + self._panorama)))
-
-    def _running(self, loaded: LoadedSound) -> Run:
-        if loaded.run is None:
-            raise NaoqiError(f"the sound {loaded.number} ({loaded.name}) does not play")
-        return loaded.run
 
 
 def _megabytes(size: int) -> str:

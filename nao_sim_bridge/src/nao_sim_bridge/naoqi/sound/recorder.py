@@ -15,7 +15,7 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, MicrophoneFormat
+from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, MicrophoneFormat, flags_to_channel, microphone_format
 from nao_sim_bridge.sound.wav_file import OggFile, WavFile
 
 log = logging.getLogger("nao_sim.recorder")
@@ -59,7 +59,6 @@ class FilesInUse:
             self._paths.add(path)
 
     def give_back(self, path: Path) -> None:
-        """It is complete."""
         with self._lock:
             self._paths.discard(path)
 
@@ -68,9 +67,6 @@ class Recorder:
     """One recording at a time.
 
     Args:
-        simulation: Whose microphones these are.
-        runner: Its thread.
-        files: Where clients may have files written to.
         in_use: Shared by all recorders.
     """
 
@@ -148,7 +144,6 @@ class _Recording:
 
     Attributes:
         name: Name of the file as it was given.
-        path: The file.
         until: Simulated time at which it ends, s; known once it is stopped.
     """
 
@@ -162,7 +157,6 @@ class _Recording:
         self._failure: Exception | None = None
 
     def begin(self, ears: Any) -> None:
-        """Begin to hear."""
         wants, channel = self._heard.wants, self._heard.channel_name
         self._listener = ears.listen(f"recording {self.name}", self._on_block, wants, channel, exact=True)
 
@@ -203,3 +197,21 @@ def kind_of(name: str) -> str:
     if ending not in KINDS:
         raise BadValue("filename", name, "a name that ends in .wav or .ogg")
     return ending
+
+
+class ALAudioRecorder:
+    """ALAudioRecorder as the simulated robot offers it."""
+
+    def __init__(self, recorder: Recorder) -> None:
+        self._recorder = recorder
+
+    def startMicrophonesRecording(self, filename: str, kind: str, rate: int, channels: Any) -> Task:
+        if kind not in KINDS:
+            raise BadValue("type", kind, " or ".join(KINDS))
+        if kind_of(filename) != kind:
+            raise BadValue("filename", filename, f"a name that ends in .{kind}, as the type says")
+        heard = microphone_format(rate, flags_to_channel(channels), 0)
+        return self._recorder.start(RecordingOrder(filename, kind, heard))
+
+    def stopMicrophonesRecording(self) -> Task:
+        return self._recorder.stop()

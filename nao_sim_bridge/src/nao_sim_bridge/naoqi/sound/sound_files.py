@@ -1,27 +1,29 @@
-"""Sound files that clients name: found, checked and read."""
+"""Sounds for clients: files that they name, sound sets (folders of short sounds), and tones."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Callable, Iterable, Mapping
 
+import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.samples import RATE, Sound
+from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.sound.files import SoundFileError
 from nao_sim_bridge.sound.reader import SoundReader
 
+ENDINGS = (".wav", ".ogg", ".flac", ".mp3")
+# Of a tone: Hz and s.
+HIGHEST, LONGEST = 20000.0, 600.0
+# It swells and fades in this time, s: cut off hard it would click.
+EDGE = 0.002
+
 
 class SoundFiles:
-    """Reads sounds for clients.
-
-    Attributes:
-        files: Where they may have files read from.
-        reader: Decodes them.
-
-    Args:
-        files: See above.
-        reader: See above.
-    """
+    """Reads sounds for clients."""
 
     def __init__(self, files: ClientFiles, reader: SoundReader) -> None:
         self.files = files
@@ -40,7 +42,6 @@ class SoundFiles:
         """The sound in a file, at the rate of the simulated world.
 
         Args:
-            path: The file.
             name: What to call it in errors.
 
         Raises:
@@ -50,3 +51,149 @@ class SoundFiles:
             return self.reader.read(path, self.reader.sizes.sound.client_s).at_rate(RATE)
         except SoundFileError as error:
             raise NaoqiError(str(error).replace(f"sound file {path}:", repr(name))) from error
+
+
+class SoundSets:
+    """Part of ALAudioPlayer: installed and loaded sound sets.
+
+    Args:
+        check_room: Called with a name and bytes before a sound of that name is kept; raises an error if they are too
+            many.
+        folders: Folders whose subfolders are the sets, the first that has one of a name counts.
+    """
+
+    def __init__(self, sounds: SoundFiles, check_room: Callable[[str, int], None], *folders: Path) -> None:
+        self._sounds = sounds
+        self._check_room = check_room
+        self._folders = folders
+        self._loaded: dict[str, Mapping[str, Sound]] = {}
+
+    def getInstalledSoundSetsList(self) -> list[str]:
+        found = {path.name for folder in self._folders if folder.is_dir() for path in folder.iterdir() if path.is_dir()}
+        return sorted(found)
+
+    def isSoundSetInstalled(self, name: str) -> bool:
+        return name in self.getInstalledSoundSetsList()
+
+    def getLoadedSoundSetsList(self) -> list[str]:
+        """In the order of loading."""
+        return list(self._loaded)
+
+    def isSoundSetLoaded(self, name: str) -> bool:
+        return name in self._loaded
+
+    def getSoundSetFileNames(self, name: str) -> list[str]:
+        return sorted(self._files(name))
+
+    def isSoundSetFileInstalled(self, name: str, file: str) -> bool:
+        return self.isSoundSetInstalled(name) and _without_ending(file) in self._files(name)
+
+    def _files(self, name: str) -> dict[str, Path]:
+        """Sounds of a set: name without ending to file.
+
+        Raises:
+            NaoqiError: There is no such set.
+        """
+        installed = self.getInstalledSoundSetsList()
+        if name not in installed:
+            raise NaoqiError(f"no sound set {name!r}; installed are {_listed(installed)}")
+        folder = next(path for path in (folder / name for folder in self._folders) if path.is_dir())
+        return {path.stem: path for path in sorted(folder.iterdir()) if path.suffix.lower() in ENDINGS}
+
+    def loadSoundSet(self, name: str) -> None:
+        """Read all sounds of a set into memory.
+
+        Raises:
+            NaoqiError: There is no such set, one of its files cannot be read, or there is no room for it.
+        """
+        if name in self._loaded:
+            return
+        sounds: dict[str, Sound] = {}
+        for key, path in self._files(name).items():
+            sounds[key] = self._sounds.read_path(path, path.name)
+            self._check_room(f"sound set {name}", sum(sound.samples.nbytes for sound in sounds.values()))
+        self._loaded[name] = sounds
+
+    def kept(self) -> list[tuple[str, int]]:
+        """Names of the loaded sets and their bytes."""
+        loaded = dict(self._loaded)
+        return [
+            (f"sound set {name}", sum(sound.samples.nbytes for sound in sounds.values()))
+            for name, sounds in loaded.items()
+        ]
+
+    def unloadSoundSet(self, name: str) -> None:
+        """Forget a set.
+
+        Raises:
+            NaoqiError: It is not loaded.
+        """
+        if name not in self._loaded:
+            raise NaoqiError(f"sound set {name!r} is not loaded; loaded are {_listed(self._loaded)}")
+        del self._loaded[name]
+
+    def sound(self, file: str, name: str | None = None) -> Sound:
+        """A sound by its name, with or without ending.
+
+        Args:
+            name: Its set, which is loaded when it is not yet; without one, all loaded sets are searched.
+
+        Raises:
+            NaoqiError: There is no such set or sound, or no set is loaded.
+        """
+        if name is not None:
+            self.loadSoundSet(name)
+        sets = self._loaded if name is None else {name: self._loaded[name]}
+        if not sets:
+            raise NaoqiError(f"no sound set is loaded; installed are {_listed(self.getInstalledSoundSetsList())}")
+        key = _without_ending(file)
+        for sounds in sets.values():
+            if key in sounds:
+                return sounds[key]
+        known = [f"{of_set}/{sound}" for of_set, sounds in sets.items() for sound in sounds]
+        raise NaoqiError(f"no sound {file!r}; there are {_listed(known)}")
+
+
+def _without_ending(file: str) -> str:
+    return Path(file).stem if Path(file).suffix.lower() in ENDINGS else file
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(names) or "none"
+
+
+def sine(frequency: float, gain: float, duration: float) -> Sound:
+    """A tone of one channel.
+
+    Args:
+        frequency: Hz, 1 to 20000.
+        gain: Amplitude in percent of full scale, 0 to 100.
+        duration: s, above 0 to 600.
+
+    Raises:
+        BadValue: An argument outside of this.
+    """
+    pitch = number(frequency, "frequence", 1.0, HIGHEST)
+    amplitude = number(gain, "gain", 0.0, 100.0) / 100.0
+    frames = round(number(duration, "duration", 0.0, LONGEST) * RATE)
+    if frames == 0:
+        raise BadValue("duration", duration, f"above 0 to {LONGEST:g}")
+    # Cycles are reduced to their fraction in double precision: long tones keep their phase.
+    cycles = (np.arange(frames) * (pitch / RATE)) % 1.0
+    samples = (amplitude * np.sin(2.0 * np.pi * cycles)).astype(np.float32)
+    edge = min(round(EDGE * RATE), frames // 2)
+    ramp = np.sin(0.5 * np.pi * np.arange(edge) / max(edge, 1)) ** 2
+    samples[:edge] *= ramp
+    samples[frames - edge :] *= ramp[::-1]
+    return Sound(samples[:, np.newaxis], RATE)
+
+
+def side(pan: int) -> float:
+    """Panorama of playSine: -1 left, 0 both, 1 right.
+
+    Raises:
+        BadValue: Something else.
+    """
+    if pan not in (-1, 0, 1):
+        raise BadValue("pan", pan, "-1 (left), 0 (both) or 1 (right)")
+    return float(pan)

@@ -52,12 +52,10 @@ def is_public(address: str) -> bool:
 
 
 def anything(_: str) -> bool:
-    """Whether an address is allowed where all are."""
     return True
 
 
 def resolved(host: str, port: int) -> list[str]:
-    """The numeric addresses of a host."""
     return [str(entry[4][0]) for entry in socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)]
 
 
@@ -136,7 +134,6 @@ def _copy(answer: http.client.HTTPResponse, file: BinaryIO, sizes: StreamSizes) 
 
 
 def main(arguments: Iterable[str]) -> int:
-    """Serve one request."""
     descriptor, memory = arguments
     pipe = pipe_to_parent(descriptor)
     limit_memory(int(memory))

@@ -24,11 +24,9 @@ class WebStreams:
     """Fetches sounds for the clients of one robot.
 
     Attributes:
-        sizes: What is allowed.
         count: How many are being fetched.
 
     Args:
-        sounds: Reads what was fetched, and files.
         allow_private: Whether addresses of this computer and of private networks may be fetched from.
     """
 

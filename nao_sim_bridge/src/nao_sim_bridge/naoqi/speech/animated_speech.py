@@ -10,6 +10,7 @@ from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import one_of
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
@@ -28,15 +29,6 @@ class ALAnimatedSpeech:
 
     Args:
         simulation: Whose robot it is; touched in the simulation thread only.
-        runner: That thread.
-        memory: Where the end of a text is told.
-        speaker: The robot's mouth.
-        studio: Who makes sound of text.
-        settings: The voice that clients have chosen.
-        files: Where files of clients are.
-        call: For texts that call methods.
-        animator: Moves arms and head.
-        library: The animations that it knows.
     """
 
     def __init__(
@@ -67,14 +59,13 @@ class ALAnimatedSpeech:
         memory.declare_event(END, "ALAnimatedSpeech")
 
     def say(self, text: str, configuration: Any = None) -> Task:
-        return self.say_with(text, self._mode if configuration is None else self._configured(configuration), self._call)
+        return self._say(text, self._mode if configuration is None else self._configured(configuration), self._call)
 
     def say_without_calls(self, text: str) -> Task:
         """What a behaviour says: instructions that call methods are left out."""
-        return self.say_with(text, self._mode, None)
+        return self._say(text, self._mode, None)
 
-    def say_with(self, text: str, mode: str, call: Caller | None) -> Task:
-        """See `AnimatedTalk`."""
+    def _say(self, text: str, mode: str, call: Caller | None) -> Task:
         talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, call)
 
         def start() -> Task:
@@ -92,11 +83,10 @@ class ALAnimatedSpeech:
     def getBodyLanguageModeToStr(self) -> str:
         return self._mode
 
-    def setBodyLanguageMode(self, mode: int) -> None:
+    def setBodyLanguageMode(self, mode: int | str) -> None:
         self._mode = _mode(mode)
 
-    def setBodyLanguageModeFromStr(self, mode: str) -> None:
-        self._mode = _mode(mode)
+    setBodyLanguageModeFromStr = setBodyLanguageMode
 
     def isBodyLanguageEnabled(self) -> bool:
         return self._mode != DISABLED
@@ -104,11 +94,7 @@ class ALAnimatedSpeech:
     def setBodyLanguageEnabled(self, enable: bool) -> None:
         self._mode = CONTEXTUAL if enable else DISABLED
 
-    def isBodyTalkEnabled(self) -> bool:
-        return self.isBodyLanguageEnabled()
-
-    def setBodyTalkEnabled(self, enable: bool) -> None:
-        self.setBodyLanguageEnabled(enable)
+    isBodyTalkEnabled, setBodyTalkEnabled = isBodyLanguageEnabled, setBodyLanguageEnabled
 
     # --- animations -----------------------------------------------------------------------------------------------
 
@@ -119,8 +105,7 @@ class ALAnimatedSpeech:
     def declareTagForAnimations(self, tags: Any) -> None:
         for tag, names in _lists(tags, "tagsToAnimations").items():
             for name in names:
-                if name not in self._library.animations:
-                    raise BadValue("animation", name, f"one of {', '.join(self._library.animations)}")
+                one_of(name, "animation", self._library.animations)
             self._library.add_tag(tag, names)
 
     def addTagsToWords(self, tags: Any) -> None:
@@ -148,7 +133,6 @@ def _mode(value: Any) -> str:
 
 
 def _lists(value: Any, field: str) -> dict[str, list[str]]:
-    """A map of texts to lists of texts."""
     if not isinstance(value, Mapping):
         raise BadValue(field, value, "a map of tags to lists")
     for tag, names in value.items():

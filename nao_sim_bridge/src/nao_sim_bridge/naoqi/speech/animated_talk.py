@@ -28,11 +28,7 @@ class AnimatedTalk:
 
     Args:
         text: With instructions and tags.
-        style: How it is spoken.
         mode: Body language where no instruction says otherwise.
-        studio: Reads what is spoken.
-        library: The animations.
-        chance: Chooses gestures.
         call: For the instructions that call methods; None: they are left out.
 
     Raises:
@@ -100,7 +96,6 @@ class AnimatedTalk:
             self._plan(event.value)
 
     def _plan(self, clip: Clip) -> None:
-        """Gestures of a sentence that begins now."""
         words = [(time, mark.text) for time, mark in clip.marks if isinstance(mark, SpokenWord)]
         # From the first instruction on there are the gestures that it asks for.
         until = min((time for time, mark in clip.marks if isinstance(mark, Cue)), default=clip.sound.duration)
@@ -174,7 +169,6 @@ class AnimatedTalk:
 
 
 def _after(tasks: Sequence[Task], then: Callable[[], Any]) -> None:
-    """Call `then()` when all tasks have ended."""
     left = list(tasks)
     if not left:
         then()

@@ -27,7 +27,6 @@ class ListeningExpression:
     """Bips and lights. Any thread.
 
     Attributes:
-        audio: Whether it bips.
         visual: Whether it shows lights.
         mode: Which lights, a key of `MODES`.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from typing import Any, Callable, Mapping
+from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.samples import frame_at
 from nao_sim_bridge.core.simulation import Simulation
@@ -40,9 +40,7 @@ class RecognitionEngine(Switch):
     Methods may be called from any thread; events are raised in the recogniser's.
 
     Args:
-        simulation: Whose ears.
         execute: Has something done in the simulation thread: what, and what to call it.
-        memory: Where events go.
         on_listen: Called with True when listening begins and with False when it ends; it returns how long, in s, what
             is heard next should be left out (the bip that it makes).
         accepts: Tells whether a hypothesis is good enough for its grammar.
@@ -70,11 +68,9 @@ class RecognitionEngine(Switch):
         self._speech = False
         self._recogniser = Recogniser(self._on_event, on_progress=lambda: simulation.wake(), spare=spare)
         simulation.holds.append(self.behind)
-        for key in KEYS:
-            memory.insert(key, NO_WORD)
+        memory.insert(LAST_WORD, NO_WORD)
         memory.insert(TIMES, [NO_WORD, []])
-        memory.put_quietly(WORD, NO_WORD)
-        memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+        self._put_no_word()
         memory.put_quietly(SPEECH, False)
         memory.put_quietly(RUNNING, False)
         memory.put_quietly(ACTIVE, False)
@@ -104,25 +100,18 @@ class RecognitionEngine(Switch):
         if self.runs:
             raise NaoqiError(f"{what} cannot be changed while the engine runs; call pause(True) first")
 
-    def listen_for(self, listening: Listening) -> None:
+    def listen_for(self, grammars: Sequence[Any], parameters: Mapping[str, float]) -> None:
         """What to listen for from now on; returns when it is prepared.
+
+        Args:
+            parameters: "NbHypotheses" and "Sensitivity".
 
         Raises:
             RecogniserError: It cannot be listened for; the text says why, and what was before stays.
         """
-        self._recogniser.listen(listening)
-
-    def catch_up(self) -> None:
-        """Wait until everything that the ears delivered has been worked through."""
-        self._recogniser.catch_up()
-
-    @property
-    def pid(self) -> int | None:
-        """Id of the recogniser's process; None while there is none."""
-        return self._recogniser.pid
+        self._recogniser.listen(Listening(tuple(grammars), int(parameters["NbHypotheses"]), parameters["Sensitivity"]))
 
     def close(self) -> None:
-        """End the process."""
         with self._lock:
             listener, self._listener = self._listener, None
         if listener is not None:
@@ -136,8 +125,7 @@ class RecognitionEngine(Switch):
         if runs == self.runs:
             return
         if runs:
-            self._memory.put_quietly(WORD, NO_WORD)
-            self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+            self._put_no_word()
             self._open()
         else:
             with self._status_lock:
@@ -148,6 +136,10 @@ class RecognitionEngine(Switch):
             self._on_listen(False)
             self._memory.raise_event(RUNNING, False)
             self._tell_hearing(False)
+
+    def _put_no_word(self) -> None:
+        self._memory.put_quietly(WORD, NO_WORD)
+        self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
 
     def _open(self) -> None:
         """Listen from now on, or from when the own bip is over; what was heard before tells what the room is like."""
@@ -193,8 +185,7 @@ class RecognitionEngine(Switch):
             return
         found = [h for h in event.hypotheses if self._accepts(h)]
         if not found:
-            self._memory.put_quietly(WORD, NO_WORD)
-            self._memory.put_quietly(WORD_AND_GRAMMAR, NO_WORD_AND_GRAMMAR)
+            self._put_no_word()
             return
         words: list[Any] = [item for h in found for item in (h.phrase, h.confidence)]
         with_grammar: list[Any] = [item for h in found for item in (h.phrase, h.confidence, h.grammar)]
@@ -203,8 +194,3 @@ class RecognitionEngine(Switch):
         self._memory.insert(TIMES, [words, [[h.onset, h.end] for h in found]])
         self._memory.raise_event(WORD, words)
         self._memory.raise_event(WORD_AND_GRAMMAR, with_grammar)
-
-
-def listening_of(grammars: Any, parameters: Mapping[str, float]) -> Listening:
-    """What to listen for, from grammars and the values of the engine's parameters."""
-    return Listening(tuple(grammars), int(parameters["NbHypotheses"]), parameters["Sensitivity"])

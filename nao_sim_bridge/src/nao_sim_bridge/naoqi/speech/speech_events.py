@@ -30,7 +30,6 @@ class SpeechEvents:
         enabled: Whether it raises any.
 
     Args:
-        memory: Where.
         clock: Simulated time, s.
     """
 
@@ -45,7 +44,6 @@ class SpeechEvents:
             memory.declare_event(name, MODULE)
 
     def __call__(self, event: SpeechEvent) -> None:
-        """Raise what belongs to a step of speech."""
         begins, ends = self._follow(event)
         self._note_span(event, begins, ends)
         if not self.enabled:

@@ -1,4 +1,4 @@
-"""ALSpeechRecognition of the simulated robot. Only NAOqi methods live in the service."""
+"""ALSpeechRecognition of the simulated robot."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.speech.grammar_files import compile_grammar, load_grammar, read_vocabulary
 from nao_sim_bridge.naoqi.speech.listening_expression import MODES, ListeningExpression
-from nao_sim_bridge.naoqi.speech.recognition_engine import EVENTS, KEYS, NAME, RecognitionEngine, listening_of
+from nao_sim_bridge.naoqi.speech.recognition_engine import EVENTS, KEYS, NAME, RecognitionEngine
 
 # Name of the grammar that setVocabulary fills, as on the robot.
 VOCABULARY = "modifiable_grammar"
@@ -30,21 +30,26 @@ PARAMETERS: Mapping[str, tuple[float, float, float]] = {"Sensitivity": (0.5, 0.0
 
 
 class ALSpeechRecognition:
-    """ALSpeechRecognition as the simulated robot offers it.
+    """ALSpeechRecognition as the simulated robot offers it. Only NAOqi methods are published.
 
     Args:
-        engine: Recognises.
-        expression: Shows that it listens.
-        contexts: Grammars beside the vocabulary.
-        files: Where grammars are read from and written to.
+        spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
     """
 
     def __init__(
-        self, engine: RecognitionEngine, expression: ListeningExpression, contexts: Contexts, files: ClientFiles
+        self,
+        simulation: Simulation,
+        runner: SimulationRunner,
+        memory: MemoryStore,
+        files: ClientFiles,
+        spare: SpareProcess | None = None,
     ) -> None:
-        self._engine = engine
-        self._expression = expression
-        self._contexts = contexts
+        self._contexts = Contexts()
+        self._expression = ListeningExpression(simulation, runner)
+        self._engine = engine = RecognitionEngine(
+            simulation, runner.execute, memory, self._expression.show, self._accepts, spare
+        )
+        self._extractor = Extractor(NAME, memory, engine.start, engine.stop, EVENTS, KEYS)
         self._files = files
         self._languages = load_recognition().languages
         self._language = self._languages[0]
@@ -52,6 +57,13 @@ class ALSpeechRecognition:
         self._vocabulary: Grammar | None = None
         self._vocabularies: list[Grammar | None] = []
         self._parameters = {name: value for name, (value, _, _) in PARAMETERS.items()}
+
+    def modules(self) -> dict[str, list[Any]]:
+        """The module by name, as `make_service` wants it."""
+        return {NAME: [self, self._extractor]}
+
+    def close(self) -> None:
+        self._engine.close()
 
     # --- vocabulary -----------------------------------------------------------------------------------------------
 
@@ -70,21 +82,17 @@ class ALSpeechRecognition:
         self._change("the vocabulary", change)
 
     def setWordListAsVocabulary(self, phrases: Sequence[str]) -> None:
-        """As `setVocabulary`, without word spotting."""
         self.setVocabulary(phrases, False)
 
     def loadVocabulary(self, name: str) -> None:
-        """Phrases of a file, one a line."""
         self.setVocabulary(read_vocabulary(self._files.to_read(name)), False)
 
     # --- engine ---------------------------------------------------------------------------------------------------
 
     def pause(self, paused: bool) -> None:
-        """Stop listening for a while, or go on; subscribers stay."""
         self._engine.pause(paused)
 
     def setParameter(self, name: str, value: Any) -> None:
-        """Change a parameter of the engine."""
         _, least, most = self._parameter(name)
         wanted = number(value, name, least, most)
 
@@ -94,35 +102,28 @@ class ALSpeechRecognition:
         self._change("", change)
 
     def getParameter(self, name: str) -> float:
-        """A parameter of the engine."""
         self._parameter(name)
         return float(self._parameters[name])
 
     def setLanguage(self, language: str) -> None:
-        """Language to listen for."""
         self._check_language(language)
         self._language = language
 
     def getLanguage(self) -> str:
-        """Language that is listened for."""
         return self._language
 
     def getAvailableLanguages(self) -> list[str]:
-        """Languages there are."""
         return list(self._languages)
 
     # --- expression -----------------------------------------------------------------------------------------------
 
     def setAudioExpression(self, on: bool) -> None:
-        """Bip when listening begins and ends, or be silent."""
         self._expression.audio = on
 
     def getAudioExpression(self) -> bool:
-        """Whether it bips."""
         return self._expression.audio
 
     def setVisualExpression(self, on: bool) -> None:
-        """Show with LEDs that it listens, from the next time on, or do not."""
         self._expression.visual = on
 
     def setVisualExpressionMode(self, mode: int) -> None:
@@ -139,21 +140,16 @@ class ALSpeechRecognition:
         compile_grammar(self._files.to_read(source), self._files.to_write(target), language)
 
     def addContext(self, name: str, context: str) -> None:
-        """Listen for what a compiled grammar has, too."""
         bnf = load_grammar(self._files.to_read(name))
         self._change("contexts", lambda: self._contexts.add(context, bnf))
 
     def removeContext(self, context: str) -> None:
-        """Forget a context."""
         self._change("contexts", lambda: self._contexts.remove(context))
 
     def removeAllContext(self) -> None:
-        """Forget all contexts."""
         self._change("contexts", self._contexts.clear)
 
     def pushContexts(self) -> None:
-        """Put contexts and vocabulary aside."""
-
         def push() -> None:
             most = load_sizes().vocabulary.put_aside
             if len(self._vocabularies) >= most:
@@ -165,8 +161,6 @@ class ALSpeechRecognition:
         self._change("contexts", push)
 
     def popContexts(self) -> None:
-        """Take contexts and vocabulary back that were put aside last."""
-
         def pop() -> None:
             self._contexts.pop()
             self._vocabulary = self._vocabularies.pop()
@@ -174,34 +168,27 @@ class ALSpeechRecognition:
         self._change("contexts", pop)
 
     def saveContextSet(self, name: str) -> bool:
-        """Keep the contexts as they are under a name; true."""
         with self._lock:
             self._contexts.save(name)
         return True
 
     def loadContextSet(self, name: str) -> None:
-        """Put saved contexts in the place of those there are."""
         self._change("contexts", lambda: self._contexts.load(name))
 
     def eraseContextSet(self, name: str) -> None:
-        """Forget saved contexts."""
         with self._lock:
             self._contexts.erase(name)
 
     def activateRule(self, context: str, rule: str) -> None:
-        """Switch a rule on."""
         self._change_context(context, lambda c: c.switched(rule, True))
 
     def deactivateRule(self, context: str, rule: str) -> None:
-        """Switch a rule off."""
         self._change_context(context, lambda c: c.switched(rule, False))
 
     def activateAllRules(self, context: str) -> None:
-        """Switch all rules of a context on."""
         self._change_context(context, lambda c: c.all_switched(True))
 
     def deactivateAllRules(self, context: str) -> None:
-        """Switch all rules of a context off."""
         self._change_context(context, lambda c: c.all_switched(False))
 
     def getRules(self, context: str, kind: str) -> list[str]:
@@ -210,13 +197,11 @@ class ALSpeechRecognition:
             return self._contexts.get(context).rules(kind)
 
     def addWordListToSlot(self, context: str, slot: str, words: Sequence[str]) -> None:
-        """Fill a slot with words, beside those that it has."""
         if not words:
             raise BadValue("wordList", words, "at least one word")
         self._change_context(context, lambda c: c.with_slot(slot, words))
 
     def removeWordListFromSlot(self, context: str, slot: str) -> None:
-        """Empty a slot."""
         self._change_context(context, lambda c: c.with_slot(slot, ()))
 
     def setContextParam(self, context: str, name: str, value: float) -> None:
@@ -225,7 +210,6 @@ class ALSpeechRecognition:
             self._contexts.put(context, self._contexts.get(context).with_parameter(name, number(value, name)))
 
     def getContextParam(self, context: str, name: str) -> float:
-        """A parameter of a context."""
         with self._lock:
             return self._contexts.get(context).parameter(name)
 
@@ -239,7 +223,6 @@ class ALSpeechRecognition:
 
         Args:
             what: What is changed, when that is refused while the engine listens; else empty.
-            change: Does it.
         """
         with self._lock:
             if what:
@@ -248,11 +231,14 @@ class ALSpeechRecognition:
             try:
                 change()
                 own = [self._vocabulary] if self._vocabulary is not None else []
-                self._engine.listen_for(listening_of([*own, *self._contexts.grammars()], self._parameters))
+                self._engine.listen_for([*own, *self._contexts.grammars()], self._parameters)
             except Exception:
                 contexts, self._vocabulary, self._vocabularies, self._parameters = before
                 self._contexts.restore(contexts)
                 raise
+
+    def _accepts(self, hypothesis: Hypothesis) -> bool:
+        return hypothesis.confidence >= self._contexts.threshold(hypothesis.grammar)
 
     def _check_language(self, language: str) -> None:
         if language not in self._languages:
@@ -262,44 +248,3 @@ class ALSpeechRecognition:
         if name not in PARAMETERS:
             raise UnknownName(f"parameter (there are {', '.join(PARAMETERS)})", name, PARAMETERS)
         return PARAMETERS[name]
-
-
-class RecognitionModule:
-    """ALSpeechRecognition of one robot, put together.
-
-    Attributes:
-        engine: Recognises.
-
-    Args:
-        simulation: Whose ears, loudspeakers and LEDs.
-        runner: Its thread.
-        memory: Where events go.
-        files: Where grammars are read from and written to.
-        spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
-    """
-
-    def __init__(
-        self,
-        simulation: Simulation,
-        runner: SimulationRunner,
-        memory: MemoryStore,
-        files: ClientFiles,
-        spare: SpareProcess | None = None,
-    ) -> None:
-        contexts = Contexts()
-        expression = ListeningExpression(simulation, runner)
-
-        def accepts(hypothesis: Hypothesis) -> bool:
-            return hypothesis.confidence >= contexts.threshold(hypothesis.grammar)
-
-        self.engine = RecognitionEngine(simulation, runner.execute, memory, expression.show, accepts, spare)
-        service = ALSpeechRecognition(self.engine, expression, contexts, files)
-        self._parts = [service, Extractor(NAME, memory, self.engine.start, self.engine.stop, EVENTS, KEYS)]
-
-    def modules(self) -> dict[str, list[Any]]:
-        """The module by name, as `make_service` wants it."""
-        return {NAME: self._parts}
-
-    def close(self) -> None:
-        """Recognise nothing any more."""
-        self.engine.close()

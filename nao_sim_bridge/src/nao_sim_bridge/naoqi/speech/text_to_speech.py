@@ -1,8 +1,7 @@
-"""ALTextToSpeech of the simulated robot. Only NAOqi methods live here."""
+"""ALTextToSpeech of the simulated robot: it speaks; `VoiceSettings` has its methods about the voice."""
 
 from __future__ import annotations
 
-import logging
 from typing import Any
 
 import numpy as np
@@ -19,13 +18,10 @@ from nao_sim_bridge.speech.clips import Style
 from nao_sim_bridge.speech.speaker import Speaker
 from nao_sim_bridge.speech.studio import Studio
 
-log = logging.getLogger("nao_sim.speech")
-
 # Samples a second in files, as on the robot.
 FILE_RATE = 22050
 FILE_KINDS = (".wav", ".raw")
 PLAYED_FILE = "sayToFileAndPlay.wav"
-PREFERENCE = "ALTextToSpeech_Voice_{}.json"
 
 
 class ALTextToSpeech:
@@ -33,11 +29,6 @@ class ALTextToSpeech:
 
     Args:
         speaker: The robot's mouth; touched in the simulation thread only.
-        studio: Who makes sound of text.
-        settings: The voice that clients have chosen.
-        events: Raises the events.
-        runner: The simulation thread.
-        files: Where files of clients are.
     """
 
     def __init__(
@@ -89,79 +80,6 @@ class ALTextToSpeech:
     def stopAll(self) -> Task:
         self._stops += 1
         return self._runner.execute(self._speaker.stop_all, "stopAll")
-
-    # --- the voice ------------------------------------------------------------------------------------------------
-
-    def getAvailableLanguages(self) -> list[str]:
-        return self._settings.voices.available_languages(self._studio.engines)
-
-    def getSupportedLanguages(self) -> list[str]:
-        return list(self._settings.voices.languages)
-
-    def getAvailableVoices(self) -> list[str]:
-        return self._settings.voices.available_voices(self._studio.engines)
-
-    def getLanguage(self) -> str:
-        return self._settings.language.name
-
-    def setLanguage(self, language: str) -> None:
-        self._settings.set_language(language)
-
-    def getLanguageEncoding(self, language: str) -> str:
-        languages = self._settings.voices.languages
-        if language not in languages:
-            raise BadValue("pLanguage", language, f"one of {', '.join(languages)}")
-        return languages[language].encoding
-
-    def locale(self) -> str:
-        return self._settings.language.locale
-
-    def getVoice(self) -> str:
-        return self._settings.voice
-
-    def setVoice(self, voice: str) -> None:
-        self._settings.set_voice(voice)
-
-    def setLanguageDefaultVoice(self, language: str, voice: str) -> None:
-        self._settings.set_default_voice(language, voice)
-
-    def getVolume(self) -> float:
-        return self._settings.volume
-
-    def setVolume(self, volume: float) -> None:
-        self._settings.set_volume(volume)
-
-    def getParameter(self, name: str) -> float:
-        return self._settings.parameter(name)
-
-    def setParameter(self, name: str, value: float) -> None:
-        self._settings.set_parameter(name, value)
-
-    def resetSpeed(self) -> None:
-        self._settings.reset_speed()
-
-    def reset(self) -> None:
-        self._settings.reset()
-
-    def loadVoicePreference(self, name: str) -> None:
-        self._settings.load(self._files.to_read(PREFERENCE.format(name)))
-
-    # --- pronunciation --------------------------------------------------------------------------------------------
-
-    def addToDictionary(self, *entry: str) -> bool:
-        """(word, pronunciation), or (type, word, priority, phonetic, accent) of Japanese."""
-        word, spoken = entry if len(entry) == 2 else (entry[1], entry[3])
-        return self._settings.add_pronunciation(word, spoken)
-
-    def deleteFromDictionary(self, *entry: str) -> bool:
-        """(word), or (type, word) of Japanese."""
-        return self._settings.delete_pronunciation(entry[-1])
-
-    def showDictionary(self) -> None:
-        entries = self._settings.pronunciations()
-        log.info("dictionary of %s, %d words", self._settings.language.name, len(entries))
-        for word, spoken in entries:
-            log.info("  %s is spoken %s", word, spoken)
 
     # --- events ---------------------------------------------------------------------------------------------------
 

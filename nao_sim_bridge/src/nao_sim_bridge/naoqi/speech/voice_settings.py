@@ -1,63 +1,50 @@
-"""The voice that clients have chosen, and how it speaks."""
+"""Part of ALTextToSpeech: the voice that clients have chosen, and how it speaks."""
 
 from __future__ import annotations
 
 import json
+import logging
 import threading
-from pathlib import Path
 from typing import Any
 
 from nao_sim_bridge.base.config import LARGEST_FILE, read_bounded
 from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.speech import parameters
 from nao_sim_bridge.speech.clips import Style
 from nao_sim_bridge.speech.dictionary import Pronunciations
 from nao_sim_bridge.speech.speech import Engine
 from nao_sim_bridge.speech.tags import TAG
-from nao_sim_bridge.speech.voices import Language, load_voices
+from nao_sim_bridge.speech.voices import load_voices
+
+log = logging.getLogger("nao_sim.speech")
 
 DEFAULT_VOLUME = 1.0
+PREFERENCE = "ALTextToSpeech_Voice_{}.json"
 PREFERENCE_KEYS = ("language", "voice", "volume", "parameters")
 
 
 class VoiceSettings:
     """Language, voice, parameters, volume and pronunciations. Any thread may call anything.
 
-    Attributes:
-        voices: All that the robot knows.
-
     Args:
-        engine: Who says which of them can speak.
+        engine: Who says which voices can speak.
     """
 
-    def __init__(self, engine: Engine) -> None:
-        self.voices = load_voices()
+    def __init__(self, engine: Engine, files: ClientFiles) -> None:
+        self._voices = load_voices()
         self._engine = engine
+        self._files = files
         self._lock = threading.RLock()
-        self._language = self.voices.languages[self.voices.default_language]
+        self._language = self._voices.languages[self._voices.default_language]
         self._chosen: dict[str, str] = {}
         self._voice = self._language.voices[0]
         self._volume = DEFAULT_VOLUME
         self._values = parameters.defaults()
         self._pronunciations: dict[str, Pronunciations] = {}
-
-    @property
-    def language(self) -> Language:
-        """What is spoken."""
-        return self._language
-
-    @property
-    def voice(self) -> str:
-        """Who speaks."""
-        return self._voice
-
-    @property
-    def volume(self) -> float:
-        """0 to 1."""
-        return self._volume
 
     def style(self, language: str | None = None) -> Style:
         """How a text is spoken from now on, in the chosen language or in another one.
@@ -69,61 +56,87 @@ class VoiceSettings:
         with self._lock:
             other = language is not None and language != self._language.name
             name = self._default_voice(language) if other else self._voice
-            voice = self.voices.voice(name, self._engine)
+            voice = self._voices.voice(name, self._engine)
             return Style(
                 voice,
                 parameters.prosody_of(self._values),
                 parameters.double_voice_of(self._values),
-                self._pronunciations.get(voice.language, Pronunciations()),
+                self._known(voice.language),
                 self._volume,
             )
 
-    def set_language(self, name: str) -> None:
+    # --- languages and voices -------------------------------------------------------------------------------------
+
+    def getAvailableLanguages(self) -> list[str]:
+        return self._voices.available_languages(self._engine)
+
+    def getSupportedLanguages(self) -> list[str]:
+        return list(self._voices.languages)
+
+    def getLanguageEncoding(self, language: str) -> str:
+        languages = self._voices.languages
+        return languages[one_of(language, "pLanguage", languages)].encoding
+
+    def locale(self) -> str:
+        return self._language.locale
+
+    def getLanguage(self) -> str:
+        return self._language.name
+
+    def setLanguage(self, name: str) -> None:
         """Speak another language, in its default voice, at its default speed."""
         with self._lock:
             voice = self._default_voice(name)
             if name != self._language.name:
                 self._values[parameters.DEFAULT_SPEED] = parameters.defaults()[parameters.DEFAULT_SPEED]
-                self.reset_speed()
-            self._language, self._voice = self.voices.languages[name], voice
+                self.resetSpeed()
+            self._language, self._voice = self._voices.languages[name], voice
 
-    def set_voice(self, name: str) -> None:
+    def getAvailableVoices(self) -> list[str]:
+        return self._voices.available_voices(self._engine)
+
+    def getVoice(self) -> str:
+        return self._voice
+
+    def setVoice(self, name: str) -> None:
         """Speak in another voice, and in its language."""
         with self._lock:
-            voice = self.voices.voice(name, self._engine)
+            voice = self._voices.voice(name, self._engine)
             if voice.language != self._language.name:
-                self.set_language(voice.language)
+                self.setLanguage(voice.language)
             self._voice = name
 
-    def set_default_voice(self, language: str, voice: str) -> None:
+    def setLanguageDefaultVoice(self, language: str, voice: str) -> None:
         """Which voice a language is spoken in when it is chosen; at once when it is spoken now."""
         with self._lock:
-            voices = self.voices.language(language, self._engine).voices
+            voices = self._voices.language(language, self._engine).voices
             if voice not in voices:
                 raise BadValue("Voice", voice, f"a voice of {language}: {', '.join(voices)}")
-            self.voices.voice(voice, self._engine)
+            self._voices.voice(voice, self._engine)
             self._chosen[language] = voice
             if language == self._language.name:
                 self._voice = voice
 
-    def set_volume(self, volume: Any) -> None:
-        """0 to 1."""
+    # --- volume and parameters ------------------------------------------------------------------------------------
+
+    def getVolume(self) -> float:
+        return self._volume
+
+    def setVolume(self, volume: Any) -> None:
         self._volume = number(volume, "volume", 0.0, 1.0)
 
-    def parameter(self, name: str) -> float:
-        """Value of a voice parameter."""
+    def getParameter(self, name: str) -> float:
         return self._values[parameters.known(name)]
 
-    def set_parameter(self, name: str, value: Any) -> None:
+    def setParameter(self, name: str, value: Any) -> None:
         """Change a voice parameter; a new default speed is the speed from now on, too."""
         checked = parameters.checked(name, number(value, parameters.known(name)))
         with self._lock:
             self._values[name] = checked
             if name == parameters.DEFAULT_SPEED:
-                self.reset_speed()
+                self.resetSpeed()
 
-    def reset_speed(self) -> None:
-        """Speed back to its default."""
+    def resetSpeed(self) -> None:
         with self._lock:
             self._values[parameters.SPEED] = self._values[parameters.DEFAULT_SPEED]
 
@@ -136,17 +149,18 @@ class VoiceSettings:
 
     # --- pronunciations -------------------------------------------------------------------------------------------
 
-    def add_pronunciation(self, word: str, spoken: str) -> bool:
-        """Speak a word of the language in another way; False for phonetic alphabets, which no engine here reads."""
+    def addToDictionary(self, *entry: str) -> bool:
+        """(word, pronunciation), or (type, word, priority, phonetic, accent) of Japanese.
+
+        False for phonetic alphabets, which no engine here reads.
+        """
+        word, spoken = entry if len(entry) == 2 else (entry[1], entry[3])
         if not word.strip():
             raise BadValue("word", word, "a word")
         if not spoken.strip() or TAG.search(spoken):
             return False
         with self._lock:
-            known, most = (
-                self._pronunciations.get(self._language.name, Pronunciations()),
-                load_sizes().speech.dictionary_words,
-            )
+            known, most = self._known(self._language.name), load_sizes().speech.dictionary_words
             if len(known.entries) >= most and not known.knows(word.strip()):
                 raise NaoqiError(
                     f"the dictionary has {most} words, which is the most allowed; deleteFromDictionary makes room"
@@ -154,25 +168,32 @@ class VoiceSettings:
             self._pronunciations[self._language.name] = known.with_entry(word.strip(), spoken.strip())
         return True
 
-    def delete_pronunciation(self, word: str) -> bool:
-        """Speak a word as it is written again; False when it was not in the dictionary."""
+    def deleteFromDictionary(self, *entry: str) -> bool:
+        """(word), or (type, word) of Japanese; False when it was not in the dictionary."""
+        word = entry[-1].strip()
         with self._lock:
-            known = self._pronunciations.get(self._language.name, Pronunciations())
-            self._pronunciations[self._language.name] = known.without(word.strip())
-            return known.knows(word.strip())
+            known = self._known(self._language.name)
+            self._pronunciations[self._language.name] = known.without(word)
+            return known.knows(word)
 
-    def pronunciations(self) -> list[tuple[str, str]]:
-        """(word as written, word as spoken) of the language."""
-        return list(self._pronunciations.get(self._language.name, Pronunciations()).entries)
+    def showDictionary(self) -> None:
+        entries = self._known(self._language.name).entries
+        log.info("dictionary of %s, %d words", self._language.name, len(entries))
+        for word, spoken in entries:
+            log.info("  %s is spoken %s", word, spoken)
+
+    def _known(self, language: str) -> Pronunciations:
+        return self._pronunciations.get(language, Pronunciations())
 
     # --- preferences ----------------------------------------------------------------------------------------------
 
-    def load(self, path: Path) -> None:
+    def loadVoicePreference(self, name: str) -> None:
         """Take language, voice, volume and parameters from a JSON file, each if it is there; all or nothing.
 
         Raises:
             NaoqiError: The file is not what it should be.
         """
+        path = self._files.to_read(PREFERENCE.format(name))
         try:
             wanted = json.loads(read_bounded(path, LARGEST_FILE))
         except (OSError, ValueError, RecursionError) as error:
@@ -189,19 +210,19 @@ class VoiceSettings:
 
     def _take(self, wanted: dict[str, Any]) -> None:
         if "language" in wanted:
-            self.set_language(wanted["language"])
+            self.setLanguage(wanted["language"])
         if "voice" in wanted:
-            self.set_voice(wanted["voice"])
+            self.setVoice(wanted["voice"])
         if "volume" in wanted:
-            self.set_volume(wanted["volume"])
+            self.setVolume(wanted["volume"])
         if not isinstance(wanted.get("parameters", {}), dict):
             raise BadValue("parameters", wanted["parameters"], "an object of names and numbers")
         for name, value in wanted.get("parameters", {}).items():
-            self.set_parameter(name, value)
+            self.setParameter(name, value)
 
     def _default_voice(self, language: str | None) -> str:
         """The voice of a language: the chosen one, or the first that can speak."""
-        spoken = self.voices.language(language, self._engine)
-        available = self.voices.available_voices(self._engine)
+        spoken = self._voices.language(language, self._engine)
+        available = self._voices.available_voices(self._engine)
         chosen = self._chosen.get(spoken.name)
         return chosen or next(name for name in spoken.voices if name in available)

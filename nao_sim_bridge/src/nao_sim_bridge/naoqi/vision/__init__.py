@@ -1,1 +1,1 @@
-"""NAOqi's vision modules, one file each, thin over the cameras and the detectors."""
+"""NAOqi's vision modules, thin over the cameras and the detectors."""

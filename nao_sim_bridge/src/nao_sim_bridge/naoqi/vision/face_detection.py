@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.cameras.frame import Frame
-from nao_sim_bridge.cameras.settings import CameraTables
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, text
-from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.vision.face_detection_learning import FaceLearner
 from nao_sim_bridge.naoqi.vision.face_detection_people import KnownPeople
 from nao_sim_bridge.naoqi.vision.face_detection_value import NamedFace, NamesOnce, faces_value
-from nao_sim_bridge.naoqi.vision.sight import Sight
-from nao_sim_bridge.naoqi.vision.vision_extractor import VisionExtractor
+from nao_sim_bridge.naoqi.vision.vision_extractor import Sight
 from nao_sim_bridge.naoqi.vision.watching import Watching
 from nao_sim_bridge.vision.client import VisionProcess
 from nao_sim_bridge.vision.face_memory import POLICIES
@@ -35,16 +30,6 @@ class ALFaceDetection:
 
     The event `FaceDetected` is raised with each picture in which there is a face, as `faces_value` says, and once with
     an empty list when the last one has gone. Learning takes five pictures in a row; each has to show exactly one face.
-
-    Attributes:
-        watching: The eyes of the module.
-        learner: Learns faces.
-
-    Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        vision: Where pictures are looked at.
-        files: Where known faces are kept.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess, files: ClientFiles) -> None:
@@ -73,7 +58,9 @@ class ALFaceDetection:
     def reLearnFace(self, name: str) -> Task:
         """Learn one more picture of somebody who is known; False also when nobody of the name is."""
         if _checked(name) not in self._people.names:
-            return _answered(False)
+            nothing = Task("learnFace", 0)
+            nothing.finish(False)
+            return nothing
         return self.learnFace(name)
 
     def forgetPerson(self, name: str) -> bool:
@@ -104,8 +91,7 @@ class ALFaceDetection:
     def isRecognitionEnabled(self) -> bool:
         return self._recognition
 
-    def enableRecognition(self, enable: bool) -> None:
-        self.setRecognitionEnabled(enable)
+    enableRecognition = setRecognitionEnabled
 
     def setTrackingEnabled(self, enable: bool) -> None:
         self._tracking = bool(enable)
@@ -113,8 +99,7 @@ class ALFaceDetection:
     def isTrackingEnabled(self) -> bool:
         return self._tracking
 
-    def enableTracking(self, enable: bool) -> None:
-        self.setTrackingEnabled(enable)
+    enableTracking = setTrackingEnabled
 
     def _settings(self, frame: Frame) -> FaceSettings:
         return FaceSettings(frame.time, frame.camera, self._tracking, self._recognition)
@@ -138,20 +123,7 @@ class ALFaceDetection:
         self._sight.nothing()
 
 
-def parts(service: ALFaceDetection, memory: MemoryStore, tables: CameraTables) -> list[Any]:
-    """The objects that together have the methods of ALFaceDetection."""
-    watching = service.watching
-    extractor = Extractor(NAME, memory, watching.start, watching.stop, [EVENT], changed=watching.changed)
-    return [service, VisionExtractor(watching, tables), extractor]
-
-
 def _checked(name: str) -> str:
     if not text(name, "name", LONGEST_NAME).strip():
         raise BadValue("name", name, "the name of somebody, not empty")
     return name
-
-
-def _answered(answer: Any) -> Task:
-    task = Task("learnFace", 0)
-    task.finish(answer)
-    return task

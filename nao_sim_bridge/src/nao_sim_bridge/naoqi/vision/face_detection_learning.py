@@ -29,13 +29,7 @@ MOST_WAITING = load_sizes().clients.faces
 
 
 class FaceLearner:
-    """Takes pictures of a face; one at a time, each in a thread of its own.
-
-    Args:
-        cameras: Of the robot.
-        detector: A detector of faces in the vision process.
-        camera: Tells which camera to look through.
-    """
+    """Takes pictures of a face; one at a time, each in a thread of its own."""
 
     def __init__(self, cameras: Any, detector: Any, camera: Callable[[], int]) -> None:
         self._cameras = cameras
@@ -48,9 +42,6 @@ class FaceLearner:
 
     def look(self, learn: Callable[[np.ndarray], bool]) -> Task:
         """Look at the face in view.
-
-        Args:
-            learn: Called with its description.
 
         Returns:
             A task that ends with what `learn` answers, or with False when the pictures do not show exactly one face.
@@ -91,7 +82,6 @@ class FaceLearner:
         return task
 
     def close(self) -> None:
-        """Learn nothing any more."""
         self._closed.set()
 
     def _describe(self, cancelled: threading.Event) -> np.ndarray | None:

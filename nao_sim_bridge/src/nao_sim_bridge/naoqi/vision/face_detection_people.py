@@ -30,7 +30,6 @@ class KnownPeople:
 
     @property
     def names(self) -> list[str]:
-        """Who is known."""
         with self._lock:
             return self._known().names
 
@@ -48,8 +47,6 @@ class KnownPeople:
         return self._change(lambda memory: memory.forget(name))
 
     def clear(self) -> None:
-        """Forget everybody."""
-
         def clear(memory: FaceMemory) -> bool:
             memory.clear()
             return True

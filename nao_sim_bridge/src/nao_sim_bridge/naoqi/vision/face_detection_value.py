@@ -7,6 +7,7 @@ from itertools import chain
 from typing import Any, Sequence, Tuple
 
 from nao_sim_bridge.cameras.frame import Frame
+from nao_sim_bridge.naoqi.vision.vision_extractor import in_picture
 from nao_sim_bridge.vision.faces import SeenFace
 
 # Numbers in the lists of points, those included that are always zero; eyebrows are not found any more.
@@ -26,7 +27,6 @@ class NamedFace:
     """A face and whose it is.
 
     Attributes:
-        face: What was seen.
         name: Of the person, empty when unknown.
         score: How sure it is, 0..1; of the best guess, also when that was not good enough.
     """
@@ -83,26 +83,14 @@ def faces_value(frame: Frame, faces: Sequence[NamedFace], news: list[Any]) -> li
     A face is [[0, alpha, beta, width, height], [number, score, name, left eye, right eye, eyebrow, eyebrow, nose,
     mouth]] with all points as angles, x to the left and y downwards, in rad.
     """
-    poses = [list(frame.pose_in_torso), list(frame.pose_in_robot)]
-    return [list(frame.stamp), [*map(_face_info, faces), news], *poses, frame.camera]
+    return in_picture(frame, [*map(_face_info, faces), news], frame.camera)
 
 
 def _face_info(named: NamedFace) -> list[Any]:
     face = named.face
-    return [
-        [0, *face.centre, *face.size],
-        [
-            face.number,
-            named.score,
-            named.name,
-            _flat(face.left_eye, EYE),
-            _flat(face.right_eye, EYE),
-            [0.0] * EYEBROW,
-            [0.0] * EYEBROW,
-            _flat(face.nose, NOSE),
-            _flat(face.mouth, MOUTH),
-        ],
-    ]
+    eyes = [_flat(face.left_eye, EYE), _flat(face.right_eye, EYE), [0.0] * EYEBROW, [0.0] * EYEBROW]
+    nose, mouth = _flat(face.nose, NOSE), _flat(face.mouth, MOUTH)
+    return [[0, *face.centre, *face.size], [face.number, named.score, named.name, *eyes, nose, mouth]]
 
 
 def _flat(points: Sequence[Tuple[float, float]], count: int) -> list[float]:

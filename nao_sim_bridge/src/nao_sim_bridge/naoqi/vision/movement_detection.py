@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from nao_sim_bridge.cameras.frame import Frame
-from nao_sim_bridge.cameras.settings import CameraTables
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.vision.vision_extractor import VisionExtractor
+from nao_sim_bridge.naoqi.vision.vision_extractor import in_picture
 from nao_sim_bridge.naoqi.vision.watching import Watching
 from nao_sim_bridge.vision.client import VisionProcess
 from nao_sim_bridge.vision.movement import MovementSettings, MovingCluster
 
 NAME = "ALMovementDetection"
-DETECTED, NONE, INFO = (f"MovementDetection/{name}" for name in ("MovementDetected", "NoMovement", "MovementInfo"))
+DETECTED, NONE = EVENTS = ["MovementDetection/MovementDetected", "MovementDetection/NoMovement"]
+INFO = "MovementDetection/MovementInfo"
 FPS = 10
 DEFAULT_SENSITIVITY, DEFAULT_DEPTH = 0.8, 0.3
 
@@ -31,14 +28,6 @@ class ALMovementDetection:
     in FRAME_ROBOT, camera], with a cluster as [[x, y] of its centre of gravity, [x, y, width, height] of the rectangle
     around it, [share of the picture, share of the rectangle] that moves]; angles in rad, x and y of the rectangle are
     its upper left corner.
-
-    Attributes:
-        watching: The eyes of the module.
-
-    Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        vision: Where pictures are looked at.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> None:
@@ -51,7 +40,7 @@ class ALMovementDetection:
         memory.insert(INFO, [])
 
     def resetDetection(self) -> None:
-        if self.watching.looks:
+        if self.watching.runs:
             self._detector.call("reset")
 
     def setColorSensitivity(self, sensitivity: float) -> None:
@@ -71,22 +60,10 @@ class ALMovementDetection:
 
     def _on_result(self, frame: Frame, found: list[MovingCluster] | None) -> None:
         if found:
-            self._memory.insert(INFO, movement_value(frame, found))
+            clusters = [
+                [[c.alpha, c.beta], [*c.corner, *c.size], [c.share_of_picture, c.share_of_rectangle]] for c in found
+            ]
+            self._memory.insert(INFO, in_picture(frame, clusters, frame.camera))
             self._memory.raise_event(DETECTED, None)
         elif found is not None:
             self._memory.raise_event(NONE, None)
-
-
-def movement_value(frame: Frame, found: list[MovingCluster]) -> list[Any]:
-    """What the key has."""
-    clusters = [[[c.alpha, c.beta], [*c.corner, *c.size], [c.share_of_picture, c.share_of_rectangle]] for c in found]
-    return [list(frame.stamp), clusters, list(frame.pose_in_torso), list(frame.pose_in_robot), frame.camera]
-
-
-def parts(service: ALMovementDetection, memory: MemoryStore, tables: CameraTables) -> list[Any]:
-    """The objects that together have the methods of ALMovementDetection."""
-    watching = service.watching
-    extractor = Extractor(
-        NAME, memory, watching.start, watching.stop, [DETECTED, NONE], [INFO], changed=watching.changed
-    )
-    return [service, VisionExtractor(watching, tables), extractor]

@@ -1,75 +1,92 @@
-"""Methods that NAOqi's extractors with a camera have in common."""
+"""What NAOqi's extractors with a camera have in common: methods, the event of what was seen last, values of events."""
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Any, Sequence
 
 from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.settings import CameraTables
-from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.binding.switch import SwitchModule
+from nao_sim_bridge.naoqi.memory.extractor import Extractor
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.vision.watching import MOST_FPS, Watching
 
 
-class VisionExtractor:
-    """Camera, resolution, frame rate and pause of an extractor. No other methods are public.
-
-    Attributes:
-        watching: See below.
-
-    Args:
-        watching: The eyes of the module.
-        tables: What the cameras can do.
-    """
+class VisionExtractor(SwitchModule):
+    """Camera, resolution, frame rate and pause of an extractor. No other methods are public."""
 
     def __init__(self, watching: Watching, tables: CameraTables) -> None:
-        self.watching = watching
+        super().__init__(watching, {"pause": self.pause, "resolution": self.setResolution})
+        self._watching = watching
         self._tables = tables
-        self._parameters: dict[str, Callable[[Any], Any]] = {"pause": self.pause, "resolution": self.setResolution}
 
     def getActiveCamera(self) -> int:
-        """Camera that it looks through: 0 top, 1 bottom."""
-        return self.watching.camera
+        return self._watching.camera
 
     def setActiveCamera(self, camera: int) -> bool:
-        """Look through another camera."""
-        self.watching.set_camera(self._tables.camera(camera))
+        self._watching.set_camera(self._tables.camera(camera))
         return True
 
     def getFrameRate(self) -> int:
-        """The most pictures a second that it looks at."""
-        return self.watching.fps
+        return self._watching.fps
 
     def setFrameRate(self, *arguments: Any) -> bool:
-        """Change that, for all subscribers or for the one that is named first."""
+        """(rate) for all subscribers, or (subscriber, rate)."""
         *subscriber, fps = arguments
         if isinstance(fps, bool) or not isinstance(fps, int) or not 1 <= fps <= MOST_FPS:
             raise BadValue("framerate", fps, f"1 to {MOST_FPS} pictures a second")
-        self.watching.set_fps(fps, *subscriber)
+        self._watching.set_fps(fps, *subscriber)
         return True
 
     def getResolution(self) -> int:
-        """Id of the resolution of the pictures that it looks at."""
-        return self.watching.resolution
+        return self._watching.resolution
 
     def setResolution(self, resolution: int) -> bool:
-        """Look at pictures of another size."""
-        self.watching.set_resolution(self._tables.resolution(resolution).id)
+        self._watching.set_resolution(self._tables.resolution(resolution).id)
         return True
 
-    def pause(self, status: bool) -> None:
-        """Stop looking for a while, or go on; subscribers stay."""
-        self.watching.pause(bool(status))
 
-    def isPaused(self) -> bool:
-        """Whether it is paused."""
-        return self.watching.paused
+def extractor_parts(
+    module: str,
+    memory: MemoryStore,
+    watching: Watching,
+    tables: CameraTables,
+    events: Sequence[str],
+    keys: Sequence[str] = (),
+) -> list[Any]:
+    """The objects that together have the methods of such a module, without those that it alone has."""
+    extractor = Extractor(module, memory, watching.start, watching.stop, events, keys, changed=watching.changed)
+    return [VisionExtractor(watching, tables), extractor]
 
-    def isProcessing(self) -> bool:
-        """Whether it looks: somebody is subscribed, and it is not paused."""
-        return self.watching.looks
 
-    def setParameter(self, parameter: str, value: Any) -> None:
-        """Change how it looks; deprecated in NAOqi in favour of the methods above."""
-        if parameter not in self._parameters:
-            raise NaoqiError(f"unknown parameter {parameter!r}; there are {', '.join(self._parameters)}")
-        self._parameters[parameter](value)
+class Sight:
+    """The event of one extractor. Used by its watching only, so in one thread at a time.
+
+    Args:
+        tell_end: Also tell subscribers when nothing is seen any more, with an empty list; else that is only written,
+            for those who read the key.
+    """
+
+    def __init__(self, memory: MemoryStore, event: str, tell_end: bool) -> None:
+        self._memory = memory
+        self._event = event
+        self._tell_end = tell_end
+        self._something = False
+        memory.put_quietly(event, [])
+
+    def show(self, value: list[Any]) -> None:
+        self._something = True
+        self._memory.raise_event(self._event, value)
+
+    def nothing(self) -> None:
+        if self._something and self._tell_end:
+            self._memory.raise_event(self._event, [])
+        elif self._something:
+            self._memory.put_quietly(self._event, [])
+        self._something = False
+
+
+def in_picture(frame: Frame, seen: Any, camera: Any) -> list[Any]:
+    """[[seconds, microseconds], what was seen, pose of the camera in FRAME_TORSO, the same in FRAME_ROBOT, camera]."""
+    return [list(frame.stamp), seen, list(frame.pose_in_torso), list(frame.pose_in_robot), camera]

@@ -49,8 +49,6 @@ class Watching(Switch):
     that come while it is busy are left out. Any thread may call.
 
     Args:
-        cameras: Of the robot.
-        name: Of the module.
         detector: Its detector in the vision process; closed whenever nobody wants results any more, so that it starts
             afresh.
         on_result: Called in the thread with each picture and what was found in it.
@@ -91,8 +89,7 @@ class Watching(Switch):
         self._failed = False
 
     @property
-    def looks(self) -> bool:
-        """Whether it looks: somebody is subscribed, and it is not paused."""
+    def runs(self) -> bool:
         return self._stream is not None
 
     @property
@@ -102,7 +99,6 @@ class Watching(Switch):
 
     @property
     def resolution(self) -> int:
-        """NAOqi's id of the resolution."""
         return self._resolution
 
     @property
@@ -124,14 +120,12 @@ class Watching(Switch):
     # --- for the module ---------------------------------------------------------------------------------------------
 
     def set_camera(self, camera: int) -> None:
-        """Look through another camera."""
         with self._lock:
             if self._stream is not None:
                 self._stream.camera = camera
             self._camera = camera
 
     def set_resolution(self, resolution: int) -> None:
-        """Look at pictures of another size."""
         with self._lock:
             if self._stream is not None:
                 self._stream.resolution = resolution

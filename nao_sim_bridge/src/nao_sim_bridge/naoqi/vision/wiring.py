@@ -1,62 +1,141 @@
-"""The extractors that look through the cameras put together: their detectors share one process."""
+"""The extractors that look through the cameras put together, and those that tell what they see and nothing else."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Callable
 
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.cameras.frame import Frame
+from nao_sim_bridge.cameras.settings import CAMERA_NAMES
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.vision import (
-    barcode_reader,
-    face_detection,
-    landmark_detection,
-    movement_detection,
-    red_ball_detection,
-)
-from nao_sim_bridge.naoqi.vision.watching import Watching
+from nao_sim_bridge.naoqi.vision import face_detection, movement_detection
+from nao_sim_bridge.naoqi.vision.vision_extractor import Sight, extractor_parts, in_picture
+from nao_sim_bridge.naoqi.vision.watching import QVGA, TOP, Watching
+from nao_sim_bridge.vision.ball import Ball
+from nao_sim_bridge.vision.barcodes import Barcode
 from nao_sim_bridge.vision.client import VisionProcess
+from nao_sim_bridge.vision.landmarks import Landmark
+
+VGA = 2
+SHAPE = 1
+"""What NAOqi writes in front of the shape of a mark."""
+
+
+def ball_value(frame: Frame, found: list[Ball]) -> list[Any]:
+    """Value of `redBallDetected`, of the ball that looks most like one.
+
+    [[seconds, microseconds], [centre X, centre Y, size X, size Y], pose of the camera in FRAME_TORSO, the same in
+    FRAME_ROBOT, index of the camera]; angles in rad from the middle of the picture, X positive to the left and Y
+    downwards, sizes are angular radii.
+    """
+    ball = found[0]
+    return in_picture(frame, [ball.alpha, ball.beta, ball.radius, ball.radius], frame.camera)
+
+
+def landmark_value(frame: Frame, found: list[Landmark]) -> list[Any]:
+    """Value of `LandmarkDetected`.
+
+    [[seconds, microseconds], [mark, ...], pose of the camera in FRAME_TORSO, the same in FRAME_ROBOT, name of the
+    camera], with a mark as [[1, alpha, beta, size X, size Y, heading], [number]] in rad: middle, width and height of
+    its black disc as angles in the picture (alpha positive to the left, beta downwards), heading its turn in the
+    picture, counterclockwise.
+    """
+    marks = [[[SHAPE, m.alpha, m.beta, m.width, m.height, m.heading], [m.number]] for m in found]
+    return in_picture(frame, marks, CAMERA_NAMES[frame.camera])
+
+
+def barcode_value(_frame: Frame, found: list[Barcode]) -> list[Any]:
+    """Value of `BarcodeReader/BarcodeDetected`, barcodes and QR codes.
+
+    [[text, [[x, y], [x, y], [x, y], [x, y]]], ...], corners in pixels of the picture, from the upper left one as the
+    code is read, clockwise.
+    """
+    return [[code.text, [list(corner) for corner in code.corners]] for code in found]
+
+
+@dataclass(frozen=True)
+class Detection:
+    """An extractor that raises its event with each picture in which its detector finds something.
+
+    Attributes:
+        module: NAOqi name.
+        detector: Name in the vision process.
+        tell_end: Whether the event is also raised, with an empty list, when nothing is seen any more; else that is
+            only its value then, and nobody is told.
+        fps: Pictures a second at the start.
+        camera: At the start; None: the one that ALVideoDevice has active.
+    """
+
+    module: str
+    event: str
+    detector: str
+    value: Callable[[Frame, Any], list[Any]]
+    tell_end: bool
+    fps: int
+    resolution: int = QVGA
+    camera: int | None = TOP
+
+    def watching(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> Watching:
+        """Looks for it in the cameras of a robot."""
+        sight = Sight(memory, self.event, self.tell_end)
+
+        def on_result(frame: Frame, found: list[Any]) -> None:
+            if found:
+                sight.show(self.value(frame, found))
+            else:
+                sight.nothing()
+
+        return Watching(
+            simulation.cameras,
+            self.module,
+            vision.detector(self.detector),
+            on_result,
+            on_stop=sight.nothing,
+            camera=self.camera,
+            resolution=self.resolution,
+            fps=self.fps,
+        )
+
+
+DETECTIONS = (
+    # It has no methods to choose a camera.
+    Detection("ALRedBallDetection", "redBallDetected", "ball", ball_value, tell_end=False, fps=30, camera=None),
+    Detection("ALLandMarkDetection", "LandmarkDetected", "landmarks", landmark_value, tell_end=True, fps=15),
+    # In smaller pictures than VGA the stripes of a barcode cannot be told apart.
+    Detection("ALBarcodeReader", "BarcodeReader/BarcodeDetected", "barcodes", barcode_value, False, 10, VGA),
+)
 
 
 class VisionModules:
     """ALRedBallDetection, ALLandMarkDetection, ALBarcodeReader, ALFaceDetection and ALMovementDetection of one robot.
 
-    Attributes:
-        watchings: What looks through the cameras.
-
     Args:
-        simulation: Whose cameras these are.
-        memory: Where events go.
-        files: Where known faces are kept.
-        process: The vision process; it starts when somebody is subscribed first.
+        process: The vision process, which all detectors share; it starts when somebody is subscribed first.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, files: ClientFiles, process: VisionProcess) -> None:
         self._memory = memory
         self._tables = simulation.cameras.tables
-        self._ball = red_ball_detection.RedBallDetection(simulation, memory, process).watching
-        self._landmarks = landmark_detection.LandMarkDetection(simulation, memory, process).watching
-        self._barcodes = barcode_reader.BarcodeReader(simulation, memory, process).watching
+        self._watchings = {one.module: one.watching(simulation, memory, process) for one in DETECTIONS}
         self._faces = face_detection.ALFaceDetection(simulation, memory, process, files)
         self._movement = movement_detection.ALMovementDetection(simulation, memory, process)
-        self.watchings: list[Watching] = [
-            self._ball,
-            self._landmarks,
-            self._barcodes,
-            self._faces.watching,
-            self._movement.watching,
-        ]
+        self._watchings[face_detection.NAME] = self._faces.watching
+        self._watchings[movement_detection.NAME] = self._movement.watching
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
+        faces = self._parts(face_detection.NAME, [face_detection.EVENT])
+        movement = self._parts(movement_detection.NAME, movement_detection.EVENTS, [movement_detection.INFO])
         return {
-            red_ball_detection.NAME: red_ball_detection.parts(self._ball, self._memory),
-            landmark_detection.NAME: landmark_detection.parts(self._landmarks, self._memory, self._tables),
-            barcode_reader.NAME: barcode_reader.parts(self._barcodes, self._memory, self._tables),
-            face_detection.NAME: face_detection.parts(self._faces, self._memory, self._tables),
-            movement_detection.NAME: movement_detection.parts(self._movement, self._memory, self._tables),
+            **{one.module: self._parts(one.module, [one.event]) for one in DETECTIONS},
+            face_detection.NAME: [self._faces, *faces],
+            movement_detection.NAME: [self._movement, *movement],
         }
 
     def closing(self) -> list[Callable[[], None]]:
         """Steps after which nothing is looked at any more; blocking."""
-        return [self._faces.learner.close, *(watching.stop for watching in self.watchings)]
+        return [self._faces.learner.close, *(watching.stop for watching in self._watchings.values())]
+
+    def _parts(self, module: str, *events_and_keys: list[str]) -> list[Any]:
+        return extractor_parts(module, self._memory, self._watchings[module], self._tables, *events_and_keys)

@@ -1,20 +1,24 @@
-"""Takes series of pictures, each at its moment of simulated time, and writes them to files."""
+"""Takes series of pictures, each at its moment of simulated time, and writes them to files in NAOqi's formats."""
 
 from __future__ import annotations
 
 import logging
+import posixpath
 import threading
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Sequence
 
+import cv2
+import numpy as np
+
 from nao_sim_bridge.base.errors import BadValue, SimulationError
+from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.whole_file import write_whole
 from nao_sim_bridge.cameras.stream import CameraClosed
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.cameras.photo_capture_files import encoded
 
 log = logging.getLogger("nao_sim.photos")
 
@@ -24,6 +28,12 @@ MOST_SERIES = load_sizes().clients.series
 LOOK_AGAIN = 1.0
 """How long a wait for a picture lasts before it is looked whether it is still wanted, s of wall time: a paused
 simulation takes none for hours."""
+
+
+JPEG_QUALITY = 95
+GREY_ONLY = ("pbm", "pgm")
+"""Formats that hold no colour: a colour picture becomes grey, in "pbm" black and white."""
+FORMATS = ("bmp", "dib", "jpeg", "jpg", "jpe", "png", "pbm", "pgm", "ppm", "sr", "ras", "tiff", "tif")
 
 
 @dataclass(frozen=True)
@@ -50,7 +60,6 @@ class Photographer:
         keeps: Whether the camera is held ready from one picture to the next.
 
     Args:
-        cameras: Of the robot.
         name: What its streams are called.
     """
 
@@ -65,7 +74,6 @@ class Photographer:
 
     @property
     def held(self) -> bool:
-        """Whether a camera is held ready."""
         return self._held is not None
 
     def hold(self, settings: PhotoSettings) -> None:
@@ -110,7 +118,7 @@ class Photographer:
             series = _Series(paths, settings.interval, held, stream)
             self._series.add(series)
         series.task.add_done_callback(lambda _: self._series.discard(series))
-        series.start()
+        series.thread.start()
         return series.task
 
     def close(self) -> None:
@@ -152,11 +160,7 @@ class _Series:
         self._held, self._stream = held, stream
         self._ended = threading.Event()
         self.task = Task("takePictures", 0, ask=self._cancel)
-        self._thread = threading.Thread(target=self._run, name="pictures", daemon=True)
-
-    def start(self) -> None:
-        """Begin."""
-        self._thread.start()
+        self.thread = threading.Thread(target=self._run, name="pictures", daemon=True)
 
     def end(self, error: Exception | None = None) -> None:
         """Take no more; the task ends, with this error."""
@@ -209,3 +213,50 @@ class _Series:
             except TimeoutError:
                 continue
         return None
+
+
+def picture_files(files: ClientFiles, folder: str, name: str, kind: str, count: int, overwrite: bool) -> list[Path]:
+    """Paths of the pictures of a series; folders on the way are made.
+
+    One picture has the name as it was given, several are name_0, name_1, ...; the ending of the format is added when
+    the name does not have it.
+
+    Raises:
+        BadValue: The name is that of a folder.
+        NaoqiError: There is such a file, and it must not be overwritten.
+        ValueError: A file leads out of the folder for recordings, or cannot be made there.
+    """
+    ending = f".{kind}"
+    stem = name[: -len(ending)] if name.lower().endswith(ending) else name
+    if not posixpath.basename(stem):
+        raise BadValue("fileName", name, "the name of a file")
+    names = [stem] if count == 1 else [f"{stem}_{number}" for number in range(count)]
+    paths = [files.to_write(posixpath.join(folder, one + ending)) for one in names]
+    check_new(paths, overwrite)
+    return paths
+
+
+def check_new(paths: Sequence[Path], overwrite: bool) -> None:
+    """Refuse to overwrite a file, unless that is wanted."""
+    there = next((path for path in paths if path.exists()), None)
+    if there is not None and not overwrite:
+        raise NaoqiError(f"file {str(there)!r} exists already, and is not to be overwritten")
+
+
+def encoded(picture: np.ndarray, kind: str) -> bytes:
+    """A picture in a file format.
+
+    Args:
+        picture: (height, width) grey or (height, width, 3) BGR, uint8.
+        kind: One of `FORMATS`.
+    """
+    if picture.ndim == 3 and picture.shape[2] == 1:
+        picture = picture[:, :, 0]
+    if kind in GREY_ONLY and picture.ndim == 3:
+        picture = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY)
+    elif kind == "ppm" and picture.ndim == 2:
+        picture = cv2.cvtColor(picture, cv2.COLOR_GRAY2BGR)
+    written, content = cv2.imencode(f".{kind}", picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    if not written:
+        raise NaoqiError(f"a picture of {picture.shape[1]}x{picture.shape[0]} cannot be written as {kind!r}")
+    return content.tobytes()

@@ -1,21 +1,22 @@
-"""Records films, from one moment of simulated time to another."""
+"""Records films to AVI files (MJPG, compressed, or IYUV, raw), from one moment of simulated time to another."""
 
 from __future__ import annotations
 
 import logging
 import threading
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from nao_sim_bridge.base.errors import SimulationError, SimulationStopped
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.base.whole_file import FileTrouble
-from nao_sim_bridge.cameras.settings import CameraTables
+from nao_sim_bridge.base.whole_file import FileTrouble, WholeFile
 from nao_sim_bridge.cameras.stream import CameraClosed
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.cameras.video_recorder_file import Film
 
 log = logging.getLogger("nao_sim.films")
 
@@ -23,6 +24,13 @@ LOOK_AGAIN = 1.0
 """How long a wait for a frame lasts before the next one begins, s of wall time."""
 CLOSING = 10.0
 """How long the end of the simulator waits for a file, s of wall time."""
+
+
+# FFmpeg's name of the codec, its pixels, and the four letters in the file. JPEG has the full range of brightness.
+FORMATS = {"MJPG": ("mjpeg", "yuvj420p", "MJPG"), "IYUV": ("rawvideo", "yuv420p", "IYUV")}
+# The smaller the better, 2 to 31: about that of a photo camera.
+JPEG_QUANTISER = "3"
+RATE_STEPS = 1000
 
 
 @dataclass(frozen=True)
@@ -48,23 +56,18 @@ class VideoRecorder:
     """One recording at a time.
 
     Args:
-        cameras: Of the robot.
-        runner: The simulation's thread.
-        tables: What the cameras can do.
         name: What its streams are called.
     """
 
-    def __init__(self, cameras: Any, runner: SimulationRunner, tables: CameraTables, name: str) -> None:
+    def __init__(self, cameras: Any, runner: SimulationRunner, name: str) -> None:
         self._cameras = cameras
         self._runner = runner
-        self._tables = tables
         self._name = name
         self._lock = threading.Lock()
         self._recording: _Recording | None = None
 
     @property
     def records(self) -> bool:
-        """Whether a recording is under way."""
         return self._recording is not None
 
     def start(self, path: Path, settings: FilmSettings) -> Task:
@@ -74,7 +77,7 @@ class VideoRecorder:
             NaoqiError: A recording is under way.
             FileTrouble: The file cannot be written.
         """
-        size = self._tables.resolution(settings.resolution)
+        size = self._cameras.tables.resolution(settings.resolution)
         with self._lock:
             if self._recording is not None:
                 raise NaoqiError(f"a recording to {str(self._recording.path)!r} is under way; stop it first")
@@ -122,7 +125,6 @@ class _Recording:
     """A film that grows with every frame of a camera, in a thread of its own.
 
     Attributes:
-        path: The file.
         ended: A task that ends with [frames, path] when the film is complete.
     """
 
@@ -137,7 +139,6 @@ class _Recording:
         self._thread = threading.Thread(target=self._run, name="film", daemon=True)
 
     def begin(self, stream: Any) -> None:
-        """Record the frames of a stream."""
         self._stream = stream
         self._thread.start()
 
@@ -187,3 +188,70 @@ class _Recording:
             self.ended.finish(error=NaoqiError(text))
         else:
             self.ended.finish([frames, path])
+
+
+class Film:
+    """An AVI file that grows frame by frame, at a constant rate.
+
+    It can be played at any moment, also when its process is killed or the disk is full.
+
+    Args:
+        path: The file; one that is there is replaced in the end.
+        rate: Frames a second.
+
+    Raises:
+        FileTrouble: It cannot be written.
+    """
+
+    def __init__(self, path: Path, kind: str, width: int, height: int, rate: float) -> None:
+        import av  # takes a moment, and few robots film
+
+        codec, pixels, letters = FORMATS[kind]
+        self.frames = 0
+        self._file = WholeFile(path)
+        # Each frame goes to the file at once, so that it ends with a whole one.
+        self._container = av.open(self._file, mode="w", format="avi", options={"flush_packets": "1"})
+        fraction = Fraction(round(rate * RATE_STEPS), RATE_STEPS)
+        self._stream = self._container.add_stream(codec, rate=fraction)
+        self._stream.width, self._stream.height, self._stream.pix_fmt = width, height, pixels
+        self._stream.codec_tag = letters
+        self._step = 1 / fraction
+        if kind == "MJPG":
+            self._stream.options = {"qmin": JPEG_QUANTISER, "qmax": JPEG_QUANTISER}
+
+    @property
+    def path(self) -> Path:
+        return self._file.path
+
+    def write(self, picture: np.ndarray) -> None:
+        """Append a frame, (height, width) grey or (height, width, 3) BGR, uint8.
+
+        Raises:
+            FileTrouble: It cannot be written; the film ends with the frame before.
+        """
+        import av
+
+        grey = picture.ndim == 2
+        frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="gray" if grey else "bgr24")
+        frame.pts, frame.time_base = self.frames, self._step
+        for packet in self._stream.encode(frame):
+            self._container.mux(packet)
+        self._file.flush()
+        self.frames += 1
+
+    def close(self) -> None:
+        """Complete the file; without a frame there is none.
+
+        Raises:
+            FileTrouble: It is not complete.
+        """
+        try:
+            if self.frames:
+                for packet in self._stream.encode():
+                    self._container.mux(packet)
+        finally:
+            self._container.close()
+        if self.frames:
+            self._file.close()
+        else:
+            self._file.discard()
