@@ -15,7 +15,7 @@ from nao_sim_bridge.naoqi.body.led_names import LedNames
 from nao_sim_bridge.naoqi.memory import live_keys
 from nao_sim_bridge.naoqi.memory.extractor import MOST, Extractor, Subscription
 from nao_sim_bridge.naoqi.memory.store import EVENT, MemoryStore
-from nao_sim_bridge.naoqi.motion.walk_events import FAILED, MoveFailures
+from nao_sim_bridge.naoqi.motion.walking import FAILED, MoveFailures
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 
 LEDS = load_leds()

@@ -18,8 +18,8 @@ import qi
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.api import Method, Overload, module_methods, qi_type
-from nao_sim_bridge.naoqi.binding.argument_sizes import check_sizes
 from nao_sim_bridge.naoqi.binding.common import CommonModule
+from nao_sim_bridge.naoqi.binding.limits import check_sizes
 from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to
 
 log = logging.getLogger("nao_sim.services")

@@ -36,12 +36,7 @@ BEGINNINGS: Mapping[str, tuple[Callable[[BatteryReading], bool], Any]] = {
 
 
 class ALBattery:
-    """ALBattery as the simulated robot offers it.
-
-    Args:
-        runner: Whose snapshots tell the charge.
-        events: Which can be switched.
-    """
+    """ALBattery as the simulated robot offers it."""
 
     def __init__(self, runner: SimulationRunner, events: BatteryEvents) -> None:
         self._runner = runner
@@ -59,9 +54,6 @@ class BatteryEvents:
 
     Attributes:
         enabled: Whether events are raised; any thread may switch it.
-
-    Args:
-        memory: Where events go.
     """
 
     def __init__(self, memory: MemoryStore) -> None:

@@ -10,7 +10,7 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.temperatures import HEAD, NOTHING_HOT, Hot, hot_devices
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.naoqi.binding.severity import severity_value
+from nao_sim_bridge.naoqi.body.diagnosis import severity_value
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 NAME = "ALBodyTemperature"
@@ -23,12 +23,7 @@ HEAD_STEP = 1.0
 
 
 class ALBodyTemperature:
-    """ALBodyTemperature as the simulated robot offers it.
-
-    Args:
-        runner: Whose snapshots tell the temperatures.
-        events: Which can be switched.
-    """
+    """ALBodyTemperature as the simulated robot offers it."""
 
     def __init__(self, runner: SimulationRunner, events: TemperatureEvents) -> None:
         self._runner = runner
@@ -49,11 +44,6 @@ class TemperatureEvents:
 
     Attributes:
         enabled: Whether events are raised; any thread may switch it.
-
-    Args:
-        model: The robot.
-        head: From when on its head is hot.
-        memory: Where events go.
     """
 
     def __init__(self, model: RobotModel, head: HeadSettings, memory: MemoryStore) -> None:

@@ -28,11 +28,6 @@ class DCM:
     """DCM as the simulated robot offers it.
 
     Commands go past ALMotion: a task of it that moves one of the joints ends.
-
-    Args:
-        simulation: Whose actuators these are; touched in the simulation thread only.
-        runner: That thread.
-        memory: Where preferences are.
     """
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:

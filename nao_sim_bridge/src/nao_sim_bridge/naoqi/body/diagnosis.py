@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Iterable
+from typing import Iterable, Sequence
 
 from nao_sim_bridge.body.faults import CRITICAL, NEGLIGIBLE, Faults, severity
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.sequences import STIFFEN_TIME
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.severity import severity_value
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 NAME = "ALDiagnosis"
 ACTIVE, PASSIVE = "ActiveDiagnosisErrorChanged", "PassiveDiagnosisErrorChanged"
 BOTH, READY, FINISHED = (
-    "ALDiagnosis/DiagnosisErrorChanged",
-    "ALDiagnosis/RobotIsReady",
-    "ALDiagnosis/ActiveDiagnosisFinished",
+    f"{NAME}/{event}" for event in ("DiagnosisErrorChanged", "RobotIsReady", "ActiveDiagnosisFinished")
 )
 # The active diagnosis looks for the current of the motors this long after they were told to be stiff, s.
 TRY_TIME = STIFFEN_TIME + 0.1
@@ -24,11 +21,7 @@ NOTHING = (NEGLIGIBLE, ())
 
 
 class ALDiagnosis:
-    """ALDiagnosis as the simulated robot offers it.
-
-    Args:
-        events: What was found last; can be switched.
-    """
+    """ALDiagnosis as the simulated robot offers it."""
 
     def __init__(self, events: DiagnosisResults) -> None:
         self._events = events
@@ -59,10 +52,6 @@ class DiagnosisResults:
         passive: Sensors that do not answer.
         both: The two together.
         enabled: Whether events are raised; any thread may switch it.
-
-    Args:
-        simulation: Whose devices these are.
-        memory: Where events go, and those of waking up come from.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore) -> None:
@@ -109,6 +98,11 @@ class DiagnosisResults:
         for event, old, new in zip((ACTIVE, PASSIVE, BOTH), before, now):
             if new != old and self.enabled:
                 self._memory.raise_event(event, severity_value(*new))
+
+
+def severity_value(severity: int, names: Sequence[str]) -> list:
+    """[severity, [names]]: how bad something is, and what has it, as answers and events of NAOqi tell it."""
+    return [severity, list(names)]
 
 
 def _result(devices: Iterable[str]) -> tuple[int, tuple[str, ...]]:

@@ -8,11 +8,7 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 
 class LedNames:
-    """LED and group names.
-
-    Args:
-        layout: The robot's own.
-    """
+    """LED and group names."""
 
     def __init__(self, layout: LedLayout) -> None:
         self._layout = layout

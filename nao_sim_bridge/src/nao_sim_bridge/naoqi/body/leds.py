@@ -17,12 +17,7 @@ from nao_sim_bridge.naoqi.body.led_names import LedNames
 
 
 class ALLeds:
-    """ALLeds as the simulated robot offers it.
-
-    Args:
-        simulation: Whose LEDs these are; touched in the simulation thread only.
-        runner: That thread.
-    """
+    """ALLeds as the simulated robot offers it."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation

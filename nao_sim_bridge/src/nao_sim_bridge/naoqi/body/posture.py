@@ -1,4 +1,4 @@
-"""ALRobotPosture of the simulated robot. Only NAOqi methods live here."""
+"""ALRobotPosture of the simulated robot and its events."""
 
 from __future__ import annotations
 
@@ -6,27 +6,26 @@ from typing import Callable
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.control.balance.posture_recognition import FAMILIES, Recognition, recognise
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.control.balance.posture_recognition import FAMILIES, recognise
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import load_moves
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.postures import load_postures
+from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.motion.wake import AWAKE
+from nao_sim_bridge.naoqi.motion.wake import set_awake
 
+POSTURE, FAMILY = "PostureChanged", "PostureFamilyChanged"
+PERIOD = 1.0
+"""Simulated time between two looks, s."""
 DEFAULT_TRIES = 3
 
 
 class ALRobotPosture:
-    """ALRobotPosture as the simulated robot offers it.
-
-    Args:
-        simulation: Whose joints these are; touched in the simulation thread only.
-        runner: That thread.
-        memory: Where it says that the robot is awake.
-    """
+    """ALRobotPosture as the simulated robot offers it. Only NAOqi methods live here."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
         self._simulation = simulation
@@ -40,9 +39,7 @@ class ALRobotPosture:
         change = self._checked(name, speed)
 
         def start() -> Task:
-            # It stiffens all joints, which is what being awake means.
-            if not self._memory.get(AWAKE):
-                self._memory.raise_event(AWAKE, True)
+            set_awake(self._memory, True)  # it stiffens all joints, which is what being awake means
             self._change = change().start("goToPosture")
             return self._change
 
@@ -70,21 +67,16 @@ class ALRobotPosture:
         self._tries = tries
 
     def getPosture(self) -> str:
-        return self._recognise().posture
+        return recognise(self._simulation.model, self._runner.snapshot).posture
 
     def getPostureFamily(self) -> str:
-        return self._recognise().family
+        return recognise(self._simulation.model, self._runner.snapshot).family
 
     def getPostureList(self) -> list[str]:
         return sorted(load_postures().by_name)
 
     def getPostureFamilyList(self) -> list[str]:
         return list(FAMILIES)
-
-    # --- inside ---------------------------------------------------------------------------------------------------
-
-    def _recognise(self) -> Recognition:
-        return recognise(self._simulation.model, self._runner.snapshot)
 
     def _checked(self, name: str, speed: float) -> Callable[[], PostureChange]:
         """Makes the change of posture, once called in the simulation thread: a reset makes a new robot.
@@ -101,3 +93,26 @@ class ALRobotPosture:
         return lambda: PostureChange(
             self._simulation.robot, lambda: self._simulation.snapshot, name, fraction, tries, moves
         )
+
+
+class PostureEvents:
+    """Raises `PostureChanged` and `PostureFamilyChanged`; called after every tick, in the simulation thread."""
+
+    def __init__(self, model: RobotModel, memory: MemoryStore) -> None:
+        self._model = model
+        self._memory = memory
+        self._due = 0.0
+        self._known: dict[str, str] = {}
+        for event in (POSTURE, FAMILY):
+            memory.declare_event(event, "ALRobotPosture")
+
+    def __call__(self, snapshot: Snapshot) -> None:
+        """Look at the robot when it is time to."""
+        if snapshot.time < self._due:
+            return
+        self._due = snapshot.time + PERIOD
+        seen = recognise(self._model, snapshot)
+        for event, name in ((POSTURE, seen.posture), (FAMILY, seen.family)):
+            if self._known.get(event) != name:
+                self._known[event] = name
+                self._memory.raise_event(event, name)

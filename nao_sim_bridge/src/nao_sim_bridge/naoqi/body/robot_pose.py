@@ -30,12 +30,7 @@ PERIOD = 0.5
 
 
 class ALRobotPose:
-    """ALRobotPose as the simulated robot offers it.
-
-    Args:
-        runner: Whose snapshots tell the time.
-        watch: Which pose it is in, and since when.
-    """
+    """ALRobotPose as the simulated robot offers it."""
 
     def __init__(self, runner: SimulationRunner, watch: PoseWatch) -> None:
         self._runner = runner
@@ -54,9 +49,6 @@ class PoseWatch:
 
     Attributes:
         state: Pose, and the simulated time in s since which the robot is in it; replaced as a whole.
-
-    Args:
-        model: The robot.
     """
 
     def __init__(self, model: RobotModel) -> None:

@@ -16,11 +16,7 @@ LIMP_BELOW, STIFF_ABOVE = 0.05, 0.95
 
 
 class StiffnessEvents:
-    """Raises `BodyStiffnessChanged`; called after every tick, in the simulation thread.
-
-    Args:
-        memory: Where events go.
-    """
+    """Raises `BodyStiffnessChanged`; called after every tick, in the simulation thread."""
 
     def __init__(self, memory: MemoryStore) -> None:
         self._memory = memory
@@ -43,12 +39,7 @@ class StiffnessEvents:
 
 
 class ALSensors:
-    """ALSensors as the simulated robot offers it. Only NAOqi methods live here.
-
-    Args:
-        events: What it raises.
-        runner: Whose robot it looks at.
-    """
+    """ALSensors as the simulated robot offers it. Only NAOqi methods live here."""
 
     def __init__(self, events: StiffnessEvents, runner: SimulationRunner) -> None:
         self._events = events

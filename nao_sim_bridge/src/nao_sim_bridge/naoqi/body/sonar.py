@@ -49,11 +49,6 @@ class Sonar:
 
     Attributes:
         firing: Whether they fire.
-
-    Args:
-        simulation: Of the robot.
-        runner: Its thread.
-        memory: Where events go.
     """
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
@@ -144,11 +139,7 @@ def _told(snapshot: Snapshot, side: int) -> Echoes:
 
 
 class ALSonar:
-    """ALSonar as the simulated robot offers it. Only NAOqi methods live here; most are those of an extractor.
-
-    Args:
-        sonar: What is measured.
-    """
+    """ALSonar as the simulated robot offers it. Only NAOqi methods live here; most are those of an extractor."""
 
     def __init__(self, sonar: Sonar) -> None:
         self._sonar = sonar

@@ -26,9 +26,6 @@ class TactileGestures:
         times: How long touches may take.
         on_gesture: Signal with the name of each gesture.
         on_release: Signal without a value.
-
-    Args:
-        memory: Where events go.
     """
 
     def __init__(self, memory: MemoryStore) -> None:
@@ -54,11 +51,7 @@ class TactileGestures:
 
 
 class ALTactileGesture:
-    """ALTactileGesture as the simulated robot offers it. Only NAOqi methods live here, and its signals.
-
-    Args:
-        gestures: What looks at the head.
-    """
+    """ALTactileGesture as the simulated robot offers it. Only NAOqi methods live here, and its signals."""
 
     def __init__(self, gestures: TactileGestures) -> None:
         self._gestures = gestures
@@ -66,7 +59,6 @@ class ALTactileGesture:
 
     @property
     def signals(self) -> dict[str, Any]:
-        """Signals of the service by name."""
         return {"onGesture": self._gestures.on_gesture, "onRelease": self._gestures.on_release}
 
     def take_over(self, former: ALTactileGesture) -> None:
@@ -92,15 +84,16 @@ class ALTactileGesture:
         return [] if sequence is None else sequence
 
     def setHoldTime(self, seconds: Any) -> bool:
-        self._gestures.times.hold = _time(seconds, "hold time")
-        return True
+        return self._set_time("hold", seconds)
 
     def setSequenceTime(self, seconds: Any) -> bool:
-        self._gestures.times.sequence = _time(seconds, "sequence time")
-        return True
+        return self._set_time("sequence", seconds)
 
     def setSettleTime(self, seconds: Any) -> bool:
-        self._gestures.times.settle = _time(seconds, "settle time")
+        return self._set_time("settle", seconds)
+
+    def _set_time(self, which: str, seconds: Any) -> bool:
+        setattr(self._gestures.times, which, _time(seconds, f"{which} time"))
         return True
 
 

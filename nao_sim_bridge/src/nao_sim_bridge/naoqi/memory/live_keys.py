@@ -12,13 +12,12 @@ from nao_sim_bridge.base.config import read_json
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.readings import FootForces
+from nao_sim_bridge.body.sensors.battery import BatteryReading
 from nao_sim_bridge.body.sensors.heat import heat_status
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.leds_layout import LedLayout
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.naoqi.memory.battery_keys import READERS as BATTERY
-from nao_sim_bridge.naoqi.memory.battery_keys import battery_reader
 
 FILE = "naoqi_memory_keys.json"
 GRAVITY = 9.81
@@ -31,6 +30,19 @@ JOINT_SUFFIXES: Mapping[str, Callable[[int], Read]] = {
     "Temperature/Sensor/Value": lambda i: lambda s: s.temperatures[i],
     "Temperature/Sensor/Status": lambda i: lambda s: heat_status(s.temperatures[i]),
     "Hardness/Actuator/Value": lambda i: lambda s: s.stiffnesses[i],
+}
+# Current into the battery is positive: clients take a negative one for discharging. Voltages are in mV, capacities in
+# mAh.
+BATTERY: Mapping[str, Callable[[BatteryReading], Any]] = {
+    "Charge/Sensor/Value": lambda battery: battery.charge,
+    "Charge/Sensor/Status": lambda battery: int(battery.status),
+    "Charge/Sensor/CellVoltageMin": lambda battery: _milli(battery.cell_voltages[0]),
+    "Charge/Sensor/CellVoltageMax": lambda battery: _milli(battery.cell_voltages[1]),
+    "Charge/Sensor/TotalVoltage": lambda battery: _milli(battery.voltage),
+    "Charge/Sensor/RemainingCapacity": lambda battery: _milli(battery.capacity_ah * battery.charge),
+    "Charge/Sensor/FullChargeCapacity": lambda battery: _milli(battery.capacity_ah),
+    "Current/Sensor/Value": lambda battery: -battery.current,
+    "Temperature/Sensor/Value": lambda battery: battery.temperature,
 }
 CORNERS = ("FrontLeft", "FrontRight", "RearLeft", "RearRight")
 AXES = {"X": 0, "Y": 1, "Z": 2}
@@ -118,6 +130,15 @@ def _vector(field: str, axis: str) -> Read:
     return lambda s: getattr(s.imu, field)[index]
 
 
+def _battery(key: str) -> Read:
+    read = BATTERY[key]
+    return lambda s: read(s.battery)
+
+
+def _milli(value: float) -> int:
+    return round(1000.0 * value)
+
+
 _PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (
     (r"([LR])Foot/FSR/(FrontLeft|FrontRight|RearLeft|RearRight)/Sensor/Value", _corner),
     (r"([LR])Foot/FSR/TotalWeight/Sensor/Value", _total),
@@ -128,7 +149,7 @@ _PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (
     (r"InertialSensor/Acc([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
     (r"InertialSensor/Angle([XYZ])/Sensor/Value", lambda a: _vector("angles", a)),
     (r"((?:[LR]Foot/Bumper|[LR]Hand/Touch|Head/Touch|ChestBoard/Button).*?)/Sensor/Value", _touch),
-    (rf"Battery/({'|'.join(BATTERY)})", battery_reader),
+    (rf"Battery/({'|'.join(BATTERY)})", _battery),
     (r"Head/Temperature/Sensor/Value", lambda: lambda s: s.head_temperature),
 )
 

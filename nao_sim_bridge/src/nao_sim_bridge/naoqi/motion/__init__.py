@@ -7,22 +7,12 @@ from typing import Any
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.motion.angles import Angles
-from nao_sim_bridge.naoqi.motion.bezier import Bezier
-from nao_sim_bridge.naoqi.motion.body import Body
-from nao_sim_bridge.naoqi.motion.cartesian import Cartesian
-from nao_sim_bridge.naoqi.motion.collisions import Collisions
-from nao_sim_bridge.naoqi.motion.falls import Falls
+from nao_sim_bridge.naoqi.motion.cartesian import Cartesian, Mass
 from nao_sim_bridge.naoqi.motion.footsteps import Footsteps
-from nao_sim_bridge.naoqi.motion.idling import Idling
-from nao_sim_bridge.naoqi.motion.mass import Mass
-from nao_sim_bridge.naoqi.motion.stiffness import Stiffness
-from nao_sim_bridge.naoqi.motion.switches import Switches
-from nao_sim_bridge.naoqi.motion.task_list import TaskList
+from nao_sim_bridge.naoqi.motion.joints import Angles, Bezier, Body, Stiffness, TaskList
+from nao_sim_bridge.naoqi.motion.reflexes import Collisions, Falls, Idling, Switches
 from nao_sim_bridge.naoqi.motion.wake import Wake
-from nao_sim_bridge.naoqi.motion.walk_events import MoveFailures
-from nao_sim_bridge.naoqi.motion.walk_position import WalkPosition
-from nao_sim_bridge.naoqi.motion.walking import Walking
+from nao_sim_bridge.naoqi.motion.walking import MoveFailures, Walking, WalkPosition
 from nao_sim_bridge.naoqi.motion.whole_body import WholeBody
 
 

@@ -1,4 +1,4 @@
-"""Part of ALMotion: where effectors are, and moving them there."""
+"""Parts of ALMotion about places: where effectors are, moving them there, the centre of mass."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
 from nao_sim_bridge.control.whole_body.cartesian_move import CartesianMove, EffectorMove, moving_joints
 from nao_sim_bridge.control.whole_body.cartesian_path import PosePath, joint_curves
 from nao_sim_bridge.control.whole_body.inverse_kinematics import solve
 from nao_sim_bridge.control.whole_body.tasks import end_paths, lead_to, led_joints, start_paths
-from nao_sim_bridge.model.frames import Placement, frame_of, sensor_places, space_in_torso
+from nao_sim_bridge.model.body_mass import center_of_links, convex_hull, links_of, mass_of
+from nao_sim_bridge.model.frames import EVEN, TORSO, Placement, frame_of, sensor_places, space_in_torso
 from nao_sim_bridge.naoqi.binding.arguments import number
-from nao_sim_bridge.naoqi.motion.cartesian_arguments import (
+from nao_sim_bridge.naoqi.motion.arguments import (
     as_position,
     as_transform,
     effectors,
@@ -172,3 +174,35 @@ def _moved(pose: np.ndarray, change: np.ndarray) -> np.ndarray:
     moved[:3, :3] = change[:3, :3] @ pose[:3, :3]
     moved[:3, 3] += change[:3, 3]
     return moved
+
+
+# A sole this much higher than the other one, m, carries nothing.
+LIFTED = 0.005
+
+
+class Mass(MotionPart):
+    """What follows from the masses of the links and the soles on the ground."""
+
+    def getMass(self, name: str) -> float:
+        return mass_of(links_of(self._model, name))
+
+    def getCOM(self, name: str, space: int, use_sensors: bool) -> list[float]:
+        links = links_of(self._model, name)
+        now = self._runner.snapshot
+        center = center_of_links(self._model, links, now.positions if use_sensors else self._robot.joints.commands)
+        frame = space_in_torso(self._model, space_of(space), placement(self._model, self._robot, now, use_sensors))
+        return (np.linalg.inv(frame) @ np.append(center, 1.0))[:3].tolist()
+
+    def getSupportPolygon(self, space: int, use_sensors: bool) -> list[list[float]]:
+        if space_of(space) == TORSO:
+            raise BadValue("space", space, "1 (FRAME_WORLD) or 2 (FRAME_ROBOT)")
+        placed = placement(self._model, self._robot, self._runner.snapshot, use_sensors)
+        to_space = np.linalg.inv(space_in_torso(self._model, space, placed))
+        soles = []
+        for side in ("L", "R"):
+            contour = self._model.sole_polygon(side)
+            corners = np.column_stack((contour, np.full((len(contour), 2), (-self._model.sole_height, 1.0))))
+            soles.append((to_space @ placed.links[f"{side}AnkleRoll"] @ corners.T).T)
+        ground = min(sole[:, 2].min() for sole in soles) + EVEN
+        standing = [sole for sole in soles if sole[:, 2].min() <= ground + LIFTED]
+        return [list(corner) for corner in convex_hull(np.vstack(standing)[:, :2])]

@@ -1,8 +1,8 @@
-"""Part of ALMotion: walking at a velocity or to a place, its end, and the arms meanwhile."""
+"""Parts of ALMotion about walking: at a velocity or to a place, its end, the arms meanwhile, where the robot is."""
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Any, Callable, Iterable, Sequence
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.sizes import require_few
@@ -10,12 +10,37 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of, gait_of_feet
 from nao_sim_bridge.naoqi.motion.part import MotionPart
-from nao_sim_bridge.naoqi.motion.walk_events import MoveFailures
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
 from nao_sim_bridge.walk.locomotion import Locomotion
+
+FAILED = "ALMotion/MoveFailed"
+NOT_STARTED, STOPPED = 0, 1
+
+
+class MoveFailures:
+    """Raises `ALMotion/MoveFailed` with [cause, 0 not started or 1 stopped on the way, place of an obstacle or None].
+
+    Args:
+        memory: Where events go.
+    """
+
+    def __init__(self, memory: MemoryStore) -> None:
+        self._memory = memory
+        memory.declare_event(FAILED, "ALMotion")
+
+    def watch(self, locomotion: Locomotion) -> None:
+        """Tell of the moves of this one; more than once is as good as once. Simulation thread only."""
+        if self._tell not in locomotion.failures:
+            locomotion.failures.append(self._tell)
+
+    def _tell(self, cause: str, started: bool, obstacle: Sequence[float] | None) -> None:
+        place = None if obstacle is None else list(obstacle)
+        self._memory.raise_event(FAILED, [cause, STOPPED if started else NOT_STARTED, place])
+
 
 ARM_GROUPS = {"LArm": ("LArm",), "RArm": ("RArm",), "Arms": ("LArm", "RArm")}
 # Shares of a speed may be beyond 1 by this: rounding of single precision.
@@ -178,3 +203,20 @@ def _share(value: Any, field: str, least: float) -> float:
     if not least - ROUNDING <= checked <= 1.0 + ROUNDING:
         raise BadValue(field, value, f"{least:g} to 1")
     return min(max(checked, least), 1.0)
+
+
+class WalkPosition(MotionPart):
+    """Poses [x, y, theta] and velocities of the robot on the ground, in FRAME_WORLD."""
+
+    def getRobotPosition(self, use_sensors: bool) -> Task:
+        return self._read("getRobotPosition", lambda locomotion: locomotion.position(bool(use_sensors)))
+
+    def getNextRobotPosition(self) -> Task:
+        return self._read("getNextRobotPosition", lambda locomotion: locomotion.next_position())
+
+    def getRobotVelocity(self) -> Task:
+        return self._read("getRobotVelocity", lambda locomotion: locomotion.velocity())
+
+    def _read(self, call: str, reading: Callable[[Locomotion], Iterable[float]]) -> Task:
+        # Between two ticks: plan, commands and sensors are of one moment there.
+        return self._runner.execute(lambda: list(reading(self._robot.locomotion)), call)

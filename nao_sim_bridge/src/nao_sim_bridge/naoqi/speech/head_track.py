@@ -13,7 +13,7 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.frames import ROBOT, Placement, space_in_torso
 from nao_sim_bridge.model.kinematics import LinkPoses, quaternion_matrix, transform
-from nao_sim_bridge.naoqi.motion.cartesian_arguments import as_position
+from nao_sim_bridge.naoqi.motion.arguments import as_position
 
 # Snapshots that are kept: about a second.
 KEPT = 256

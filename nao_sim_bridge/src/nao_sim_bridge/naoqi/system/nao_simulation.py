@@ -10,7 +10,7 @@ from nao_sim_bridge.base.record_dir import world_of_client
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import FASTEST
 from nao_sim_bridge.naoqi.binding.binding import typed
-from nao_sim_bridge.naoqi.binding.client_watch import ClientWatch
+from nao_sim_bridge.naoqi.binding.client_calls import ClientWatch
 
 NAME = "NaoSimulation"
 
