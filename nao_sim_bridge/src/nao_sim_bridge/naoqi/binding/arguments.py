@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, Collection
 
-from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 
 
 def number(value: Any, field: str, low: float = -math.inf, high: float = math.inf) -> float:
@@ -31,6 +31,17 @@ def text(value: Any, field: str, longest: int) -> str:
     if len(value) > longest:
         raise BadValue(field, value[:40] + "...", f"{longest} characters at most")
     return value
+
+
+def known(name: Any, kind: str, names: Collection[str]) -> Any:
+    """`name`, which has to be one of `names`.
+
+    Raises:
+        UnknownName: It is none of them, of which `kind` says what they name.
+    """
+    if name not in names:
+        raise UnknownName(kind, name, names)
+    return name
 
 
 def numbers(values: Any, field: str, low: float = -math.inf, high: float = math.inf) -> list[float]:

@@ -9,10 +9,10 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.cartesian import Cartesian, Mass
 from nao_sim_bridge.naoqi.motion.footsteps import Footsteps
-from nao_sim_bridge.naoqi.motion.joints import Angles, Bezier, Body, Stiffness, TaskList
-from nao_sim_bridge.naoqi.motion.reflexes import Collisions, Falls, Idling, Switches
+from nao_sim_bridge.naoqi.motion.joints import Body, Joints, TaskList
+from nao_sim_bridge.naoqi.motion.reflexes import Collisions, Idling, Switches
 from nao_sim_bridge.naoqi.motion.wake import Wake
-from nao_sim_bridge.naoqi.motion.walking import MoveFailures, Walking, WalkPosition
+from nao_sim_bridge.naoqi.motion.walking import MoveFailures, Walking
 from nao_sim_bridge.naoqi.motion.whole_body import WholeBody
 
 
@@ -20,20 +20,9 @@ def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore)
     """Objects that together have the methods of ALMotion."""
     failures = MoveFailures(memory)
     return [
-        Body(simulation, runner),
-        Angles(simulation, runner),
-        Bezier(simulation, runner),
-        Stiffness(simulation, runner),
+        *(part(simulation, runner) for part in (Body, Joints, TaskList, Cartesian, Mass, WholeBody)),
         Wake(simulation, runner, memory),
-        TaskList(simulation, runner),
-        Cartesian(simulation, runner),
-        Mass(simulation, runner),
-        WholeBody(simulation, runner),
         Walking(simulation, runner, failures),
         Footsteps(simulation, runner, failures),
-        WalkPosition(simulation, runner),
-        Falls(simulation, runner),
-        Collisions(simulation, runner),
-        Idling(simulation, runner),
-        Switches(simulation, runner),
+        *(part(simulation, runner) for part in (Collisions, Idling, Switches)),
     ]

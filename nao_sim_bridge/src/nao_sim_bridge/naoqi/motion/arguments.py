@@ -7,14 +7,20 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.control.joints.bezier import BezierCurve, Handle, Interpolation, KeyPoint
+from nao_sim_bridge.model.frames import ROBOT, TORSO, WORLD
 from nao_sim_bridge.model.joint_names import joint_names
 from nao_sim_bridge.model.kinematics import matrix_rpy, rpy_matrix, transform
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.naoqi.binding.arguments import number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+
+TYPES = ", ".join(f"{kind.value} ({kind.name})" for kind in Interpolation)
+POINT_FORM = "an angle, or [angle, [type, dTime, dAngle], [type, dTime, dAngle]] with the handles before and after"
+EFFECTORS = ("Head", "LArm", "RArm", "LLeg", "RLeg", "Torso")
+LARGEST_MASK = 63
 
 
 def joint_indices(names: Any, model: RobotModel) -> list[int]:
@@ -28,6 +34,23 @@ def joint_indices(names: Any, model: RobotModel) -> list[int]:
     if twice:
         raise NaoqiError(f"named twice: {', '.join(twice)}")
     return [model.joint_index[name] for name in found]
+
+
+def space_of(value: Any) -> int:
+    """The frame that a caller names by its number.
+
+    Raises:
+        BadValue: There is no such frame.
+    """
+    if isinstance(value, bool) or value not in (TORSO, WORLD, ROBOT):
+        raise BadValue("space", value, "0 (FRAME_TORSO), 1 (FRAME_WORLD) or 2 (FRAME_ROBOT)")
+    return int(value)
+
+
+def require_rising(times: Sequence[float], field: str, given: Any) -> None:
+    """Raise a BadValue that shows what was `given`, unless times rise and the first is above 0 s."""
+    if times[0] <= 0.0 or any(b <= a for a, b in zip(times, times[1:])):
+        raise BadValue(field, given, "times that rise, the first above 0 s")
 
 
 def key_frames(count: int, values: Any, times: Any, field: str) -> list[tuple[list[float], list[float]]]:
@@ -45,8 +68,7 @@ def key_frames(count: int, values: Any, times: Any, field: str) -> list[tuple[li
     for joint_values, joint_times in zip(value_lists, time_lists):
         if len(joint_values) != len(joint_times):
             raise BadValue("timeLists", times, f"as many times as values for each joint: {len(joint_values)} here")
-        if joint_times[0] <= 0.0 or any(b <= a for a, b in zip(joint_times, joint_times[1:])):
-            raise BadValue("timeLists", joint_times, "times that rise, the first above 0 s")
+        require_rising(joint_times, "timeLists", joint_times)
     return list(zip(time_lists, value_lists))
 
 
@@ -79,17 +101,11 @@ def _time_lists(times: Any, count: int, lengths: Sequence[int]) -> list[list[flo
     return [flat] * count
 
 
-TYPES = ", ".join(f"{kind.value} ({kind.name})" for kind in Interpolation)
-POINT_FORM = "an angle, or [angle, [type, dTime, dAngle], [type, dTime, dAngle]] with the handles before and after"
-
-
 def bezier_key_points(count: int, times: Any, points: Any) -> list[list[KeyPoint]]:
     """Key points of each of `count` joints.
 
-    Args:
-        count: How many joints there are.
-        times: A list of rising times in s for each joint; a single joint may have its times alone.
-        points: As many control points for each joint; a single joint may have its points alone when its times are.
+    `times` are a list of rising times in s for each joint, `points` as many control points for each; a single joint may
+    have both without the list around them.
 
     Raises:
         BadValue: Something has another shape, there are too many points, times do not rise from above 0, or a handle
@@ -122,8 +138,7 @@ def _one_list_each(values: Any, count: int, field: str) -> list[Sequence[Any]]:
 
 def _joint(times: Sequence[Any], points: Sequence[Any]) -> list[KeyPoint]:
     at = numbers(times, "times")
-    if at[0] <= 0.0 or any(b <= a for a, b in zip(at, at[1:])):
-        raise BadValue("times", at, "times that rise, the first above 0 s")
+    require_rising(at, "times", at)
     if len(at) != len(points):
         raise BadValue("controlPoints", points, f"as many points as times for each joint: {len(at)} here")
     return [_point(time, point) for time, point in zip(at, points)]
@@ -134,8 +149,7 @@ def _point(time: float, point: Any) -> KeyPoint:
         return KeyPoint(time, number(point, "controlPoints"))
     if len(point) not in (1, 2, 3):
         raise BadValue("controlPoints", point, POINT_FORM)
-    handles = [_handle(entry) for entry in point[1:]] + [Handle()] * (3 - len(point))
-    before, after = handles
+    before, after = [_handle(entry) for entry in point[1:]] + [Handle()] * (3 - len(point))
     if before.time > 0.0 or after.time < 0.0:
         raise BadValue("controlPoints", point, "a first handle with dTime of 0 or less and a second one of 0 or more")
     return KeyPoint(time, number(point[0], "controlPoints"), before, after)
@@ -150,10 +164,6 @@ def _handle(entry: Any) -> Handle:
     return Handle(Interpolation(int(kind)), time, angle)
 
 
-EFFECTORS = ("Head", "LArm", "RArm", "LLeg", "RLeg", "Torso")
-LARGEST_MASK = 63
-
-
 def effectors(names: Any) -> list[str]:
     """Effectors, each once.
 
@@ -164,10 +174,7 @@ def effectors(names: Any) -> list[str]:
     listed = [names] if isinstance(names, str) else names
     if not isinstance(listed, (list, tuple)) or not listed or len(set(map(str, listed))) != len(listed):
         raise BadValue("names", names, f"one or several of {', '.join(EFFECTORS)}, each once")
-    for name in listed:
-        if name not in EFFECTORS:
-            raise UnknownName("effector", name, EFFECTORS)
-    return list(listed)
+    return [known(name, "effector", EFFECTORS) for name in listed]
 
 
 def mask_of(value: Any) -> int:
@@ -247,7 +254,6 @@ def paths_of(
         moments = numbers(at if isinstance(at, (list, tuple)) else [at], "times")
         if len(moments) != len(poses):
             raise BadValue("times", at, f"as many times as poses: {len(poses)} here")
-        if moments[0] <= 0.0 or any(b <= a for a, b in zip(moments, moments[1:])):
-            raise BadValue("times", at, "times that rise, the first above 0 s")
+        require_rising(moments, "times", at)
         found.append((moments, poses))
     return found

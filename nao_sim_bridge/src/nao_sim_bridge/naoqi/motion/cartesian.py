@@ -14,7 +14,7 @@ from nao_sim_bridge.control.whole_body.cartesian_path import PosePath, joint_cur
 from nao_sim_bridge.control.whole_body.inverse_kinematics import solve
 from nao_sim_bridge.control.whole_body.tasks import end_paths, lead_to, led_joints, start_paths
 from nao_sim_bridge.model.body_mass import center_of_links, convex_hull, links_of, mass_of
-from nao_sim_bridge.model.frames import EVEN, TORSO, Placement, frame_of, sensor_places, space_in_torso
+from nao_sim_bridge.model.frames import EVEN, TORSO, Placement, frame_of, sensor_places
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.motion.arguments import (
     as_position,
@@ -25,9 +25,9 @@ from nao_sim_bridge.naoqi.motion.arguments import (
     paths_of,
     pose_of_position,
     pose_of_transform,
+    space_of,
 )
 from nao_sim_bridge.naoqi.motion.part import MotionPart
-from nao_sim_bridge.naoqi.motion.placements import placement, space_of
 
 # Top speeds of an effector under whole body control, m/s and rad/s.
 LEAD_SPEED = (0.5, 3.0)
@@ -59,14 +59,10 @@ class Cartesian(MotionPart):
         return self._set_many("setTransforms", names, spaces, targets, pose_of_transform, fraction, mask)
 
     def changePosition(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
-        now = self._pose(name, space, self._placement(False))
-        target = _moved(now, pose_of_position(change))
-        return self._set("changePosition", [name], space, [target], fraction, mask)
+        return self._change("changePosition", name, space, change, pose_of_position, fraction, mask)
 
     def changeTransform(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
-        now = self._pose(name, space, self._placement(False))
-        target = _moved(now, pose_of_transform(change))
-        return self._set("changeTransform", [name], space, [target], fraction, mask)
+        return self._change("changeTransform", name, space, change, pose_of_transform, fraction, mask)
 
     def positionInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
         call = "positionInterpolation"
@@ -88,12 +84,15 @@ class Cartesian(MotionPart):
         call = "transformInterpolations"
         return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_transform)
 
-    def _placement(self, use_sensors: bool) -> Placement:
-        return placement(self._model, self._robot, self._runner.snapshot, use_sensors)
-
     def _pose(self, name: str, space: int, placed: Placement) -> np.ndarray:
         frame = frame_of(self._model, name)
-        return np.linalg.inv(space_in_torso(self._model, space_of(space), placed)) @ placed.in_torso(frame)
+        return self._torso_in(space, placed) @ placed.in_torso(frame)
+
+    def _change(
+        self, call: str, name: str, space: int, change: Any, pose: PoseReader, fraction: float, mask: int
+    ) -> Task:
+        now = self._pose(name, space, self._placement(False))
+        return self._set(call, [name], space, [_moved(now, pose(change))], fraction, mask)
 
     def _set_many(
         self, call: str, names: Any, spaces: Any, targets: Any, pose: PoseReader, fraction: float, masks: Any
@@ -190,14 +189,13 @@ class Mass(MotionPart):
         links = links_of(self._model, name)
         now = self._runner.snapshot
         center = center_of_links(self._model, links, now.positions if use_sensors else self._robot.joints.commands)
-        frame = space_in_torso(self._model, space_of(space), placement(self._model, self._robot, now, use_sensors))
-        return (np.linalg.inv(frame) @ np.append(center, 1.0))[:3].tolist()
+        return (self._torso_in(space, self._placement(use_sensors, now)) @ np.append(center, 1.0))[:3].tolist()
 
     def getSupportPolygon(self, space: int, use_sensors: bool) -> list[list[float]]:
         if space_of(space) == TORSO:
             raise BadValue("space", space, "1 (FRAME_WORLD) or 2 (FRAME_ROBOT)")
-        placed = placement(self._model, self._robot, self._runner.snapshot, use_sensors)
-        to_space = np.linalg.inv(space_in_torso(self._model, space, placed))
+        placed = self._placement(use_sensors)
+        to_space = self._torso_in(space, placed)
         soles = []
         for side in ("L", "R"):
             contour = self._model.sole_polygon(side)

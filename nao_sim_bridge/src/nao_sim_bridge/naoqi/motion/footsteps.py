@@ -8,6 +8,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.arguments import numbers
+from nao_sim_bridge.naoqi.motion.arguments import require_rising
 from nao_sim_bridge.naoqi.motion.walking import WalkPart
 from nao_sim_bridge.walk.footstep_plan import SIDES, FootstepPlan, PlannedStep
 from nao_sim_bridge.walk.footsteps import FootPose
@@ -26,8 +27,7 @@ class Footsteps(WalkPart):
         if any(one == next_ for (one, _), (next_, _) in zip(placed, placed[1:])):
             raise BadValue("legName", legs, "LLeg and RLeg in turns")
         landings = _one_each(times, len(placed), "timeList")
-        if landings[0] <= 0.0 or any(b <= a for a, b in zip(landings, landings[1:])):
-            raise BadValue("timeList", times, "times that rise, the first above 0 s")
+        require_rising(landings, "timeList", times)
         periods = [b - a for a, b in zip([0.0, *landings], landings)]
 
         def start(locomotion: Locomotion) -> None:

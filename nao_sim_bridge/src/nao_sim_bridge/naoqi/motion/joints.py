@@ -4,28 +4,18 @@ from __future__ import annotations
 
 from typing import Any, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.control.joints.bezier import BezierCurve
 from nao_sim_bridge.control.joints.curves import Ramp, SmoothCurve
 from nao_sim_bridge.model.joint_names import joint_names
-from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.naoqi.binding.arguments import number, per_item
+from nao_sim_bridge.naoqi.binding.arguments import known, number, per_item
 from nao_sim_bridge.naoqi.motion.arguments import bezier_curve, bezier_key_points, key_frames
 from nao_sim_bridge.naoqi.motion.part import MotionPart
 
-
-def summary_table(model: RobotModel, snapshot: Snapshot) -> str:
-    """One line a joint: name, stiffness, command and sensor angle (rad)."""
-    head = "---------------------- Model ---------------------------"
-    lines = [head, "       JointName   Stiffness     Command      Sensor"]
-    for i, joint in enumerate(model.joints):
-        lines.append(
-            f"{joint.name:>16}    {snapshot.stiffnesses[i]:8.6f}   {snapshot.commands[i]:9.6f}   "
-            f"{snapshot.positions[i]:9.6f}"
-        )
-    return "\n".join([*lines, "-" * len(head), ""])
+OPEN, CLOSED = 1.0, 0.0
+# Hands open and close at this fraction of their top speed.
+HAND_SPEED = 0.3
 
 
 class Body(MotionPart):
@@ -38,8 +28,7 @@ class Body(MotionPart):
             return list(self._model.chains[name])
         return joint_names(name, self._model)
 
-    def getJointNames(self, name: str) -> list[str]:
-        return self.getBodyNames(name)
+    getJointNames = getBodyNames
 
     def getLimits(self, name: str) -> list[list[float]]:
         joints = [self._model.joint(n) for n in joint_names(name, self._model)]
@@ -63,16 +52,16 @@ class Body(MotionPart):
         return [list(values), list(values.values())]
 
     def getSummary(self) -> str:
-        return summary_table(self._model, self._runner.snapshot)
+        """One line a joint: name, stiffness, command and sensor angle (rad)."""
+        now, head = self._runner.snapshot, "---------------------- Model ---------------------------"
+        lines = [head, "       JointName   Stiffness     Command      Sensor"]
+        for joint, *values in zip(self._model.joints, now.stiffnesses, now.commands, now.positions):
+            lines.append("{:>16}    {:8.6f}   {:9.6f}   {:9.6f}".format(joint.name, *values))
+        return "\n".join([*lines, "-" * len(head), ""])
 
 
-OPEN, CLOSED = 1.0, 0.0
-# Hands open and close at this fraction of their top speed.
-HAND_SPEED = 0.3
-
-
-class Angles(MotionPart):
-    """Targets (setAngles), interpolations, hands."""
+class Joints(MotionPart):
+    """Angles and stiffnesses of joints, read, set at once, and led along curves."""
 
     def getAngles(self, names: Any, use_sensors: bool) -> list[float]:
         indices = [self._model.joint_index[n] for n in joint_names(names, self._model)]
@@ -129,9 +118,7 @@ class Angles(MotionPart):
         return self._move_hand("closeHand", name, CLOSED)
 
     def _move_hand(self, call: str, name: str, value: float) -> Task:
-        if name not in ("LHand", "RHand"):
-            raise UnknownName("hand", name, ["LHand", "RHand"])
-        index = self._model.joint_index[name]
+        index = self._model.joint_index[known(name, "hand", ("LHand", "RHand"))]
         speed = HAND_SPEED * self._model.joints[index].max_velocity
 
         def start() -> Task:
@@ -143,10 +130,6 @@ class Angles(MotionPart):
             return task
 
         return self._runner.execute(start, call)
-
-
-class Bezier(MotionPart):
-    """Bezier interpolations."""
 
     def angleInterpolationBezier(self, names: Any, times: Any, points: Any) -> Task:
         return self._play("angleInterpolationBezier", names, times, points, True)
@@ -164,10 +147,6 @@ class Bezier(MotionPart):
             return {i: bezier_curve(commands[i], points, is_absolute) for i, points in zip(indices, key_points)}
 
         return self._follow(call, indices, curves)
-
-
-class Stiffness(MotionPart):
-    """Stiffness of joints, at once and over time."""
 
     def getStiffnesses(self, names: Any) -> list[float]:
         stiffnesses = self._robot.joints.stiffnesses

@@ -1,8 +1,9 @@
-"""Parts of ALMotion that switch what works by itself: fall manager, collision protection, breathing, named switches."""
+"""Parts of ALMotion that switch what works by itself: fall manager, protection from collisions, breathing, reflexes."""
 
 from __future__ import annotations
 
-from typing import Any, Mapping, Sequence
+from operator import attrgetter
+from typing import Any, Callable
 
 import numpy as np
 
@@ -11,17 +12,48 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.balance.reflexes import SWITCHES
 from nao_sim_bridge.control.joints.idle import AMPLITUDE, BPM, GROUPS, Mode
 from nao_sim_bridge.control.joints.self_collision import ARMS, COLLISION, NONE
-from nao_sim_bridge.model.frames import space_in_torso
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import known, number
 from nao_sim_bridge.naoqi.motion.part import MotionPart
-from nao_sim_bridge.naoqi.motion.placements import placement, space_of
 
 # The owner's permission to do without the fall manager; off at the start.
 DEACTIVATION = "ENABLE_DEACTIVATION_OF_FALL_MANAGER"
+PROTECTION = "ENABLE_FALL_MANAGER_PROTECTION"
+BOTH = {"Arms": ARMS, **{arm: (arm,) for arm in ARMS}}
+PROTECTED = {"All": ("Move", *ARMS), "Move": ("Move",), **BOTH}
+# From the mildest to the worst.
+SEVERITY = (NONE, "near", COLLISION)
+LIMITS = {"Bpm": BPM, "Amplitude": AMPLITUDE}
 
 
-class Falls(MotionPart):
-    """What keeps the robot on its feet, switched on and off; on after each start."""
+def _switch(call: str, path: str) -> tuple[Callable[[MotionPart], bool], Callable[[MotionPart, bool], Task]]:
+    """The two methods that read and set a switch of the robot.
+
+    Args:
+        call: NAOqi's name of the one that sets it.
+        path: Attributes that lead from the robot to the switch.
+    """
+    owner, _, name = path.rpartition(".")
+
+    def read(part: MotionPart) -> bool:
+        return attrgetter(path)(part._robot)
+
+    def write(part: MotionPart, enabled: bool) -> Task:
+        return part._runner.execute(lambda: setattr(attrgetter(owner)(part._robot), name, enabled), call)
+
+    return read, write
+
+
+class Switches(MotionPart):
+    """What keeps the robot on its feet, smart stiffness, diagnosis effect, notifications, and setMotionConfig."""
+
+    getPushRecoveryEnabled, setPushRecoveryEnabled = _switch("setPushRecoveryEnabled", "stability.balance.enabled")
+    getSmartStiffnessEnabled, setSmartStiffnessEnabled = _switch(
+        "setSmartStiffnessEnabled", "reflexes.smart_stiffness.enabled"
+    )
+    getDiagnosisEffectEnabled, setDiagnosisEffectEnabled = _switch(
+        "setDiagnosisEffectEnabled", "reflexes.diagnosis_enabled"
+    )
+    areNotificationsEnabled, setEnableNotifications = _switch("setEnableNotifications", "motion.notices.enabled")
 
     def getFallManagerEnabled(self) -> bool:
         return self._robot.stability.falls.enabled
@@ -34,24 +66,24 @@ class Falls(MotionPart):
 
         return self._runner.execute(switch, "setFallManagerEnabled")
 
-    def getPushRecoveryEnabled(self) -> bool:
-        return self._robot.stability.balance.enabled
+    def setMotionConfig(self, config: Any) -> Task:
+        wanted = {}
+        for name, value in _pairs(config, "config", '[["ENABLE_STIFFNESS_PROTECTION", true]]'):
+            known(name, "motion switch", SWITCHES)
+            if value not in (True, False):
+                raise BadValue(name, value, "true or false")
+            wanted[name] = bool(value)
 
-    def setPushRecoveryEnabled(self, enabled: bool) -> Task:
-        def switch() -> None:
-            self._robot.stability.balance.enabled = enabled
+        def change() -> None:
+            self._robot.reflexes.switches.update(wanted)
+            if PROTECTION in wanted:
+                self._robot.stability.falls.enabled = wanted[PROTECTION]
 
-        return self._runner.execute(switch, "setPushRecoveryEnabled")
-
-
-BOTH = {"Arms": ARMS, **{arm: (arm,) for arm in ARMS}}
-PROTECTED = {"All": ("Move", *ARMS), "Move": ("Move",), **BOTH}
-# From the mildest to the worst.
-SEVERITY = (NONE, "near", COLLISION)
+        return self._runner.execute(change, "setMotionConfig")
 
 
 class Collisions(MotionPart):
-    """Switches, distances, and what is close."""
+    """Protection from collisions, with the robot itself and with what its sonars see."""
 
     def isCollision(self, name: str) -> str:
         guard, commands = self._robot.reflexes.self_collision, self._robot.joints.commands
@@ -99,46 +131,30 @@ class Collisions(MotionPart):
 
     def getChainClosestObstaclePosition(self, name: str, space: int) -> list[float]:
         """[x, y, z] in m of what is nearest to the hand; empty when the sonars see nothing within a metre."""
-        if name not in ARMS:
-            raise UnknownName("arm", name, ARMS)
+        known(name, "arm", ARMS)
         now = self._runner.snapshot
         found = self._robot.reflexes.external_collision.closest_obstacle(name, now.positions, now.sonars)
         if found is None:
             return []
-        placed = placement(self._model, self._robot, now, use_sensors=True)
-        torso_in_space = np.linalg.inv(space_in_torso(self._model, space_of(space), placed))
-        return (torso_in_space @ np.append(found, 1.0))[:3].tolist()
+        return (self._torso_in(space, self._placement(True, now)) @ np.append(found, 1.0))[:3].tolist()
 
     def _set_distance(self, which: str, distance: Any) -> Task:
         # A negative distance is taken for none.
         metres = max(number(distance, "securityDistance"), 0.0)
-
-        def change() -> None:
-            setattr(self._robot.reflexes.external_collision, which, metres)
-
-        return self._runner.execute(change, which)
-
-
-def _members(groups: Mapping[str, Sequence[str]], name: Any) -> Sequence[str]:
-    if name not in groups:
-        raise UnknownName("arm or group", name, groups)
-    return groups[name]
-
-
-LIMITS = {"Bpm": BPM, "Amplitude": AMPLITUDE}
+        return self._runner.execute(lambda: setattr(self._robot.reflexes.external_collision, which, metres), which)
 
 
 class Idling(MotionPart):
     """Breathing and idle posture: the last call for a chain says which of them, or none, it is."""
 
     def getBreathEnabled(self, chain: str) -> bool:
-        return self._robot.reflexes.idle.has_mode(_group(chain), Mode.BREATH)
+        return self._has_mode(chain, Mode.BREATH)
 
     def setBreathEnabled(self, chain: str, enabled: bool) -> Task:
         return self._set_mode("setBreathEnabled", chain, Mode.BREATH if enabled else Mode.NOTHING)
 
     def getIdlePostureEnabled(self, chain: str) -> bool:
-        return self._robot.reflexes.idle.has_mode(_group(chain), Mode.POSTURE)
+        return self._has_mode(chain, Mode.POSTURE)
 
     def setIdlePostureEnabled(self, chain: str, enabled: bool) -> Task:
         return self._set_mode("setIdlePostureEnabled", chain, Mode.POSTURE if enabled else Mode.NOTHING)
@@ -148,7 +164,11 @@ class Idling(MotionPart):
         return [["Bpm", idle.bpm], ["Amplitude", idle.amplitude]]
 
     def setBreathConfig(self, config: Any) -> Task:
-        given = _pairs(config)
+        given = {}
+        for name, value in _pairs(config, "pConfig", '[["Bpm", 12.0], ["Amplitude", 0.5]]'):
+            if not isinstance(name, str) or name not in LIMITS:
+                raise UnknownName("breath parameter", name, LIMITS)
+            given[name] = number(value, name, *LIMITS[name])
 
         def change() -> None:
             idle = self._robot.reflexes.idle
@@ -156,77 +176,19 @@ class Idling(MotionPart):
 
         return self._runner.execute(change, "setBreathConfig")
 
+    def _has_mode(self, chain: str, mode: Mode) -> bool:
+        return self._robot.reflexes.idle.has_mode(known(chain, "chain", GROUPS), mode)
+
     def _set_mode(self, call: str, chain: str, mode: Mode) -> Task:
-        group = _group(chain)
+        group = known(chain, "chain", GROUPS)
         return self._runner.execute(lambda: self._robot.reflexes.idle.set_mode(group, mode), call)
 
 
-def _group(name: Any) -> str:
-    if name not in GROUPS:
-        raise UnknownName("chain", name, GROUPS)
-    return name
+def _members(groups: dict[str, tuple[str, ...]], name: Any) -> tuple[str, ...]:
+    return groups[known(name, "arm or group", groups)]
 
 
-def _pairs(config: Any) -> dict[str, float]:
+def _pairs(config: Any, field: str, example: str) -> Any:
     if not isinstance(config, (list, tuple)) or any(not isinstance(p, (list, tuple)) or len(p) != 2 for p in config):
-        raise BadValue("pConfig", config, 'pairs such as [["Bpm", 12.0], ["Amplitude", 0.5]]')
-    given = {}
-    for name, value in config:
-        if not isinstance(name, str) or name not in LIMITS:
-            raise UnknownName("breath parameter", name, LIMITS)
-        given[name] = number(value, name, *LIMITS[name])
-    return given
-
-
-class Switches(MotionPart):
-    """Smart stiffness, diagnosis effect, notifications, and the named switches of setMotionConfig."""
-
-    def getSmartStiffnessEnabled(self) -> bool:
-        return self._robot.reflexes.smart_stiffness.enabled
-
-    def setSmartStiffnessEnabled(self, enabled: bool) -> Task:
-        def switch() -> None:
-            self._robot.reflexes.smart_stiffness.enabled = enabled
-
-        return self._runner.execute(switch, "setSmartStiffnessEnabled")
-
-    def getDiagnosisEffectEnabled(self) -> bool:
-        return self._robot.reflexes.diagnosis_enabled
-
-    def setDiagnosisEffectEnabled(self, enabled: bool) -> Task:
-        def switch() -> None:
-            self._robot.reflexes.diagnosis_enabled = enabled
-
-        return self._runner.execute(switch, "setDiagnosisEffectEnabled")
-
-    def areNotificationsEnabled(self) -> bool:
-        return self._robot.motion.notices.enabled
-
-    def setEnableNotifications(self, enabled: bool) -> Task:
-        def switch() -> None:
-            self._robot.motion.notices.enabled = enabled
-
-        return self._runner.execute(switch, "setEnableNotifications")
-
-    def setMotionConfig(self, config: Any) -> Task:
-        wanted = _switches(config)
-
-        def change() -> None:
-            self._robot.reflexes.switches.update(wanted)
-            if "ENABLE_FALL_MANAGER_PROTECTION" in wanted:
-                self._robot.stability.falls.enabled = wanted["ENABLE_FALL_MANAGER_PROTECTION"]
-
-        return self._runner.execute(change, "setMotionConfig")
-
-
-def _switches(config: Any) -> dict[str, bool]:
-    if not isinstance(config, (list, tuple)) or any(not isinstance(p, (list, tuple)) or len(p) != 2 for p in config):
-        raise BadValue("config", config, 'pairs such as [["ENABLE_STIFFNESS_PROTECTION", true]]')
-    wanted = {}
-    for name, value in config:
-        if name not in SWITCHES:
-            raise UnknownName("motion switch", name, SWITCHES)
-        if value not in (True, False):
-            raise BadValue(name, value, "true or false")
-        wanted[name] = bool(value)
-    return wanted
+        raise BadValue(field, config, f"pairs such as {example}")
+    return config

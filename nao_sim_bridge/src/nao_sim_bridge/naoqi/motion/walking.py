@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any, Callable, Iterable, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import known, number
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of, gait_of_feet
 from nao_sim_bridge.naoqi.motion.part import MotionPart
@@ -19,14 +19,15 @@ from nao_sim_bridge.walk.locomotion import Locomotion
 
 FAILED = "ALMotion/MoveFailed"
 NOT_STARTED, STOPPED = 0, 1
+ARM_GROUPS = {"LArm": ("LArm",), "RArm": ("RArm",), "Arms": ("LArm", "RArm")}
+# Shares of a speed may be beyond 1 by this: rounding of single precision.
+ROUNDING = 1e-6
+# No place is farther away, and no velocity higher, in m, rad and s: with more, sums would leave what numbers can be.
+MOST = 1e6
 
 
 class MoveFailures:
-    """Raises `ALMotion/MoveFailed` with [cause, 0 not started or 1 stopped on the way, place of an obstacle or None].
-
-    Args:
-        memory: Where events go.
-    """
+    """Raises `ALMotion/MoveFailed`: [cause, 0 not started or 1 stopped on the way, place of an obstacle or None]."""
 
     def __init__(self, memory: MemoryStore) -> None:
         self._memory = memory
@@ -42,21 +43,8 @@ class MoveFailures:
         self._memory.raise_event(FAILED, [cause, STOPPED if started else NOT_STARTED, place])
 
 
-ARM_GROUPS = {"LArm": ("LArm",), "RArm": ("RArm",), "Arms": ("LArm", "RArm")}
-# Shares of a speed may be beyond 1 by this: rounding of single precision.
-ROUNDING = 1e-6
-# No place is farther away, and no velocity higher, in m, rad and s: with more, sums would leave what numbers can be.
-MOST = 1e6
-
-
 class WalkPart(MotionPart):
-    """What the parts about walking share.
-
-    Args:
-        simulation: As for every part.
-        runner: As for every part.
-        failures: Who is told of moves that fail.
-    """
+    """What the parts about walking share; `failures` are told of moves that fail."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, failures: MoveFailures) -> None:
         super().__init__(simulation, runner)
@@ -114,46 +102,46 @@ class Walking(WalkPart):
         return gait_list(which)
 
     def getMoveArmsEnabled(self, chain: str) -> bool:
-        if chain not in ARM_GROUPS:
-            raise UnknownName("arm or group", chain, ARM_GROUPS)
-        enabled = self._robot.locomotion.arms.enabled
-        return all(enabled[arm] for arm in ARM_GROUPS[chain])
+        arms, enabled = ARM_GROUPS[known(chain, "arm or group", ARM_GROUPS)], self._robot.locomotion.arms.enabled
+        return all(enabled[arm] for arm in arms)
 
     def setMoveArmsEnabled(self, left: bool, right: bool) -> Task:
         wanted = dict(zip(ARM_GROUPS["Arms"], (bool(left), bool(right))))
         return self._walk("setMoveArmsEnabled", lambda locomotion: locomotion.arms.enabled.update(wanted))
 
+    # --- poses [x, y, theta] and velocities of the robot on the ground, in FRAME_WORLD ------------------------------
+
+    def getRobotPosition(self, use_sensors: bool) -> Task:
+        return self._read("getRobotPosition", lambda locomotion: locomotion.position(bool(use_sensors)))
+
+    def getNextRobotPosition(self) -> Task:
+        return self._read("getNextRobotPosition", lambda locomotion: locomotion.next_position())
+
+    def getRobotVelocity(self) -> Task:
+        return self._read("getRobotVelocity", lambda locomotion: locomotion.velocity())
+
     # --- older names ----------------------------------------------------------------------------------------------
 
-    def walkInit(self) -> Task:
-        return self.moveInit()
+    walkInit = moveInit
+    stopWalk = stopMove
+    killWalk = killMove
+    waitUntilWalkIsFinished = waitUntilMoveIsFinished
+    walkIsActive = moveIsActive
+    getFootGaitConfig = getMoveConfig
+    setWalkArmsEnabled = setMoveArmsEnabled
 
     def walkTo(self, *arguments: Any) -> Task:
         return self._to("walkTo", arguments)
-
-    def stopWalk(self) -> Task:
-        return self.stopMove()
-
-    def killWalk(self) -> Task:
-        return self.killMove()
-
-    def waitUntilWalkIsFinished(self) -> Task:
-        return self.waitUntilMoveIsFinished()
-
-    def walkIsActive(self) -> bool:
-        return self.moveIsActive()
-
-    def getFootGaitConfig(self, which: str) -> list:
-        return gait_list(which)
 
     def getWalkArmsEnabled(self) -> list[bool]:
         enabled = self._robot.locomotion.arms.enabled
         return [enabled[arm] for arm in ARM_GROUPS["Arms"]]
 
-    def setWalkArmsEnabled(self, left: bool, right: bool) -> Task:
-        return self.setMoveArmsEnabled(left, right)
-
     # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _read(self, call: str, reading: Callable[[Locomotion], Iterable[float]]) -> Task:
+        # Between two ticks: plan, commands and sensors are of one moment there.
+        return self._runner.execute(lambda: list(reading(self._robot.locomotion)), call)
 
     def _toward(self, call: str, x: float, y: float, theta: float, gait: FeetGait) -> Task:
         shares = tuple(_share(value, name, -1.0) for name, value in (("x", x), ("y", y), ("theta", theta)))
@@ -203,20 +191,3 @@ def _share(value: Any, field: str, least: float) -> float:
     if not least - ROUNDING <= checked <= 1.0 + ROUNDING:
         raise BadValue(field, value, f"{least:g} to 1")
     return min(max(checked, least), 1.0)
-
-
-class WalkPosition(MotionPart):
-    """Poses [x, y, theta] and velocities of the robot on the ground, in FRAME_WORLD."""
-
-    def getRobotPosition(self, use_sensors: bool) -> Task:
-        return self._read("getRobotPosition", lambda locomotion: locomotion.position(bool(use_sensors)))
-
-    def getNextRobotPosition(self) -> Task:
-        return self._read("getNextRobotPosition", lambda locomotion: locomotion.next_position())
-
-    def getRobotVelocity(self) -> Task:
-        return self._read("getRobotVelocity", lambda locomotion: locomotion.velocity())
-
-    def _read(self, call: str, reading: Callable[[Locomotion], Iterable[float]]) -> Task:
-        # Between two ticks: plan, commands and sensors are of one moment there.
-        return self._runner.execute(lambda: list(reading(self._robot.locomotion)), call)

@@ -15,7 +15,7 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.frames import TORSO
 from nao_sim_bridge.naoqi.binding.arguments import number, numbers
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.motion.placements import space_of
+from nao_sim_bridge.naoqi.motion.arguments import space_of
 from nao_sim_bridge.naoqi.tracker.tracking import Tracking
 from nao_sim_bridge.tracking import geometry
 from nao_sim_bridge.tracking.follower import EFFECTORS

@@ -10,8 +10,8 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.frames import TORSO
 from nao_sim_bridge.naoqi.binding.arguments import number, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.motion.arguments import space_of
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of
-from nao_sim_bridge.naoqi.motion.placements import space_of
 from nao_sim_bridge.naoqi.tracker.targets import TARGETS, Parameters
 from nao_sim_bridge.naoqi.tracker.tracking import DEFAULT_DISTANCE, DEFAULT_TIMEOUT, Tracking
 from nao_sim_bridge.tracking.approach import Relative
