@@ -52,7 +52,7 @@ class BehaviorModules:
         self._frames = ALFrameManager(self.running, runner, files)
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
+        """The modules by name, as `Service` wants them."""
         return {
             BEHAVIOR_MANAGER: [self._manager],
             ANIMATION_PLAYER: [self._animations],

@@ -11,6 +11,8 @@ from nao_sim_bridge.base.tasks import Task
 
 GIVEN_UP = load_sizes().clients.call_s
 """A module that has not answered a call for this time, s of wall time, is called no more: its program has stopped."""
+PERIOD = 1.0
+"""Between two looks for clients, s of wall time."""
 
 
 class NoAnswer(RuntimeError):
@@ -50,16 +52,8 @@ def worth_telling(count: int) -> bool:
     return count & (count - 1) == 0
 
 
-PERIOD = 1.0
-"""Between two looks, s of wall time."""
-
-
 class ClientWatch:
-    """Kills tasks when no client is connected any more. Any thread.
-
-    Args:
-        connected: Whether there is a client.
-    """
+    """Kills tasks when no client is connected any more, of which libqi tells a service nothing. Any thread."""
 
     def __init__(self, connected: Callable[[], bool]) -> None:
         self._connected = connected

@@ -29,8 +29,8 @@ def check_sizes(arguments: Iterable[Any]) -> None:
             _within("call", items, "items", sizes.items)
             _within("list", depth, "levels", sizes.levels)
             # Numbers, of which there may be many, are of no interest.
-            kinds = (str, bytes, bytearray, list, tuple, dict)
-            waiting += [(each, depth + 1) for each in inner if isinstance(each, kinds)]
+            sized = (str, bytes, bytearray, list, tuple, dict)
+            waiting += [(each, depth + 1) for each in inner if isinstance(each, sized)]
 
 
 def _within(what: str, there: int, unit: str, most: int) -> None:
@@ -42,10 +42,7 @@ class Row(NamedTuple):
     """A line of the table of bounds.
 
     Attributes:
-        kind: Name of the kind.
-        lowest: The least a number of it may be.
-        highest: The most.
-        unit: Of both.
+        unit: Of `lowest` and `highest`.
         smallest: How near to 0 it may be when it is not 0; 0 where that does not matter.
         where: Names of NAOqi's parameters, "Module.method parameter" where one has another kind than its name says,
             "field NAME" of ROS services of the simulator, "world NAME" of keys of world files.

@@ -33,7 +33,7 @@ class PictureModules:
         self._films = video_recorder.ALVideoRecorder(self.recorder, files, cameras.tables)
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
+        """The modules by name, as `Service` wants them."""
         return {photo_capture.NAME: [self._photos], video_recorder.NAME: [self._films]}
 
     def closing(self) -> list[Callable[[], None]]:

@@ -7,7 +7,7 @@ from typing import Any
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
-from nao_sim_bridge.naoqi.binding.module_calls import ModuleCalls
+from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.life import abilities as ability_names
 from nao_sim_bridge.naoqi.life import autonomous_life, autonomous_moves, awareness
@@ -95,7 +95,7 @@ class LifeModules:
         }
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
+        """The modules by name, as `Service` wants them."""
         return dict(self._modules)
 
     def close(self) -> None:

@@ -73,7 +73,7 @@ class SpeechModules:
         )
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
+        """The modules by name, as `Service` wants them."""
         return {"ALTextToSpeech": [self._text_to_speech], "ALAnimatedSpeech": [self._animated_speech]}
 
     def say(self, text: str, animated: bool = False) -> Task:

@@ -55,7 +55,7 @@ class AudioModules:
         simulation.holds += [self.clients.behind, background.holds]
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
+        """The modules by name, as `Service` wants them."""
         return {
             "ALAudioPlayer": [self._player],
             "ALAudioDevice": [self._device],

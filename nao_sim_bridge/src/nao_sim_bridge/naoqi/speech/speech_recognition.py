@@ -297,7 +297,7 @@ class RecognitionModule:
         self._parts = [service, Extractor(NAME, memory, self.engine.start, self.engine.stop, EVENTS, KEYS)]
 
     def modules(self) -> dict[str, list[Any]]:
-        """The module by name, as `make_service` wants it."""
+        """The module by name, as `Service` wants it."""
         return {NAME: self._parts}
 
     def close(self) -> None:

@@ -13,7 +13,7 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.frames import ROBOT, WORLD
 from nao_sim_bridge.naoqi.binding.arguments import numbers
-from nao_sim_bridge.naoqi.binding.module_calls import ModuleCalls
+from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.tracker.targets import TARGETS, Parameters, Sighting
 from nao_sim_bridge.tracking import geometry

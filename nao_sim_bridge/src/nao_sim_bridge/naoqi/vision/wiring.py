@@ -48,7 +48,7 @@ class VisionModules:
         ]
 
     def modules(self) -> dict[str, list[Any]]:
-        """The modules by name, as `make_service` wants them."""
+        """The modules by name, as `Service` wants them."""
         return {
             red_ball_detection.NAME: red_ball_detection.parts(self._ball, self._memory),
             landmark_detection.NAME: landmark_detection.parts(self._landmarks, self._memory, self._tables),
