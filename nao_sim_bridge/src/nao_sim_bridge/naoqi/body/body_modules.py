@@ -14,7 +14,6 @@ from nao_sim_bridge.naoqi.body import (
     motion_events,
     posture,
     robot_model,
-    robot_pose,
     sensors,
     sonar,
     tactile_gesture,
@@ -28,17 +27,16 @@ class BodyModules:
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
         self._simulation = simulation
-        self._runner = runner
         self._memory = memory
-        self._touch = touch.TouchEvents(simulation.model, memory)
-        self._gestures = tactile_gesture.TactileGestures(memory)
-        self._stiffness = sensors.StiffnessEvents(memory)
+        self._touch = touch.ALTouch(simulation.model, memory)
+        self._gestures = tactile_gesture.ALTactileGesture(memory)
+        self._sensors = sensors.ALSensors(runner, memory)
         self._sonar = sonar.Sonar(simulation, runner, memory)
-        self._battery = battery.BatteryEvents(memory)
-        self._temperature = body_temperature.TemperatureEvents(simulation.model, simulation.settings.head, memory)
-        self._diagnosis = diagnosis.DiagnosisResults(simulation, memory)
+        self._battery = battery.ALBattery(runner, memory)
+        self._temperature = body_temperature.ALBodyTemperature(simulation, runner, memory)
+        self._diagnosis = diagnosis.ALDiagnosis(simulation, memory)
         self._pushes = motion_events.PushEvents(simulation, memory)
-        self._pose = robot_pose.PoseWatch(simulation.model)
+        self._pose = posture.ALRobotPose(runner, simulation.model)
         self._dcm = dcm.DCM(simulation, runner, memory)
 
     def begin(self) -> None:
@@ -51,7 +49,7 @@ class BodyModules:
             touch.FootEvents(memory),
             self._touch,
             self._gestures,
-            self._stiffness,
+            self._sensors,
             self._sonar,
             motion_events.DiagnosisEvents(simulation, memory),
             self._battery,
@@ -65,16 +63,16 @@ class BodyModules:
     def modules(self) -> dict[str, list[Any]]:
         """The objects that together have the methods of each module."""
         return {
-            touch.TOUCH: [touch.ALTouch(self._touch)],
-            tactile_gesture.NAME: [tactile_gesture.ALTactileGesture(self._gestures)],
+            touch.TOUCH: [self._touch],
+            tactile_gesture.NAME: [self._gestures],
             touch.CHEST: [touch.EventsOnly()],
             touch.FEET: [touch.EventsOnly()],
-            sensors.NAME: sensors.parts(self._stiffness, self._runner, self._memory),
+            sensors.NAME: sensors.parts(self._sensors, self._memory),
             sonar.NAME: sonar.parts(self._sonar, self._memory),
-            battery.NAME: [battery.ALBattery(self._runner, self._battery)],
-            body_temperature.NAME: [body_temperature.ALBodyTemperature(self._runner, self._temperature)],
-            diagnosis.NAME: [diagnosis.ALDiagnosis(self._diagnosis)],
+            battery.NAME: [self._battery],
+            body_temperature.NAME: [self._temperature],
+            diagnosis.NAME: [self._diagnosis],
             robot_model.NAME: [robot_model.ALRobotModel(self._simulation.model.version)],
-            robot_pose.NAME: [robot_pose.ALRobotPose(self._runner, self._pose)],
+            posture.POSE: [self._pose],
             dcm.NAME: [self._dcm],
         }

@@ -1,13 +1,24 @@
-"""ALRobotPosture of the simulated robot and its events."""
+"""ALRobotPosture of the simulated robot, its events, and the older ALRobotPose."""
 
 from __future__ import annotations
 
-from typing import Callable
+from typing import Callable, Mapping
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.control.balance.posture_recognition import FAMILIES, recognise
+from nao_sim_bridge.control.balance.posture_recognition import (
+    BACK,
+    BELLY,
+    CROUCHING,
+    FAMILIES,
+    LEFT,
+    ON_CHAIR,
+    RIGHT,
+    SITTING,
+    STANDING,
+    recognise,
+)
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import load_moves
 from nao_sim_bridge.core.runner import SimulationRunner
@@ -22,6 +33,23 @@ POSTURE, FAMILY = "PostureChanged", "PostureFamilyChanged"
 PERIOD = 1.0
 """Simulated time between two looks, s."""
 DEFAULT_TRIES = 3
+POSE = "ALRobotPose"
+UNKNOWN = "Unknown"
+# The old names of what the robot recognises now.
+POSES: Mapping[str, str] = {
+    STANDING: "Stand",
+    CROUCHING: "Crouch",
+    SITTING: "Sit",
+    ON_CHAIR: "Sit",
+    BELLY: "Belly",
+    BACK: "Back",
+    LEFT: "Left",
+    RIGHT: "Right",
+}
+# Poses that the old module knew and that nothing recognises any more.
+NEVER = ("Frog", "HeadBack", "Knee")
+POSE_PERIOD = 0.5
+"""As `PERIOD`, of the old module."""
 
 
 class ALRobotPosture:
@@ -116,3 +144,30 @@ class PostureEvents:
             if self._known.get(event) != name:
                 self._known[event] = name
                 self._memory.raise_event(event, name)
+
+
+class ALRobotPose:
+    """The module that ALRobotPosture has replaced: coarse poses and since when; called after every tick."""
+
+    def __init__(self, runner: SimulationRunner, model: RobotModel) -> None:
+        self._runner = runner
+        self._model = model
+        # Pose, and the simulated time in s since which the robot is in it; replaced as a whole.
+        self._state = (UNKNOWN, 0.0)
+        self._next = 0.0
+
+    def getActualPoseAndTime(self) -> list:
+        pose, since = self._state
+        return [pose, max(0.0, self._runner.snapshot.time - since)]
+
+    def getPoseNames(self) -> list[str]:
+        return sorted({*POSES.values(), *NEVER, UNKNOWN})
+
+    def __call__(self, snapshot: Snapshot) -> None:
+        """Look at the robot now and then."""
+        if snapshot.time < self._next:
+            return
+        self._next = snapshot.time + POSE_PERIOD
+        pose = POSES.get(recognise(self._model, snapshot).family, UNKNOWN)
+        if pose != self._state[0]:
+            self._state = (pose, snapshot.time)

@@ -23,8 +23,8 @@ STEADY_TIME = 0.1
 """Contact of the feet is won or lost when it has been so for this time, s: feet bounce."""
 
 
-class TouchEvents:
-    """The events of ALTouch and ALChestButton; called after every tick, in the simulation thread."""
+class ALTouch:
+    """ALTouch as the simulated robot offers it; called after every tick for its events and those of ALChestButton."""
 
     def __init__(self, model: RobotModel, memory: MemoryStore) -> None:
         self._memory = memory
@@ -43,13 +43,10 @@ class TouchEvents:
         for event in CLICKED.values():
             memory.declare_event(event, CHEST)
 
-    @property
-    def touched(self) -> FrozenSet[str]:
-        """Parts and sensors that are touched; any thread may ask."""
-        return self._touched
+    def getSensorList(self) -> list[str]:
+        return list(SENSORS)
 
-    def status(self) -> list[list[Any]]:
-        """[name, whether it is touched] of all parts and sensors."""
+    def getStatus(self) -> list[list[Any]]:
         touched = self._touched
         return [[name, name in touched] for name in (*PARTS, *SENSORS)]
 
@@ -101,19 +98,6 @@ class FootEvents:
         if self._touches is None or snapshot.time - self._differs_since >= STEADY_TIME:
             self._touches, self._differs_since = touches, None
             self._memory.raise_event(CONTACT, touches)
-
-
-class ALTouch:
-    """ALTouch as the simulated robot offers it. Only NAOqi methods live here."""
-
-    def __init__(self, events: TouchEvents) -> None:
-        self._events = events
-
-    def getSensorList(self) -> list[str]:
-        return list(SENSORS)
-
-    def getStatus(self) -> list[list[Any]]:
-        return self._events.status()
 
 
 class EventsOnly:
