@@ -15,8 +15,8 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.hearing.recogniser import SpareProcess
 from nao_sim_bridge.naoqi import motion
 from nao_sim_bridge.naoqi.behaviors.wiring import BehaviorModules
+from nao_sim_bridge.naoqi.body import leds
 from nao_sim_bridge.naoqi.body.body_modules import BodyModules
-from nao_sim_bridge.naoqi.body.leds import ALLeds
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.cameras import video_device
 from nao_sim_bridge.naoqi.cameras.photo_capture_wiring import PictureModules
@@ -130,7 +130,7 @@ class RobotModules:
         self._body = BodyModules(simulation, runner, memory)
         self.modules: dict[str, list[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
-            "ALLeds": [ALLeds(simulation, runner)],
+            "ALLeds": leds.parts(simulation, runner),
             "ALMotion": motion.parts(simulation, runner, memory),
             "ALRobotPosture": [posture],
             **self._audio.modules(),
