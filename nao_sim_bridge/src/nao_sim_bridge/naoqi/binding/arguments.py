@@ -24,6 +24,14 @@ def whole_number(value: Any, field: str, low: int, high: int) -> int:
     return value
 
 
+def speed_share(value: Any, field: str) -> float:
+    """`value` as a fraction of the top speed, above 0 to 1."""
+    share = number(value, field, 0.0, 1.0)
+    if share == 0.0:
+        raise BadValue(field, value, "above 0 to 1")
+    return share
+
+
 def text(value: Any, field: str, longest: int) -> str:
     """`value` as a text of at most `longest` characters."""
     if not isinstance(value, str):

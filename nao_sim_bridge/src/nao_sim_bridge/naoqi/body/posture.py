@@ -25,7 +25,7 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.postures import load_postures
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import speed_share
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.wake import set_awake
 
@@ -114,9 +114,7 @@ class ALRobotPosture:
         """
         if name not in load_postures().by_name:
             raise BadValue("postureName", name, f"one of {', '.join(self.getPostureList())}")
-        fraction = number(speed, "maxSpeedFraction", 0.0, 1.0)
-        if fraction == 0.0:
-            raise BadValue("maxSpeedFraction", speed, "above 0 to 1")
+        fraction = speed_share(speed, "maxSpeedFraction")
         tries, moves = self._tries, load_moves()
         return lambda: PostureChange(
             self._simulation.robot, lambda: self._simulation.snapshot, name, fraction, tries, moves
