@@ -57,7 +57,6 @@ class Row(NamedTuple):
 
 
 def kind_of(module: str, method: str, parameter: str) -> Kind:
-    """The kind of number that a parameter takes."""
     own = declared()["methods"].get(f"{module}.{method}", {})
     return kind(own.get(parameter) or declared()["parameters"].get(parameter, OTHER))
 

@@ -31,7 +31,7 @@ class BodyModules:
         self._touch = touch.ALTouch(simulation.model, memory)
         self._gestures = tactile_gesture.ALTactileGesture(memory)
         self._sensors = sensors.ALSensors(runner, memory)
-        self._sonar = sonar.Sonar(simulation, runner, memory)
+        self._sonar = sonar.ALSonar(simulation, runner, memory)
         self._battery = battery.ALBattery(runner, memory)
         self._temperature = body_temperature.ALBodyTemperature(simulation, runner, memory)
         self._diagnosis = diagnosis.ALDiagnosis(simulation, memory)
@@ -67,8 +67,8 @@ class BodyModules:
             tactile_gesture.NAME: [self._gestures],
             touch.CHEST: [touch.EventsOnly()],
             touch.FEET: [touch.EventsOnly()],
-            sensors.NAME: sensors.parts(self._sensors, self._memory),
-            sonar.NAME: sonar.parts(self._sonar, self._memory),
+            sensors.NAME: self._sensors.parts(),
+            sonar.NAME: self._sonar.parts(),
             battery.NAME: [self._battery],
             body_temperature.NAME: [self._temperature],
             diagnosis.NAME: [self._diagnosis],

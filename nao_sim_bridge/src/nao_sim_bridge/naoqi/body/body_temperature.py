@@ -46,7 +46,6 @@ class ALBodyTemperature:
         self._enabled = enable
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the temperatures when they are new."""
         if snapshot.temperatures is self._temperatures or not self._enabled:
             return
         first = self._temperatures is None

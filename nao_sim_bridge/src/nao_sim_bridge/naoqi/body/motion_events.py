@@ -36,7 +36,6 @@ class FallEvents(_MotionEvents):
         self._stands: bool | None = None
 
     def __call__(self, _: Snapshot) -> None:
-        """Look at the robot."""
         stability = self._simulation.robot.stability
         before, self._state = self._state, stability.falls.state
         if self._state is not before:
@@ -62,7 +61,6 @@ class DiagnosisEvents(_MotionEvents):
         self._told: frozenset[str] = frozenset()
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the robot."""
         self._effect(snapshot)
         disabled = self._effect.disabled
         if disabled != self._told:
@@ -83,7 +81,6 @@ class PushEvents(_MotionEvents):
         self._detector = PushDetector(simulation.model.total_mass)
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the robot."""
         push = self._detector.look(snapshot, self._stands_still)
         if push is None:
             return

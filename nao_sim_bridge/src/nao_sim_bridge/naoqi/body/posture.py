@@ -133,7 +133,6 @@ class PostureEvents:
             memory.declare_event(event, "ALRobotPosture")
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the robot when it is time to."""
         if snapshot.time < self._due:
             return
         self._due = snapshot.time + PERIOD
@@ -162,7 +161,6 @@ class ALRobotPose:
         return sorted({*POSES.values(), *NEVER, UNKNOWN})
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the robot now and then."""
         if snapshot.time < self._next:
             return
         self._next = snapshot.time + POSE_PERIOD

@@ -24,12 +24,16 @@ class ALSensors:
         self._stiffnesses: Any = None
         self._level: int | None = None
 
+    def parts(self) -> list[Any]:
+        """The objects that together have the methods of ALSensors; its event is raised without subscribers, too."""
+        nothing = lambda: None  # noqa: E731
+        return [self, Extractor(NAME, self._memory, nothing, nothing, [EVENT])]
+
     def run(self) -> Any:
         # One round of what goes on at every tick anyway.
         return self._runner.execute(lambda: self._look(self._runner.snapshot), "run")
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the robot."""
         if snapshot.stiffnesses is not self._stiffnesses:
             self._stiffnesses = snapshot.stiffnesses
             self._look(snapshot)
@@ -40,9 +44,3 @@ class ALSensors:
         if level != self._level:
             self._level = level
             self._memory.raise_event(EVENT, level)
-
-
-def parts(own: ALSensors, memory: MemoryStore) -> list[Any]:
-    """The objects that together have the methods of ALSensors; its event is raised without subscribers, too."""
-    nothing = lambda: None  # noqa: E731
-    return [own, Extractor(NAME, memory, nothing, nothing, [EVENT])]

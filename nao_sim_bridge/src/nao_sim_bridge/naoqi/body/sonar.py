@@ -41,8 +41,8 @@ MOST_ECHOES = 10
 Echoes = Tuple[float, ...]
 
 
-class Sonar:
-    """What the robot is told of its sonars; called after every tick, in the simulation thread.
+class ALSonar:
+    """ALSonar as the simulated robot offers it, beside an extractor; called after every tick, in the simulation thread.
 
     They fire for subscribers of ALSonar or of its events, and for ALMotion while the robot walks. Else the keys of
     ALMemory keep what was measured last.
@@ -65,16 +65,26 @@ class Sonar:
         self._filtered = [NOT_MEASURED, NOT_MEASURED]
         self.firing = False
 
-    def start(self) -> Task:
+    def getFilteredValues(self) -> list[float]:
+        """[right, left], m: medians of the last readings."""
+        return list(self._filtered)
+
+    def parts(self) -> list[Any]:
+        """The objects that together have the methods of ALSonar."""
+        keys, events = [f"Device/SubDeviceList/US/{side}/Sensor/Value" for side in SIDES], [*DETECTED, *NOTHING]
+        work = (self._start, self._stop)
+        return [self, Extractor(NAME, self._memory, *work, events, keys, DEFAULT, self._changed, by_events=True)]
+
+    def _start(self) -> Task:
         """Somebody is subscribed; ends with the first shot, so that who looks next sees no old values."""
         return self._runner.execute(self._subscribe, "subscribe")
 
-    def stop(self) -> None:
+    def _stop(self) -> None:
         """Nobody is subscribed any more."""
         with suppress(SimulationStopped):  # then nothing fires, either
             self._runner.execute(self._unsubscribe, "unsubscribe")
 
-    def changed(self, subscriptions: Mapping[str, Subscription]) -> None:
+    def _changed(self, subscriptions: Mapping[str, Subscription]) -> None:
         """Somebody wants events at another pace."""
         period = min((subscription.period for subscription in subscriptions.values()), default=DEFAULT.period)
         self._period = period / 1000.0
@@ -83,12 +93,7 @@ class Sonar:
         """Distances that a side has measured last, m, nearest first; empty before the first shot."""
         return self._echoes[side]
 
-    def filtered(self) -> list[float]:
-        """[right, left], m: medians of the last readings."""
-        return list(self._filtered)
-
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the sonars."""
         if not (self._subscribed or self._simulation.robot.locomotion.active):
             self.firing = False
             return
@@ -138,26 +143,7 @@ def _told(snapshot: Snapshot, side: int) -> Echoes:
     return tuple(round(max(echo, PRESENT) * RESOLUTION) / RESOLUTION for echo in echoes[:MOST_ECHOES])
 
 
-class ALSonar:
-    """ALSonar as the simulated robot offers it. Only NAOqi methods live here; most are those of an extractor."""
-
-    def __init__(self, sonar: Sonar) -> None:
-        self._sonar = sonar
-
-    def getFilteredValues(self) -> list[float]:
-        return self._sonar.filtered()
-
-
-def parts(sonar: Sonar, memory: MemoryStore) -> list[Any]:
-    """The objects that together have the methods of ALSonar."""
-    keys = [f"Device/SubDeviceList/US/{side}/Sensor/Value" for side in SIDES]
-    extractor = Extractor(
-        NAME, memory, sonar.start, sonar.stop, [*DETECTED, *NOTHING], keys, DEFAULT, sonar.changed, by_events=True
-    )
-    return [ALSonar(sonar), extractor]
-
-
-def sonar_keys(sonar: Sonar) -> Dict[str, Callable[[], float]]:
+def sonar_keys(sonar: ALSonar) -> Dict[str, Callable[[], float]]:
     """ALMemory's keys of the sonars: key -> function without arguments that reads its present value.
 
     Raises:
@@ -168,7 +154,7 @@ def sonar_keys(sonar: Sonar) -> Dict[str, Callable[[], float]]:
     return {prefix + key: _reader(key, sonar) for key in tables["devices"]["sonar"]["keys"]}
 
 
-def _reader(key: str, sonar: Sonar) -> Callable[[], float]:
+def _reader(key: str, sonar: ALSonar) -> Callable[[], float]:
     if key == "US/Actuator/Value":
         return lambda: ACTUATOR_PERIODIC if sonar.firing else ACTUATOR_IDLE
     if key == "US/Sensor/Value":
@@ -180,7 +166,7 @@ def _reader(key: str, sonar: Sonar) -> Callable[[], float]:
     return lambda: _echo(sonar, side, number)
 
 
-def _echo(sonar: Sonar, side: int, number: int) -> float:
+def _echo(sonar: ALSonar, side: int, number: int) -> float:
     echoes = sonar.echoes(side)
     if not echoes:
         return NOT_MEASURED

@@ -32,7 +32,6 @@ class ALTactileGesture:
             memory.declare_event(event, NAME)
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the head."""
         touched = snapshot.touched
         pattern = "".join("1" if sensor in touched else "0" for sensor in HEAD) if touched else FREE
         seen = self._recogniser.feed(pattern, snapshot.time)

@@ -55,7 +55,6 @@ class ALTouch:
         self._clicks = ClickCounter()
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the robot."""
         sensors, held = snapshot.touched, self._limbs.look(snapshot)
         if sensors != self._sensors or held is not self._held:
             self._sensors, self._held = sensors, held
@@ -88,7 +87,6 @@ class FootEvents:
         memory.declare_event(CONTACT, FEET)
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the robot."""
         touches = max(snapshot.foot_loads) > CONTACT_LOAD
         if touches == self._touches:
             self._differs_since = None

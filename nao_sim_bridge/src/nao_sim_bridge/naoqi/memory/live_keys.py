@@ -102,37 +102,12 @@ def _device_reader(key: str) -> Read:
     raise ConfigError(FILE, f"nothing in the simulation can read {key!r}")
 
 
-def _foot(side: str) -> Callable[[Snapshot], FootForces]:
-    return (lambda s: s.left_foot) if side == "L" else (lambda s: s.right_foot)
+def _foot(snapshot: Snapshot, side: str) -> FootForces:
+    return snapshot.left_foot if side == "L" else snapshot.right_foot
 
 
-def _corner(side: str, corner: str) -> Read:
-    foot, index = _foot(side), CORNERS.index(corner)
-    return lambda s: foot(s).forces[index] / GRAVITY
-
-
-def _total(side: str) -> Read:
-    foot = _foot(side)
-    return lambda s: foot(s).total / GRAVITY
-
-
-def _center(side: str, axis: str) -> Read:
-    foot, index = _foot(side), AXES[axis]
-    return lambda s: foot(s).center_of_pressure[index]
-
-
-def _touch(device: str) -> Read:
-    return lambda s: float(device in s.touched)
-
-
-def _vector(field: str, axis: str) -> Read:
-    index = AXES[axis]
-    return lambda s: getattr(s.imu, field)[index]
-
-
-def _battery(key: str) -> Read:
-    read = BATTERY[key]
-    return lambda s: read(s.battery)
+def _vector(field: str) -> Callable[[str], Read]:
+    return lambda axis: lambda s: getattr(s.imu, field)[AXES[axis]]
 
 
 def _milli(value: float) -> int:
@@ -140,16 +115,25 @@ def _milli(value: float) -> int:
 
 
 _PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (
-    (r"([LR])Foot/FSR/(FrontLeft|FrontRight|RearLeft|RearRight)/Sensor/Value", _corner),
-    (r"([LR])Foot/FSR/TotalWeight/Sensor/Value", _total),
-    (r"([LR])Foot/FSR/CenterOfPressure/([XY])/Sensor/Value", _center),
-    (r"InertialSensor/Gyroscope([XYZ])/Sensor/Value", lambda a: _vector("gyroscope", a)),
-    (r"InertialSensor/Gyr([XY])/Sensor/Value", lambda a: _vector("gyroscope", a)),
-    (r"InertialSensor/Accelerometer([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
-    (r"InertialSensor/Acc([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
-    (r"InertialSensor/Angle([XYZ])/Sensor/Value", lambda a: _vector("angles", a)),
-    (r"((?:[LR]Foot/Bumper|[LR]Hand/Touch|Head/Touch|ChestBoard/Button).*?)/Sensor/Value", _touch),
-    (rf"Battery/({'|'.join(BATTERY)})", _battery),
+    (
+        r"([LR])Foot/FSR/(FrontLeft|FrontRight|RearLeft|RearRight)/Sensor/Value",
+        lambda side, corner: lambda s: _foot(s, side).forces[CORNERS.index(corner)] / GRAVITY,
+    ),
+    (r"([LR])Foot/FSR/TotalWeight/Sensor/Value", lambda side: lambda s: _foot(s, side).total / GRAVITY),
+    (
+        r"([LR])Foot/FSR/CenterOfPressure/([XY])/Sensor/Value",
+        lambda side, axis: lambda s: _foot(s, side).center_of_pressure[AXES[axis]],
+    ),
+    (r"InertialSensor/Gyroscope([XYZ])/Sensor/Value", _vector("gyroscope")),
+    (r"InertialSensor/Gyr([XY])/Sensor/Value", _vector("gyroscope")),
+    (r"InertialSensor/Accelerometer([XYZ])/Sensor/Value", _vector("accelerometer")),
+    (r"InertialSensor/Acc([XYZ])/Sensor/Value", _vector("accelerometer")),
+    (r"InertialSensor/Angle([XYZ])/Sensor/Value", _vector("angles")),
+    (
+        r"((?:[LR]Foot/Bumper|[LR]Hand/Touch|Head/Touch|ChestBoard/Button).*?)/Sensor/Value",
+        lambda device: lambda s: float(device in s.touched),
+    ),
+    (rf"Battery/({'|'.join(BATTERY)})", lambda key: lambda s: BATTERY[key](s.battery)),
     (r"Head/Temperature/Sensor/Value", lambda: lambda s: s.head_temperature),
 )
 

@@ -58,7 +58,6 @@ class MemoryRoom:
         self._bytes += size
 
     def forget(self, history: History) -> None:
-        """A key is gone."""
         self._bytes -= sum(entry[2] for entry in history)
 
     def _require(self, more: int) -> None:

@@ -190,7 +190,6 @@ class MemoryStore:
         self._write(name, value, MICRO_EVENT, by_client)
 
     def events_of(self, extractor: str) -> list[str]:
-        """Events that an extractor declared."""
         with self._lock:
             return sorted(n for n, e in self._entries.items() if e.kind == EVENT and e.extractor == extractor)
 
@@ -255,7 +254,6 @@ class MemoryStore:
             self._watchers[name] = watcher
 
     def subscribers(self, name: str) -> list[str]:
-        """Modules subscribed to an event."""
         with self._lock:
             return sorted(self._subscribers.get(name, {}))
 

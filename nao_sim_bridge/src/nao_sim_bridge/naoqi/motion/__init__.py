@@ -8,21 +8,18 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.cartesian import Cartesian, Mass
-from nao_sim_bridge.naoqi.motion.footsteps import Footsteps
 from nao_sim_bridge.naoqi.motion.joints import Body, Joints, TaskList
 from nao_sim_bridge.naoqi.motion.reflexes import Collisions, Idling, Switches
 from nao_sim_bridge.naoqi.motion.wake import Wake
-from nao_sim_bridge.naoqi.motion.walking import MoveFailures, Walking
+from nao_sim_bridge.naoqi.motion.walking import Walking
 from nao_sim_bridge.naoqi.motion.whole_body import WholeBody
 
 
 def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> list[Any]:
     """Objects that together have the methods of ALMotion."""
-    failures = MoveFailures(memory)
     return [
         *(part(simulation, runner) for part in (Body, Joints, TaskList, Cartesian, Mass, WholeBody)),
         Wake(simulation, runner, memory),
-        Walking(simulation, runner, failures),
-        Footsteps(simulation, runner, failures),
+        Walking(simulation, runner, memory),
         *(part(simulation, runner) for part in (Collisions, Idling, Switches)),
     ]

@@ -78,7 +78,6 @@ class Tracking:
 
     @property
     def lost(self) -> bool:
-        """Whether the target is not seen."""
         return self._active is None or self._lost
 
     @property
