@@ -64,23 +64,11 @@ class ALRobotPosture:
         self._change: Task | None = None
 
     def goToPosture(self, name: str, speed: float) -> Task:
-        change = self._checked(name, speed)
-
-        def start() -> Task:
-            set_awake(self._memory, True)  # it stiffens all joints, which is what being awake means
-            self._change = change().start("goToPosture")
-            return self._change
-
-        return self._runner.execute(start, "goToPosture")
+        # It stiffens all joints, which is what being awake means.
+        return self._begin("goToPosture", name, speed, PostureChange.start, lambda: set_awake(self._memory, True))
 
     def applyPosture(self, name: str, speed: float) -> Task:
-        change = self._checked(name, speed)
-
-        def start() -> Task:
-            self._change = change().start_straight("applyPosture")
-            return self._change
-
-        return self._runner.execute(start, "applyPosture")
+        return self._begin("applyPosture", name, speed, PostureChange.start_straight)
 
     def stopMove(self) -> Task:
         def stop() -> None:
@@ -106,19 +94,25 @@ class ALRobotPosture:
     def getPostureFamilyList(self) -> list[str]:
         return list(FAMILIES)
 
-    def _checked(self, name: str, speed: float) -> Callable[[], PostureChange]:
-        """Makes the change of posture, once called in the simulation thread: a reset makes a new robot.
-
-        Raises:
-            BadValue: There is no such posture, or the speed is not above 0 to 1.
-        """
+    def _begin(
+        self,
+        call: str,
+        name: str,
+        speed: float,
+        start: Callable[[PostureChange, str], Task],
+        before: Callable[[], None] = lambda: None,
+    ) -> Task:
         if name not in load_postures().by_name:
             raise BadValue("postureName", name, f"one of {', '.join(self.getPostureList())}")
         fraction = speed_share(speed, "maxSpeedFraction")
-        tries, moves = self._tries, load_moves()
-        return lambda: PostureChange(
-            self._simulation.robot, lambda: self._simulation.snapshot, name, fraction, tries, moves
-        )
+        tries, moves, now = self._tries, load_moves(), lambda: self._simulation.snapshot
+
+        def begin() -> Task:
+            before()
+            self._change = start(PostureChange(self._simulation.robot, now, name, fraction, tries, moves), call)
+            return self._change
+
+        return self._runner.execute(begin, call)
 
 
 class PostureEvents:

@@ -10,6 +10,7 @@ from nao_sim_bridge.control.joints.bezier import BezierCurve
 from nao_sim_bridge.control.joints.curves import Ramp, SmoothCurve
 from nao_sim_bridge.model.joint_names import joint_names
 from nao_sim_bridge.naoqi.binding.arguments import known, number, per_item
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.arguments import bezier_curve, bezier_key_points, key_frames
 from nao_sim_bridge.naoqi.motion.part import MotionPart
 
@@ -69,15 +70,11 @@ class Joints(MotionPart):
         return [angles[i] for i in indices]
 
     def setAngles(self, names: Any, angles: Any, fraction: Any) -> Task:
-        indices = self._indices(names)
-        targets = dict(zip(indices, per_item(angles, len(indices), "angles")))
-        speeds = self._speeds(indices, fraction)
+        targets, speeds = self._targets(names, angles, "angles", fraction)
         return self._runner.execute(lambda: self._robot.motion.set_targets(targets, speeds), "setAngles")
 
     def changeAngles(self, names: Any, changes: Any, fraction: float) -> Task:
-        indices = self._indices(names)
-        steps = dict(zip(indices, per_item(changes, len(indices), "changes")))
-        speeds = self._speeds(indices, fraction)
+        steps, speeds = self._targets(names, changes, "changes", fraction)
 
         def change() -> None:
             motion = self._robot.motion
@@ -98,9 +95,7 @@ class Joints(MotionPart):
         return self._follow("angleInterpolation", indices, curves)
 
     def angleInterpolationWithSpeed(self, names: Any, angles: Any, fraction: float) -> Task:
-        indices = self._indices(names)
-        targets = dict(zip(indices, per_item(angles, len(indices), "targetAngles")))
-        speeds = self._speeds(indices, fraction)
+        targets, speeds = self._targets(names, angles, "targetAngles", fraction)
         call = "angleInterpolationWithSpeed"
 
         def ramps(commands: Sequence[float]) -> dict[int, Ramp]:
@@ -108,7 +103,7 @@ class Joints(MotionPart):
             clamp = self._robot.joints.clamp_alone  # what is beyond a limit takes no time
             return {i: Ramp(commands[i], clamp(i, target), speeds[i]) for i, target in targets.items()}
 
-        return self._follow(call, indices, ramps)
+        return self._follow(call, list(targets), ramps)
 
     def openHand(self, name: str) -> Task:
         """The motor of the hand is stiff while it moves, and off afterwards: its gears hold what it has."""
@@ -116,6 +111,15 @@ class Joints(MotionPart):
 
     def closeHand(self, name: str) -> Task:
         return self._move_hand("closeHand", name, CLOSED)
+
+    def _targets(self, names: Any, angles: Any, field: str, fraction: Any) -> tuple[dict[int, float], dict[int, float]]:
+        """Angles (rad) and speeds (rad/s) by joint."""
+        indices = self._indices(names)
+        targets = dict(zip(indices, per_item(angles, len(indices), field)))
+        fractions = per_item(fraction, len(indices), "fractionMaxSpeed", 0.0, 1.0)
+        if 0.0 in fractions:
+            raise NaoqiError("fractionMaxSpeed is 0, allowed is above 0 to 1")
+        return targets, {i: share * self._model.joints[i].max_velocity for i, share in zip(indices, fractions)}
 
     def _move_hand(self, call: str, name: str, value: float) -> Task:
         index = self._model.joint_index[known(name, "hand", ("LHand", "RHand"))]

@@ -6,20 +6,17 @@ move takes them.
 
 from __future__ import annotations
 
-from typing import Any, Callable, Mapping
+from operator import attrgetter
+from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.naoqi.binding.arguments import known
-from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, Parameter, feet_gait, parameters
+from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, feet_gait, parameters
 
 FIELD = "moveConfig"
 # Clients in C++ send numbers of single precision: 0.035 comes as 0.035000001. No parameter means anything by less.
 DECIMALS = 6
-LISTS: Mapping[str, Callable[[Parameter], float]] = {
-    "Default": lambda parameter: parameter.default,
-    "Min": lambda parameter: parameter.minimum,
-    "Max": lambda parameter: parameter.maximum,
-}
+LISTS = {"Default": attrgetter("default"), "Min": attrgetter("minimum"), "Max": attrgetter("maximum")}
 
 
 def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:

@@ -13,8 +13,6 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.frames import Placement, commanded, space_in_torso
 from nao_sim_bridge.model.kinematics import LinkPoses, quaternion_matrix, transform
-from nao_sim_bridge.naoqi.binding.arguments import per_item
-from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.arguments import joint_indices, space_of
 
 
@@ -40,12 +38,6 @@ class MotionPart:
 
     def _indices(self, names: Any) -> list[int]:
         return joint_indices(names, self._model)
-
-    def _speeds(self, indices: Sequence[int], fraction: Any) -> dict[int, float]:
-        fractions = per_item(fraction, len(indices), "fractionMaxSpeed", 0.0, 1.0)
-        if 0.0 in fractions:
-            raise NaoqiError("fractionMaxSpeed is 0, allowed is above 0 to 1")
-        return {i: share * self._model.joints[i].max_velocity for i, share in zip(indices, fractions)}
 
     def _follow(self, name: str, indices: Sequence[int], curves: Callable[[Sequence[float]], dict]) -> Task:
         return self._runner.execute(lambda: self._robot.motion.follow(name, indices, curves), name)
