@@ -125,11 +125,7 @@ def typed(
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """For methods of a service that is no NAOqi module: as qi.bind, but arguments of other types are refused.
 
-    Args:
-        module: Name of the service.
-        returns: As for qi.bind.
-        types: Of the parameters after `self`, as for qi.bind.
-        name: Of the method on the network; None for that of the function.
+    `types` are those of the parameters after `self`; the `name` on the network is that of the function unless given.
     """
 
     def decorate(method: Callable[..., Any]) -> Callable[..., Any]:

@@ -95,12 +95,7 @@ class ALRobotPosture:
         return list(FAMILIES)
 
     def _begin(
-        self,
-        call: str,
-        name: str,
-        speed: float,
-        start: Callable[[PostureChange, str], Task],
-        before: Callable[[], None] = lambda: None,
+        self, call: str, name: str, speed: float, start: Callable[..., Task], before: Callable[[], None] = lambda: None
     ) -> Task:
         if name not in load_postures().by_name:
             raise BadValue("postureName", name, f"one of {', '.join(self.getPostureList())}")

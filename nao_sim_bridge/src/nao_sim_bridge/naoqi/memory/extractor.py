@@ -38,7 +38,6 @@ class Extractor:
     """Subscribers of an extractor, and the methods that NAOqi has for them. Only NAOqi methods are public.
 
     Args:
-        module: NAOqi name.
         memory: Where its events are declared.
         start: Called when the first subscriber comes; when it raises, nobody is subscribed and the caller gets the
             error. A task that it returns is what everybody waits for who subscribes before it has ended. Should it end

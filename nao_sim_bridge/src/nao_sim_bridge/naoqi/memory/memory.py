@@ -103,9 +103,8 @@ class ALMemory:
         for key, value in pairs:
             self._store.insert(_name(key), value, by_client=True)
 
-    def removeData(self, key: str, kind: str | None = None) -> None:
-        self._store.remove(key, kind)
-        self._signals.pop(key, None)
+    def removeData(self, key: str) -> None:
+        self._remove(key)
 
     def declareEvent(self, name: str, extractor: str = "") -> None:
         self._store.declare_event(_name(name), extractor, by_client=True)
@@ -117,10 +116,10 @@ class ALMemory:
         self._store.raise_micro_event(_name(name), value, by_client=True)
 
     def removeEvent(self, name: str) -> None:
-        self.removeData(name, EVENT)
+        self._remove(name, EVENT)
 
     def removeMicroEvent(self, name: str) -> None:
-        self.removeData(name, MICRO_EVENT)
+        self._remove(name, MICRO_EVENT)
 
     def getEventList(self) -> list[str]:
         return self._store.names(EVENT)
@@ -185,6 +184,10 @@ class ALMemory:
                 signal.disconnect(link)
             except RuntimeError:
                 pass  # the client has gone
+
+    def _remove(self, key: str, kind: str | None = None) -> None:
+        self._store.remove(key, kind)
+        self._signals.pop(key, None)
 
     def _subscribe(self, name: str, module: str, message: str, method: str, kind: str) -> None:
         def notify(event: str, value: Any, text: str) -> None:

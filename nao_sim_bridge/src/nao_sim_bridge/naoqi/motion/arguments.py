@@ -37,11 +37,7 @@ def joint_indices(names: Any, model: RobotModel) -> list[int]:
 
 
 def space_of(value: Any) -> int:
-    """The frame that a caller names by its number.
-
-    Raises:
-        BadValue: There is no such frame.
-    """
+    """The frame that a caller names by its number; a BadValue when there is none."""
     if isinstance(value, bool) or value not in (TORSO, WORLD, ROBOT):
         raise BadValue("space", value, "0 (FRAME_TORSO), 1 (FRAME_WORLD) or 2 (FRAME_ROBOT)")
     return int(value)

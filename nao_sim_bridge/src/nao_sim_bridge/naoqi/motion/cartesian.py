@@ -34,6 +34,32 @@ LEAD_SPEED = (0.5, 3.0)
 PoseReader = Callable[[Any], np.ndarray]
 
 
+def _moves(form: str, pose: PoseReader) -> tuple[Callable[..., Task], ...]:
+    """NAOqi's methods that move effectors by poses of one form: set one or several, change, follow one or several."""
+    noun = form.capitalize()
+
+    def set_one(part: Cartesian, name: str, space: int, target: Any, fraction: float, mask: int) -> Task:
+        return part._set(f"set{noun}", [name], space, [pose(target)], fraction, mask)
+
+    def set_several(part: Cartesian, names: Any, spaces: Any, targets: Any, fraction: float, masks: Any) -> Task:
+        poses = [pose(target) for target in one_each(targets, len(effectors(names)), "targets", nested=True)]
+        return part._set(f"set{noun}s", names, spaces, poses, fraction, masks)
+
+    def change(part: Cartesian, name: str, space: int, by: Any, fraction: float, mask: int) -> Task:
+        now = part._pose(name, space, part._placement(False))
+        return part._set(f"change{noun}", [name], space, [_moved(now, pose(by))], fraction, mask)
+
+    def follow(part: Cartesian, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
+        return part._interpolate(f"{form}Interpolation", [name], space, [path], mask, [times], absolute, pose)
+
+    def follow_several(
+        part: Cartesian, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
+    ) -> Task:
+        return part._interpolate(f"{form}Interpolations", names, spaces, paths, masks, times, absolute, pose)
+
+    return set_one, set_several, change, follow, follow_several
+
+
 class Cartesian(MotionPart):
     """Positions (x, y, z, wx, wy, wz) and transforms of effectors, joints and sensors."""
 
@@ -46,60 +72,16 @@ class Cartesian(MotionPart):
     def getTransform(self, name: str, space: int, use_sensors: bool) -> list[float]:
         return as_transform(self._pose(name, space, self._placement(use_sensors)))
 
-    def setPosition(self, name: str, space: int, position: Any, fraction: float, mask: int) -> Task:
-        return self._set("setPosition", [name], space, [pose_of_position(position)], fraction, mask)
-
-    def setPositions(self, names: Any, spaces: Any, positions: Any, fraction: float, mask: Any) -> Task:
-        return self._set_many("setPositions", names, spaces, positions, pose_of_position, fraction, mask)
-
-    def setTransform(self, name: str, space: int, target: Any, fraction: float, mask: int) -> Task:
-        return self._set("setTransform", [name], space, [pose_of_transform(target)], fraction, mask)
-
-    def setTransforms(self, names: Any, spaces: Any, targets: Any, fraction: float, mask: Any) -> Task:
-        return self._set_many("setTransforms", names, spaces, targets, pose_of_transform, fraction, mask)
-
-    def changePosition(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
-        return self._change("changePosition", name, space, change, pose_of_position, fraction, mask)
-
-    def changeTransform(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
-        return self._change("changeTransform", name, space, change, pose_of_transform, fraction, mask)
-
-    def positionInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
-        call = "positionInterpolation"
-        return self._interpolate(call, [name], space, [path], mask, [times], absolute, pose_of_position)
-
-    def positionInterpolations(
-        self, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
-    ) -> Task:
-        call = "positionInterpolations"
-        return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_position)
-
-    def transformInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
-        call = "transformInterpolation"
-        return self._interpolate(call, [name], space, [path], mask, [times], absolute, pose_of_transform)
-
-    def transformInterpolations(
-        self, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
-    ) -> Task:
-        call = "transformInterpolations"
-        return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_transform)
+    setPosition, setPositions, changePosition, positionInterpolation, positionInterpolations = _moves(
+        "position", pose_of_position
+    )
+    setTransform, setTransforms, changeTransform, transformInterpolation, transformInterpolations = _moves(
+        "transform", pose_of_transform
+    )
 
     def _pose(self, name: str, space: int, placed: Placement) -> np.ndarray:
         frame = frame_of(self._model, name)
         return self._torso_in(space, placed) @ placed.in_torso(frame)
-
-    def _change(
-        self, call: str, name: str, space: int, change: Any, pose: PoseReader, fraction: float, mask: int
-    ) -> Task:
-        now = self._pose(name, space, self._placement(False))
-        return self._set(call, [name], space, [_moved(now, pose(change))], fraction, mask)
-
-    def _set_many(
-        self, call: str, names: Any, spaces: Any, targets: Any, pose: PoseReader, fraction: float, masks: Any
-    ) -> Task:
-        count = len(effectors(names))
-        poses = [pose(target) for target in one_each(targets, count, "targets", nested=True)]
-        return self._set(call, names, spaces, poses, fraction, masks)
 
     def _set(
         self, call: str, names: Any, spaces: Any, poses: Sequence[np.ndarray], fraction: float, masks: Any

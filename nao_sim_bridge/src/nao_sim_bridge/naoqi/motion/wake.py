@@ -39,8 +39,7 @@ class Wake(MotionPart):
         if chain != "Body":
             indices = self._indices(chain)
             return self._runner.execute(
-                lambda: sequences.stiffness_task(self._robot, "rest", indices, 0.0, sequences.STIFFEN_TIME),
-                "rest",
+                lambda: sequences.stiffness_task(self._robot, "rest", indices, 0.0, sequences.STIFFEN_TIME), "rest"
             )
         return self._change_state("rest", sequences.rest, awake=False)
 

@@ -108,25 +108,20 @@ class Walking(MotionPart):
             raise BadValue("legName", legs, "LLeg and RLeg in turns")
         landings = _one_each(times, len(placed), "timeList")
         require_rising(landings, "timeList", times)
-        periods = [b - a for a, b in zip([0.0, *landings], landings)]
+        steps = _placements(placed, [b - a for a, b in zip([0.0, *landings], landings)])
 
         def start(locomotion: Locomotion) -> None:
-            locomotion.set_steps(_placements(placed, periods), FeetGait(), bool(clear))
+            locomotion.set_steps(steps, FeetGait(), bool(clear))
 
         return self._walk("setFootSteps", start)
 
     def setFootStepsWithSpeed(self, legs: list[str], steps: Any, fractions: list[float], clear: bool) -> Task:
         """One fraction of the top frequency for all steps, or one for each."""
-        placed = _placed(legs, steps)
-        gait = FeetGait()
+        placed, gait = _placed(legs, steps), FeetGait()
         shares = _one_each(fractions, len(placed), "fractionMaxSpeed", (0.0, 1.0), one_for_all=True)
-        periods = [gait.of(side).period(share) for (side, _), share in zip(placed, shares)]
-
-        def start(locomotion: Locomotion) -> Task:
-            made = locomotion.set_steps(_placements(placed, periods), gait, bool(clear))
-            return made.then(lambda _: None)
-
-        return self._walk("setFootStepsWithSpeed", start)
+        steps = _placements(placed, [gait.of(side).period(share) for (side, _), share in zip(placed, shares)])
+        begin = lambda locomotion: locomotion.set_steps(steps, gait, bool(clear)).then(lambda _: None)  # noqa: E731
+        return self._walk("setFootStepsWithSpeed", begin)
 
     def getFootSteps(self) -> Task:
         return self._walk("getFootSteps", lambda locomotion: _as_list(locomotion.steps()))
