@@ -5,9 +5,7 @@ from __future__ import annotations
 import threading
 from typing import Any, Mapping, Sequence
 
-from nao_sim_bridge.base.config import read_json
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.timed_commands import MERGE, Point
@@ -16,6 +14,7 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, numbers, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.memory.live_keys import key_prefix
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 NAME = "DCM"
@@ -34,7 +33,7 @@ class DCM:
     def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
         self._simulation = simulation
         self._runner = runner
-        self._prefix = read_json(config_file("naoqi_memory_keys.json"))["_meta"]["prefix"]
+        self._prefix = key_prefix()
         self._commands = DeviceCommands(lambda: simulation.robot, self._milliseconds)
         self._aliases: dict[str, Sequence[str]] = {}
         self._memory = memory

@@ -7,18 +7,8 @@ from typing import Callable, Mapping
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.control.balance.posture_recognition import (
-    BACK,
-    BELLY,
-    CROUCHING,
-    FAMILIES,
-    LEFT,
-    ON_CHAIR,
-    RIGHT,
-    SITTING,
-    STANDING,
-    recognise,
-)
+from nao_sim_bridge.control.balance import posture_recognition as families
+from nao_sim_bridge.control.balance.posture_recognition import recognise
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import load_moves
 from nao_sim_bridge.core.runner import SimulationRunner
@@ -37,14 +27,14 @@ POSE = "ALRobotPose"
 UNKNOWN = "Unknown"
 # The old names of what the robot recognises now.
 POSES: Mapping[str, str] = {
-    STANDING: "Stand",
-    CROUCHING: "Crouch",
-    SITTING: "Sit",
-    ON_CHAIR: "Sit",
-    BELLY: "Belly",
-    BACK: "Back",
-    LEFT: "Left",
-    RIGHT: "Right",
+    families.STANDING: "Stand",
+    families.CROUCHING: "Crouch",
+    families.SITTING: "Sit",
+    families.ON_CHAIR: "Sit",
+    families.BELLY: "Belly",
+    families.BACK: "Back",
+    families.LEFT: "Left",
+    families.RIGHT: "Right",
 }
 # Poses that the old module knew and that nothing recognises any more.
 NEVER = ("Frog", "HeadBack", "Knee")
@@ -92,7 +82,7 @@ class ALRobotPosture:
         return sorted(load_postures().by_name)
 
     def getPostureFamilyList(self) -> list[str]:
-        return list(FAMILIES)
+        return list(families.FAMILIES)
 
     def _begin(
         self, call: str, name: str, speed: float, start: Callable[..., Task], before: Callable[[], None] = lambda: None

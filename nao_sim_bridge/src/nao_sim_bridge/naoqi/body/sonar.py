@@ -8,18 +8,17 @@ from collections import deque
 from contextlib import suppress
 from typing import Any, Callable, Deque, Dict, Mapping, Tuple
 
-from nao_sim_bridge.base.config import read_json
 from nao_sim_bridge.base.errors import ConfigError, SimulationStopped
-from nao_sim_bridge.base.paths import config_file
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.sensors.sonar import NO_ECHO
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.extractor import Extractor, Subscription
+from nao_sim_bridge.naoqi.memory.live_keys import FILE, key_prefix, key_tables
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
-NAME, KEYS_FILE = "ALSonar", "naoqi_memory_keys.json"
+NAME = "ALSonar"
 SIDES = ("Left", "Right")
 DETECTED = tuple(f"Sonar{side}Detected" for side in SIDES)
 NOTHING = tuple(f"Sonar{side}NothingDetected" for side in SIDES)
@@ -149,9 +148,7 @@ def sonar_keys(sonar: ALSonar) -> Dict[str, Callable[[], float]]:
     Raises:
         ConfigError: The file names a key that nothing can read.
     """
-    tables = read_json(config_file(KEYS_FILE))
-    prefix = tables["_meta"]["prefix"]
-    return {prefix + key: _reader(key, sonar) for key in tables["devices"]["sonar"]["keys"]}
+    return {key_prefix() + key: _reader(key, sonar) for key in key_tables()["devices"]["sonar"]["keys"]}
 
 
 def _reader(key: str, sonar: ALSonar) -> Callable[[], float]:
@@ -161,7 +158,7 @@ def _reader(key: str, sonar: ALSonar) -> Callable[[], float]:
         return lambda: min(_echo(sonar, side, 0) for side in range(len(SIDES)))
     match = re.fullmatch(r"US/(Left|Right)/Sensor/Value(\d?)", key)
     if match is None:
-        raise ConfigError(KEYS_FILE, f"nothing in the simulation can read {key!r}")
+        raise ConfigError(FILE, f"nothing in the simulation can read {key!r}")
     side, number = SIDES.index(match[1]), int(match[2] or 0)
     return lambda: _echo(sonar, side, number)
 

@@ -6,6 +6,7 @@ The names come from `config/naoqi_memory_keys.json`; a key of the file that noth
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.base.config import read_json
@@ -50,6 +51,17 @@ AXES = {"X": 0, "Y": 1, "Z": 2}
 CONTACT_LOAD = 3.0
 
 
+@lru_cache(maxsize=None)
+def key_tables() -> Mapping[str, Any]:
+    """What `FILE` says, by section."""
+    return read_json(config_file(FILE))
+
+
+def key_prefix() -> str:
+    """What every key of a device begins with."""
+    return key_tables()["_meta"]["prefix"]
+
+
 def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_values: Callable[[], tuple]) -> dict:
     """Key -> function without arguments that reads its present value.
 
@@ -59,15 +71,14 @@ def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_
     readers: dict[str, Callable[[], Any]] = {}
     for key, read in _snapshot_keys(model).items():
         readers[key] = lambda read=read: read(runner.snapshot)
-    prefix = read_json(config_file(FILE))["_meta"]["prefix"]
     for index, device in enumerate(leds.devices):
-        readers[prefix + device] = lambda index=index: led_values()[index]
+        readers[key_prefix() + device] = lambda index=index: led_values()[index]
     return readers
 
 
 def constants(version: str) -> dict[str, Any]:
     """Keys whose value never changes: what the robot is made of."""
-    tables = read_json(config_file(FILE))
+    tables = key_tables()
     values = {k: v for k, v in tables["robot_config_V6"].items() if k != "note"}
     if version != "V6":
         values.update({k: v for k, v in tables[f"robot_config_{version}"].items() if k != "note"})
@@ -77,8 +88,8 @@ def constants(version: str) -> dict[str, Any]:
 
 
 def _snapshot_keys(model: RobotModel) -> dict[str, Read]:
-    tables = read_json(config_file(FILE))
-    prefix = tables["_meta"]["prefix"]
+    tables = key_tables()
+    prefix = key_prefix()
     keys: dict[str, Read] = {}
     for joint in tables["joints"]["names"]:
         for suffix in tables["joints"]["suffixes"]:
