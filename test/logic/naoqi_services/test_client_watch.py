@@ -5,15 +5,15 @@ import threading
 import pytest
 
 from nao_sim_bridge.base.tasks import TaskIds
-from nao_sim_bridge.naoqi.binding import client_watch
-from nao_sim_bridge.naoqi.binding.client_watch import ClientWatch
+from nao_sim_bridge.naoqi.binding import client_calls
+from nao_sim_bridge.naoqi.binding.client_calls import ClientWatch
 
 PATIENCE = 10.0
 
 
 @pytest.fixture
 def ids(monkeypatch):
-    monkeypatch.setattr(client_watch, "PERIOD", 0.005)
+    monkeypatch.setattr(client_calls, "PERIOD", 0.005)
     ids = TaskIds()
     ids.ask = lambda task: task.kill()
     return ids

@@ -11,11 +11,11 @@ from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.body.led_names import LedNames
+from nao_sim_bridge.naoqi.body.leds import LedNames
 from nao_sim_bridge.naoqi.memory import live_keys
 from nao_sim_bridge.naoqi.memory.extractor import MOST, Extractor, Subscription
 from nao_sim_bridge.naoqi.memory.store import EVENT, MemoryStore
-from nao_sim_bridge.naoqi.motion.walk_events import FAILED, MoveFailures
+from nao_sim_bridge.naoqi.motion.walking import FAILED, MoveFailures
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 
 LEDS = load_leds()
@@ -171,28 +171,28 @@ def names():
 def test_groups_mean_their_members_each_once_may_hold_groups_and_be_made_anew(names):
     for name in ("FaceLeds", "LeftFaceLed1", "Brain0", "ChestBoard/Led/Blue/Actuator/Value"):
         assert names.devices(name) == LEDS.devices_of(name)
-    names.make_group("mine", ["LeftFaceLed1", "LeftFaceLed1", "FaceLedLeft0", "Brain3"])
-    assert names.members("mine") == ["LeftFaceLed1", "LeftFaceLed1", "FaceLedLeft0", "Brain3"]
+    names.createGroup("mine", ["LeftFaceLed1", "LeftFaceLed1", "FaceLedLeft0", "Brain3"])
+    assert names.listGroup("mine") == ["LeftFaceLed1", "LeftFaceLed1", "FaceLedLeft0", "Brain3"]
     assert set(names.devices("mine")) == {*LEDS.devices_of("FaceLedLeft0"), *LEDS.devices_of("Brain3")}
-    assert len(names.devices("mine")) == 4 and len(names.groups()) == 71 and len(names.short_names()) == 57
-    names.make_group("all", ["mine", "Brain0"])
+    assert len(names.devices("mine")) == 4 and len(names.listGroups()) == 71 and len(names.listLEDs()) == 57
+    names.createGroup("all", ["mine", "Brain0"])
     assert set(names.devices("all")) == {*names.devices("mine"), *LEDS.devices_of("Brain0")}
-    names.make_group("mine", ["Brain0"])
-    assert names.devices("mine") == LEDS.devices_of("Brain0") and names.members("FaceLedLeft0") == ["LeftFaceLed1"]
-    assert names.device_names("LeftFaceLed1")[0].startswith("Face/Led/Red/Left/")
+    names.createGroup("mine", ["Brain0"])
+    assert names.devices("mine") == LEDS.devices_of("Brain0") and names.listGroup("FaceLedLeft0") == ["LeftFaceLed1"]
+    assert names.listLED("LeftFaceLed1")[0].startswith("Face/Led/Red/Left/")
 
 
 def test_impossible_groups_and_unknown_names_are_refused(names):
-    names.make_group("group0", ["Brain0"])
-    names.make_group("group1", ["group0"])
+    names.createGroup("group0", ["Brain0"])
+    names.createGroup("group1", ["group0"])
     for call, message in (
-        (lambda: names.make_group("FaceLeds", ["Brain0"]), "'FaceLeds' is taken by the robot's own LEDs"),
-        (lambda: names.make_group("mine", []), "'mine' has no members"),
-        (lambda: names.make_group("group0", ["group1"]), "'group0' would hold itself"),
-        (lambda: names.make_group("mine", ["Brian0"]), "unknown LED or group 'Brian0'.*'Brain0'"),
-        (lambda: names.members("FaceLed"), "unknown group 'FaceLed'.*'FaceLeds'"),
-        (lambda: names.device_names("FaceLeds"), "unknown LED 'FaceLeds'"),
+        (lambda: names.createGroup("FaceLeds", ["Brain0"]), "'FaceLeds' is taken by the robot's own LEDs"),
+        (lambda: names.createGroup("mine", []), "'mine' has no members"),
+        (lambda: names.createGroup("group0", ["group1"]), "'group0' would hold itself"),
+        (lambda: names.createGroup("mine", ["Brian0"]), "unknown LED or group 'Brian0'.*'Brain0'"),
+        (lambda: names.listGroup("FaceLed"), "unknown group 'FaceLed'.*'FaceLeds'"),
+        (lambda: names.listLED("FaceLeds"), "unknown LED 'FaceLeds'"),
     ):
         with pytest.raises((NaoqiError, UnknownName), match=message):
             call()
-    assert "mine" not in names.groups() and names.devices("group1") == LEDS.devices_of("Brain0")
+    assert "mine" not in names.listGroups() and names.devices("group1") == LEDS.devices_of("Brain0")

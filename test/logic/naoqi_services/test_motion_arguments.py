@@ -10,13 +10,17 @@ from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.robot_model import joint_names
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.body.dcm_arguments import timed_points
-from nao_sim_bridge.naoqi.motion.arguments import joint_indices, key_frames
-from nao_sim_bridge.naoqi.motion.bezier_arguments import bezier_key_points
-from nao_sim_bridge.naoqi.motion.cartesian_arguments import paths_of, pose_of_position
-from nao_sim_bridge.naoqi.motion.footsteps import _placed as placed
+from nao_sim_bridge.naoqi.body.dcm import timed_points
+from nao_sim_bridge.naoqi.motion.arguments import (
+    bezier_key_points,
+    joint_indices,
+    key_frames,
+    paths_of,
+    pose_of_position,
+)
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of, gait_of_feet
 from nao_sim_bridge.naoqi.motion.walking import _destination as destination
+from nao_sim_bridge.naoqi.motion.walking import _placed as placed
 from nao_sim_bridge.walk.gait import FeetGait
 
 MODEL = load_model()

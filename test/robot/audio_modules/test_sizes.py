@@ -8,7 +8,7 @@ import pytest
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.naoqi.binding.argument_sizes import check_sizes
+from nao_sim_bridge.naoqi.binding.limits import check_sizes
 from nao_sim_bridge.speech import studio
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nao_sim_bridge.naoqi.body.battery import BatteryEvents
+from nao_sim_bridge.naoqi.body.battery import ALBattery
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 DISCHARGING, FULL, CHARGING, SUPPLY, END, NEAR_END = 1 << 5, 1 << 6, 1 << 7, 1 << 15, 1, 2
@@ -106,7 +106,7 @@ def test_a_charger_from_the_start_stays_and_a_v5_tells_its_plug(bench):
     one.simulation.reset()
     assert one.run(0.2).battery.plugged
     old, memory = bench(version="V5"), MemoryStore(lambda: 0.0)
-    old.simulation.after_tick.append(BatteryEvents(memory))
+    old.simulation.after_tick.append(ALBattery(None, memory))
     assert not old.run(SOON).battery.plugged and memory.get("BatteryPowerPluggedChanged") is False
     old.robot.power.battery.plug(True)
     assert old.run(SOON).battery.status & SUPPLY and memory.get("BatteryPowerPluggedChanged") is True

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from nao_sim_bridge.base.limits import check, field_kind
-from nao_sim_bridge.naoqi.binding.argument_sizes import check_sizes
+from nao_sim_bridge.naoqi.binding.limits import check_sizes
 
 
 def checked(request: Any) -> Any:

@@ -15,13 +15,9 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.hearing.recogniser import SpareProcess
 from nao_sim_bridge.naoqi import motion
 from nao_sim_bridge.naoqi.behaviors.wiring import BehaviorModules
+from nao_sim_bridge.naoqi.body import leds
 from nao_sim_bridge.naoqi.body.body_modules import BodyModules
-from nao_sim_bridge.naoqi.body.diagnosis_events import DiagnosisEvents
-from nao_sim_bridge.naoqi.body.fall_events import FallEvents
-from nao_sim_bridge.naoqi.body.leds import ALLeds
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
-from nao_sim_bridge.naoqi.body.posture_events import PostureEvents
-from nao_sim_bridge.naoqi.body.senses_wiring import SenseModules
 from nao_sim_bridge.naoqi.cameras import video_device
 from nao_sim_bridge.naoqi.cameras.photos_and_films import PictureModules
 from nao_sim_bridge.naoqi.life.wiring import LifeModules
@@ -125,7 +121,6 @@ class RobotModules:
         self.video = video_device.ALVideoDevice(simulation.cameras, files)
         self.vision = VisionModules(simulation, memory, files, workers.vision)
         self._pictures_taken = PictureModules(simulation, runner, files)
-        self._senses = SenseModules(simulation, runner, memory)
         self.sounds = WorldSoundsControl(simulation, runner, sounds, workers.persons)
         self.things = ThingsControl(simulation, runner, files)
         self.hands = HandsControl(simulation, runner)
@@ -134,7 +129,7 @@ class RobotModules:
         self._body = BodyModules(simulation, runner, memory)
         self.modules: dict[str, list[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
-            "ALLeds": [ALLeds(simulation, runner)],
+            "ALLeds": leds.parts(simulation, runner),
             "ALMotion": motion.parts(simulation, runner, memory),
             "ALRobotPosture": [posture],
             **self._audio.modules(),
@@ -147,7 +142,6 @@ class RobotModules:
             video_device.NAME: self.video.parts(),
             **self.vision.modules(),
             **self._pictures_taken.modules(),
-            **self._senses.modules(),
             **self._body.modules(),
             "ALSystem": [system(memory, zone)],
         }
@@ -166,10 +160,6 @@ class RobotModules:
         for key, value in constants(simulation.scene.version).items():
             memory.insert(key, value)
         simulation.after_reset.append(lambda: memory.raise_event(AWAKE, False))
-        simulation.after_tick.append(PostureEvents(simulation.model, memory))
-        simulation.after_tick.append(FallEvents(simulation, memory))
-        self._senses.begin()
-        simulation.after_tick.append(DiagnosisEvents(simulation, memory))
         self._body.begin()
 
     def client_gone(self, module: str) -> None:

@@ -11,7 +11,6 @@ from nao_sim_bridge.base.errors import ConfigError
 
 FILE = "naoqi_api.json"
 COMMON = "_common_module"
-EXTRACTOR = "_common_extractor"
 
 SIMPLE_TYPES = {
     "void": "v",
@@ -62,11 +61,7 @@ class Method:
 
 
 def qi_type(name: str) -> str:
-    """Libqi's letter code of a type as NAOqi writes it.
-
-    Raises:
-        ConfigError: The type is unknown.
-    """
+    """Libqi's letter code of a type as NAOqi writes it; a ConfigError when it is unknown."""
     if name in SIMPLE_TYPES:
         return SIMPLE_TYPES[name]
     kind, _, inner = name.partition("<")

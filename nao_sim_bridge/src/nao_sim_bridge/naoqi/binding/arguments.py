@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Collection
 
-from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 
 
 def number(value: Any, field: str, low: float = -math.inf, high: float = math.inf) -> float:
@@ -24,6 +24,14 @@ def whole_number(value: Any, field: str, low: int, high: int) -> int:
     return value
 
 
+def speed_share(value: Any, field: str) -> float:
+    """`value` as a fraction of the top speed, above 0 to 1."""
+    share = number(value, field, 0.0, 1.0)
+    if share == 0.0:
+        raise BadValue(field, value, "above 0 to 1")
+    return share
+
+
 def text(value: Any, field: str, longest: int) -> str:
     """`value` as a text of at most `longest` characters."""
     if not isinstance(value, str):
@@ -38,6 +46,17 @@ def one_of(value: Any, field: str, allowed: Collection[Any]) -> Any:
     if value not in allowed:
         raise BadValue(field, value, f"one of {', '.join(map(str, allowed))}")
     return value
+
+
+def known(name: Any, kind: str, names: Collection[str]) -> Any:
+    """`name`, which has to be one of `names`.
+
+    Raises:
+        UnknownName: It is none of them, of which `kind` says what they name.
+    """
+    if name not in names:
+        raise UnknownName(kind, name, names)
+    return name
 
 
 def numbers(values: Any, field: str, low: float = -math.inf, high: float = math.inf) -> list[float]:

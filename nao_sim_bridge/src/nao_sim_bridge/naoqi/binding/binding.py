@@ -17,9 +17,9 @@ from typing import Any, Callable, Iterable, Mapping, Sequence
 import qi
 
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.naoqi.binding.api import Method, Overload, module_methods, qi_type
-from nao_sim_bridge.naoqi.binding.argument_sizes import check_sizes
+from nao_sim_bridge.naoqi.binding.api import Method, module_methods, qi_type
 from nao_sim_bridge.naoqi.binding.common import CommonModule
+from nao_sim_bridge.naoqi.binding.limits import check_sizes
 from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to
 
 log = logging.getLogger("nao_sim.services")
@@ -40,7 +40,7 @@ class Service:
         object: What to register under the name of the module.
 
     Args:
-        module: NAOqi name, a key of the API table.
+        module: A key of the API table.
         parts: Objects whose methods do the work; those with the names of the table are published. One with an attribute
             `signals` publishes these libqi signals, by name; it has to keep them in `take_over(former)`.
         broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
@@ -55,9 +55,10 @@ class Service:
         for name, method in module_methods(module).items():
             if name in self._targets.methods:
                 for position, overload in enumerate(method.overloads):
-                    attribute = name if position == 0 else f"{name}_{position}"
-                    body[attribute] = self._published(method, overload)
-        body["pCall"] = self._published_any("pCall")
+                    call = self._published(name, method.summary, qi_type(method.returns))
+                    call.__qi_signature__ = overload.signature
+                    body[name if position == 0 else f"{name}_{position}"] = call
+        body["pCall"] = self._published("pCall", inspect.getdoc(CommonModule.pCall), qi.Dynamic, qi.AnyArguments)
         self.object = type(module, (), body)()
         for part in parts:
             for name, signal in getattr(part, "signals", {}).items():
@@ -84,25 +85,12 @@ class Service:
                 common.targets[name] = _checked(self._module, method, target)
         return _Targets({**common.targets, "pCall": common.pCall})
 
-    def _published(self, method: Method, overload: Overload) -> Callable[..., Any]:
-        name = method.name
-
+    def _published(self, name: str, summary: str | None, returns: Any, types: Any = None) -> Any:
         def published(_: Any, *args: Any) -> Any:
             return self._targets.answer(self._module, name, args)
 
-        published.__doc__ = method.summary
-        published.__name__ = name
-        bind = qi.bind(qi_type(method.returns), None, name)
-        bind(published)
-        published.__qi_signature__ = overload.signature
-        return published
-
-    def _published_any(self, name: str) -> Callable[..., Any]:
-        def published(_: Any, *args: Any) -> Any:
-            return self._targets.answer(self._module, name, args)
-
-        published.__doc__ = inspect.getdoc(getattr(CommonModule, name))
-        return qi.bind(qi.Dynamic, qi.AnyArguments, name)(published)
+        published.__doc__, published.__name__ = summary, name
+        return qi.bind(returns, types, name)(published)
 
 
 class _Targets:
@@ -132,21 +120,12 @@ class _Targets:
         task.add_done_callback(self._waiting.discard)
 
 
-def make_service(module: str, parts: Sequence[Any], broker: Any) -> Any:
-    """The object to register under the name `module`; see `Service`."""
-    return Service(module, parts, broker).object
-
-
 def typed(
     module: str, returns: Any, types: Sequence[Any], name: str | None = None
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """For methods of a service that is no NAOqi module: as qi.bind, but arguments of other types are refused.
 
-    Args:
-        module: Name of the service.
-        returns: Type of the answer, as for qi.bind.
-        types: Types of the parameters after `self`, as for qi.bind.
-        name: Of the method on the network; None for that of the function.
+    `types` are those of the parameters after `self`; the `name` on the network is that of the function unless given.
     """
 
     def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
@@ -186,35 +165,22 @@ def answer(
 ) -> Any:
     """What libqi sends back for a call: a value, or a future for what takes simulated time.
 
-    Errors go back as failed futures: raised through libqi they would carry a Python traceback in their text.
-
-    Args:
-        module: Of the method.
-        method: Its name.
-        call: What does the work.
-        args: Of the call.
-        note: Called with each task that the client waits for.
+    Errors go back as failed futures: raised through libqi they would carry a Python traceback in their text. `note` is
+    called with each task that the client waits for.
     """
-    args = tuple(args)
+    args, label = tuple(args), f"{module}::{method}"
     try:
         check_sizes(args)
         result = call(*args)
     except Exception as error:
-        return _failed(_text(f"{module}::{method}", error))
-    if isinstance(result, Task):
-        return as_future(result, f"{module}::{method}", note)
-    return result
+        promise = qi.Promise()
+        promise.setError(_text(label, error))
+        return promise.future()
+    return _as_future(result, label, note) if isinstance(result, Task) else result
 
 
-def as_future(task: Task, label: str, note: Callable[[Task], None] = lambda task: None) -> Any:
-    """A libqi future that ends with the task; cancelling it kills the task.
-
-    Args:
-        task: A command of the simulation thread, whose value may be a further task that takes simulated time, or such
-            a task itself.
-        label: "Module::method", for error texts.
-        note: Called with each task that is waited for.
-    """
+def _as_future(task: Task, label: str, note: Callable[[Task], None]) -> Any:
+    """A libqi future that ends with the task, or with the one that is its value; cancelling it kills the task."""
     cancelled = threading.Event()
 
     def cancel(_: Any) -> None:
@@ -246,12 +212,6 @@ def _checked(module: str, method: Method, target: Callable[..., Any]) -> Callabl
         return target(*fitted(method, args, module))
 
     return checked
-
-
-def _failed(text: str) -> Any:
-    promise = qi.Promise()
-    promise.setError(text)
-    return promise.future()
 
 
 def _text(label: str, error: Exception) -> str:

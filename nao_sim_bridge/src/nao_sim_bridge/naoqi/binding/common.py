@@ -20,13 +20,7 @@ REMEMBERED = 1000
 
 
 class CommonModule:
-    """What NAOqi's module base class offers.
-
-    Args:
-        module: NAOqi name.
-        table: The methods of the module.
-        broker: Object with `name` and `unregister(module)`.
-    """
+    """What NAOqi's module base class offers; `broker` has `name` and `unregister(module)`."""
 
     def __init__(self, module: str, table: Mapping[str, Method], broker: Any) -> None:
         self.targets: dict[str, Callable[..., Any]] = {}
@@ -38,23 +32,18 @@ class CommonModule:
         self._lock = threading.Lock()
 
     def ping(self) -> bool:
-        """Always true."""
         return True
 
     def version(self) -> str:
-        """Version of the NAOqi whose interface is served."""
         return VERSION
 
     def getBrokerName(self) -> str:
-        """Name of the broker that the module belongs to."""
         return self._broker.name
 
     def exit(self) -> None:
-        """Take the module off the network."""
         self._broker.unregister(self._module)
 
     def getMethodList(self) -> list[str]:
-        """Names of the methods that can be called."""
         return sorted(self.targets)
 
     def getMethodHelp(self, name: str) -> list:
@@ -69,7 +58,6 @@ class CommonModule:
         return [f"{self._module} of the simulated NAO, {len(self.targets)} methods", [["python", example]]]
 
     def getUsage(self, name: str) -> str:
-        """All ways to call a method."""
         return self._method(name).usage()
 
     def pCall(self, *call: Any) -> int:
@@ -88,11 +76,9 @@ class CommonModule:
         return call_id
 
     def isRunning(self, call_id: int) -> bool:
-        """True while the posted call has not ended."""
         return _runs(self._task(call_id))
 
     def stop(self, call_id: int) -> None:
-        """End a posted call before its time."""
         task = self._task(call_id)
         if task is not None:
             task.request_kill()

@@ -1,20 +1,48 @@
-"""Which parameter of which method takes which kind of number: `config/limits.json`."""
+"""Bounds of arguments: how large a call may be, and which parameter of which method takes which kind of number."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Sequence
+from typing import Any, Iterable, NamedTuple, Sequence
 
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.limits import OTHER, Kind, check, declared, kind, kinds
+from nao_sim_bridge.base.sizes import load_sizes
+
+
+def check_sizes(arguments: Iterable[Any]) -> None:
+    """Raise an error if the arguments of a call are too large together.
+
+    Raises:
+        BadValue: They are; it says what there is and what is allowed.
+    """
+    sizes, items = load_sizes().call, 0
+    waiting: list[tuple[Any, int]] = [(arguments, 0)]
+    while waiting:
+        value, depth = waiting.pop()
+        if isinstance(value, str):
+            _within("text", len(value), "characters", sizes.text_characters)
+        elif isinstance(value, (bytes, bytearray)):
+            _within("buffer", len(value), "bytes", sizes.buffer_bytes)
+        else:
+            inner = (*value.keys(), *value.values()) if isinstance(value, dict) else value
+            items += len(inner)
+            _within("call", items, "items", sizes.items)
+            _within("list", depth, "levels", sizes.levels)
+            # Numbers, of which there may be many, are of no interest.
+            sized = (str, bytes, bytearray, list, tuple, dict)
+            waiting += [(each, depth + 1) for each in inner if isinstance(each, sized)]
+
+
+def _within(what: str, there: int, unit: str, most: int) -> None:
+    if there > most:
+        raise BadValue(f"a {what} of the arguments", f"{there} {unit}", f"{most} {unit} at most")
 
 
 class Row(NamedTuple):
     """A line of the table of bounds.
 
     Attributes:
-        kind: Name of the kind.
-        lowest: The least a number of it may be.
-        highest: The most.
-        unit: Of both.
+        unit: Of `lowest` and `highest`.
         smallest: How near to 0 it may be when it is not 0; 0 where that does not matter.
         where: Names of NAOqi's parameters, "Module.method parameter" where one has another kind than its name says,
             "field NAME" of ROS services of the simulator, "world NAME" of keys of world files.
@@ -29,7 +57,6 @@ class Row(NamedTuple):
 
 
 def kind_of(module: str, method: str, parameter: str) -> Kind:
-    """The kind of number that a parameter takes."""
     own = declared()["methods"].get(f"{module}.{method}", {})
     return kind(own.get(parameter) or declared()["parameters"].get(parameter, OTHER))
 

@@ -32,25 +32,23 @@ class Switch(ABC):
 
     @property
     def _works(self) -> bool:
-        """Whether it is to work."""
         return self._wanted and not self._paused
 
     def start(self) -> None:
         """Somebody is subscribed."""
-        with self._lock:
-            self._wanted = True
-            self._update()
+        self._set("_wanted", True)
 
     def stop(self) -> None:
         """Nobody is subscribed any more."""
-        with self._lock:
-            self._wanted = False
-            self._update()
+        self._set("_wanted", False)
 
     def pause(self, paused: bool) -> None:
         """Do nothing for a while, or go on."""
+        self._set("_paused", paused)
+
+    def _set(self, name: str, value: bool) -> None:
         with self._lock:
-            self._paused = paused
+            setattr(self, name, value)
             self._update()
 
     @abstractmethod

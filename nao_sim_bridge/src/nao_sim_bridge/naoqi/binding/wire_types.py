@@ -25,10 +25,7 @@ def fitted(method: Method, arguments: Sequence[Any], module: str = "") -> list[A
     A text where it takes a list of texts is a list of this one; a whole number is an int, also where it came as 2.0 or
     as true. Of overloads that take the same number of arguments, the one counts for which least has to be changed.
 
-    Args:
-        method: Of the table.
-        arguments: Of the call.
-        module: Of the method: some numbers have bounds of their own there.
+    Some numbers have bounds of their own in one `module`.
 
     Raises:
         NaoqiError: It takes another number of arguments.
@@ -44,11 +41,7 @@ def fitted(method: Method, arguments: Sequence[Any], module: str = "") -> list[A
 def fitted_to(
     names: Sequence[str], signatures: Sequence[str], values: Sequence[Any], module: str = "", method: str = ""
 ) -> list[Any]:
-    """As `fitted`, with types in libqi's letters.
-
-    Raises:
-        BadValue: One of the values is of another type, or a number in it is out of bounds.
-    """
+    """As `fitted`, with types in libqi's letters."""
     types = tuple(_BY_SIGNATURE.get(signature, ANYTHING) for signature in signatures)
     return _fitted(module, method, [Overload(types, tuple(names))], values)
 

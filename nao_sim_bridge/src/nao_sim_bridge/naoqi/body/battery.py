@@ -1,4 +1,4 @@
-"""ALBattery of the simulated robot and its events. Only NAOqi methods live in the class of that name."""
+"""ALBattery of the simulated robot and its events."""
 
 from __future__ import annotations
 
@@ -36,36 +36,11 @@ BEGINNINGS: Mapping[str, tuple[Callable[[BatteryReading], bool], Any]] = {
 
 
 class ALBattery:
-    """ALBattery as the simulated robot offers it.
+    """ALBattery as the simulated robot offers it; called after every tick, in the simulation thread, for its events."""
 
-    Args:
-        runner: Whose snapshots tell the charge.
-        events: Which can be switched.
-    """
-
-    def __init__(self, runner: SimulationRunner, events: BatteryEvents) -> None:
+    def __init__(self, runner: SimulationRunner, memory: MemoryStore) -> None:
         self._runner = runner
-        self._events = events
-
-    def getBatteryCharge(self) -> int:
-        return percent(self._runner.snapshot.battery)
-
-    def enablePowerMonitoring(self, enable: bool) -> None:
-        self._events.enabled = enable
-
-
-class BatteryEvents:
-    """Raises the events of the battery; called after every tick, in the simulation thread.
-
-    Attributes:
-        enabled: Whether events are raised; any thread may switch it.
-
-    Args:
-        memory: Where events go.
-    """
-
-    def __init__(self, memory: MemoryStore) -> None:
-        self.enabled = True
+        self._enabled = True
         self._memory = memory
         self._seen: BatteryReading | None = None
         self._told: dict[str, Any] = {}
@@ -73,10 +48,16 @@ class BatteryEvents:
         for event in (*VALUES, *BEGINNINGS, PLUGGED):
             memory.declare_event(event, NAME)
 
+    def getBatteryCharge(self) -> int:
+        return percent(self._runner.snapshot.battery)
+
+    def enablePowerMonitoring(self, enable: bool) -> None:
+        self._enabled = enable
+
     def __call__(self, snapshot: Snapshot) -> None:
         """Look at the battery when its board has told something new."""
         battery = snapshot.battery
-        if battery is self._seen or not self.enabled:
+        if battery is self._seen or not self._enabled:
             return
         self._seen = battery
         for event, read in VALUES.items():

@@ -1,15 +1,14 @@
-"""ALBodyTemperature of the simulated robot and its events. Only NAOqi methods live in the class of that name."""
+"""ALBodyTemperature of the simulated robot and its events."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from nao_sim_bridge.base.settings import HeadSettings
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.temperatures import CRITICAL, HEAD, NOTHING_HOT, Hot, hot_devices
 from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.naoqi.binding.severity import severity_value
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.body.diagnosis import severity_value
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 NAME = "ALBodyTemperature"
@@ -22,43 +21,13 @@ HEAD_STEP = 1.0
 
 
 class ALBodyTemperature:
-    """ALBodyTemperature as the simulated robot offers it.
+    """ALBodyTemperature as the simulated robot offers it; called after every tick, in the simulation thread."""
 
-    Args:
-        runner: Whose snapshots tell the temperatures.
-        events: Which can be switched.
-    """
-
-    def __init__(self, runner: SimulationRunner, events: TemperatureEvents) -> None:
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
         self._runner = runner
-        self._events = events
-
-    def getTemperatureDiagnosis(self) -> list:
-        return diagnosis(self._events.hot(self._runner.snapshot))
-
-    def areNotificationsEnabled(self) -> bool:
-        return self._events.enabled
-
-    def setEnableNotifications(self, enable: bool) -> None:
-        self._events.enabled = enable
-
-
-class TemperatureEvents:
-    """Raises the events of temperatures; called after every tick, in the simulation thread.
-
-    Attributes:
-        enabled: Whether events are raised; any thread may switch it.
-
-    Args:
-        model: The robot.
-        head: From when on its head is hot.
-        memory: Where events go.
-    """
-
-    def __init__(self, model: RobotModel, head: HeadSettings, memory: MemoryStore) -> None:
-        self.enabled = True
-        self._model = model
-        self._limits = head
+        self._enabled = True
+        self._model = simulation.model
+        self._limits = simulation.settings.head
         self._memory = memory
         self._temperatures: Any = None
         self._hot = NOTHING_HOT
@@ -66,18 +35,22 @@ class TemperatureEvents:
         for event in EVENTS:
             memory.declare_event(event, NAME)
 
-    def hot(self, snapshot: Snapshot) -> Hot:
-        """What is hot."""
-        return hot_devices(self._model, self._limits, snapshot)
+    def getTemperatureDiagnosis(self) -> list:
+        return diagnosis(hot_devices(self._model, self._limits, self._runner.snapshot))
+
+    def areNotificationsEnabled(self) -> bool:
+        return self._enabled
+
+    def setEnableNotifications(self, enable: bool) -> None:
+        self._enabled = enable
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the temperatures when they are new."""
-        if snapshot.temperatures is self._temperatures or not self.enabled:
+        if snapshot.temperatures is self._temperatures or not self._enabled:
             return
         first = self._temperatures is None
         self._temperatures = snapshot.temperatures
-        before, self._hot = self._hot, self.hot(snapshot)
-        now = self._hot
+        before, now = self._hot, hot_devices(self._model, self._limits, snapshot)
+        self._hot = now
         if now is not before:
             self._tell(before, now)
         if first:

@@ -1,22 +1,19 @@
-"""ALDiagnosis of the simulated robot and its events. Only NAOqi methods live in the class of that name."""
+"""ALDiagnosis of the simulated robot and its events."""
 
 from __future__ import annotations
 
-from typing import Iterable
+from typing import Iterable, Sequence
 
 from nao_sim_bridge.body.faults import CRITICAL, NEGLIGIBLE, Faults, severity
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.sequences import STIFFEN_TIME
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.severity import severity_value
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 NAME = "ALDiagnosis"
 ACTIVE, PASSIVE = "ActiveDiagnosisErrorChanged", "PassiveDiagnosisErrorChanged"
 BOTH, READY, FINISHED = (
-    "ALDiagnosis/DiagnosisErrorChanged",
-    "ALDiagnosis/RobotIsReady",
-    "ALDiagnosis/ActiveDiagnosisFinished",
+    f"{NAME}/{event}" for event in ("DiagnosisErrorChanged", "RobotIsReady", "ActiveDiagnosisFinished")
 )
 # The active diagnosis looks for the current of the motors this long after they were told to be stiff, s.
 TRY_TIME = STIFFEN_TIME + 0.1
@@ -26,48 +23,14 @@ NOTHING = (NEGLIGIBLE, ())
 class ALDiagnosis:
     """ALDiagnosis as the simulated robot offers it.
 
-    Args:
-        events: What was found last; can be switched.
-    """
-
-    def __init__(self, events: DiagnosisResults) -> None:
-        self._events = events
-
-    def getActiveDiagnosis(self) -> list:
-        return severity_value(*self._events.active)
-
-    def getPassiveDiagnosis(self) -> list:
-        return severity_value(*self._events.passive)
-
-    def getDiagnosisStatus(self) -> list:
-        return severity_value(*self._events.both)
-
-    def isNotificationEnabled(self) -> bool:
-        return self._events.enabled
-
-    def setEnableNotification(self, enable: bool) -> None:
-        self._events.enabled = enable
-
-
-class DiagnosisResults:
-    """Runs the active diagnosis when the robot wakes up or rests, and tells results; called after every tick.
-
-    Results are pairs of the severity of the worst failure and the names of all devices that have failed.
-
-    Attributes:
-        active: Motors that gave no torque when they were tried last.
-        passive: Sensors that do not answer.
-        both: The two together.
-        enabled: Whether events are raised; any thread may switch it.
-
-    Args:
-        simulation: Whose devices these are.
-        memory: Where events go, and those of waking up come from.
+    Called after every tick: it runs the active diagnosis when the robot wakes up or rests, and tells results. These are
+    pairs of the severity of the worst failure and the names of all devices that have failed: motors that gave no torque
+    when they were tried last (active), sensors that do not answer (passive), and both together.
     """
 
     def __init__(self, simulation: Simulation, memory: MemoryStore) -> None:
-        self.enabled = True
-        self.active = self.passive = self.both = NOTHING
+        self._enabled = True
+        self._active = self._passive = self._both = NOTHING
         self._simulation = simulation
         self._memory = memory
         self._seen: tuple = (None, None)
@@ -76,6 +39,21 @@ class DiagnosisResults:
             memory.declare_event(event, NAME)
         memory.listen("ALMotion/Stiffness/wakeUpStarted", lambda _: self._begin("wakeUp", TRY_TIME))
         memory.listen("ALMotion/Stiffness/restStarted", lambda _: self._begin("rest", 0.0))
+
+    def getActiveDiagnosis(self) -> list:
+        return severity_value(*self._active)
+
+    def getPassiveDiagnosis(self) -> list:
+        return severity_value(*self._passive)
+
+    def getDiagnosisStatus(self) -> list:
+        return severity_value(*self._both)
+
+    def isNotificationEnabled(self) -> bool:
+        return self._enabled
+
+    def setEnableNotification(self, enable: bool) -> None:
+        self._enabled = enable
 
     def __call__(self, snapshot: Snapshot) -> None:
         """Try motors that are due, and look whether anything failed or was repaired."""
@@ -91,7 +69,7 @@ class DiagnosisResults:
         sensors = [name for name in faults.known if name in faults.sensors]
         self._tell(_result(motors), _result(sensors), _result([*motors, *sensors]))
         if first:
-            self._memory.raise_event(READY, self.both[0] < CRITICAL)
+            self._memory.raise_event(READY, self._both[0] < CRITICAL)
 
     def _begin(self, occasion: str, delay: float) -> None:
         """Called in the simulation thread, in which the robot wakes up and rests."""
@@ -100,15 +78,20 @@ class DiagnosisResults:
     def _try(self, faults: Faults, occasion: str) -> None:
         self._try_at = None
         faults.try_motors(self._simulation.robot.joints.stiffnesses)
-        if self.enabled:
+        if self._enabled:
             self._memory.raise_event(FINISHED, occasion)
 
     def _tell(self, *now: tuple) -> None:
-        before = (self.active, self.passive, self.both)
-        self.active, self.passive, self.both = now
+        before = (self._active, self._passive, self._both)
+        self._active, self._passive, self._both = now
         for event, old, new in zip((ACTIVE, PASSIVE, BOTH), before, now):
-            if new != old and self.enabled:
+            if new != old and self._enabled:
                 self._memory.raise_event(event, severity_value(*new))
+
+
+def severity_value(severity: int, names: Sequence[str]) -> list:
+    """[severity, [names]]: how bad something is, and what has it, as answers and events of NAOqi tell it."""
+    return [severity, list(names)]
 
 
 def _result(devices: Iterable[str]) -> tuple[int, tuple[str, ...]]:

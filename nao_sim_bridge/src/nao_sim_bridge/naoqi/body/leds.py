@@ -1,4 +1,4 @@
-"""ALLeds of the simulated robot. Only NAOqi methods live here."""
+"""ALLeds of the simulated robot: names of lights and groups, lights at once and over time."""
 
 from __future__ import annotations
 
@@ -11,117 +11,133 @@ from nao_sim_bridge.body import led_animations
 from nao_sim_bridge.body.leds import LedKeyframe, uniform
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number, numbers
+from nao_sim_bridge.model.leds_layout import LedLayout
+from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.body.led_names import LedNames
+
+
+class LedNames:
+    """Part of ALLeds: the robot's own LEDs and groups, and the groups that clients make."""
+
+    def __init__(self, layout: LedLayout) -> None:
+        self._layout = layout
+        self._made: dict[str, tuple[str, ...]] = {}
+
+    def devices(self, name: str) -> tuple[int, ...]:
+        """Indices of the devices behind a name; an UnknownName when there is no LED or group of it."""
+        if name in self._made:
+            return tuple(dict.fromkeys(i for member in self._made[name] for i in self.devices(member)))
+        self._check(name)
+        return self._layout.devices_of(name)
+
+    def createGroup(self, name: str, members: list[str]) -> None:
+        """Define a group, or define it anew; not one of the robot's own, empty, or in itself."""
+        if name in self._layout.groups or name in self._layout.short_names or not name:
+            raise NaoqiError(f"the name {name!r} is taken by the robot's own LEDs")
+        if not members:
+            raise NaoqiError(f"group {name!r} has no members")
+        for member in members:
+            self._check(member)
+            if self._leads_to(member, name):
+                raise NaoqiError(f"group {name!r} would hold itself")
+        self._made[name] = tuple(members)
+
+    def listGroups(self) -> list[str]:
+        return sorted([*self._layout.groups, *self._made])
+
+    def listGroup(self, group: str) -> list[str]:
+        if group in self._made:
+            return list(self._made[group])
+        if group not in self._layout.groups:
+            raise UnknownName("group", group, self.listGroups())
+        return list(self._layout.groups[group])
+
+    def listLEDs(self) -> list[str]:
+        return list(self._layout.short_names)
+
+    def listLED(self, name: str) -> list[str]:
+        short = self._layout.short_names
+        return [self._layout.devices[i] for i in short[known(name, "LED", short)]]
+
+    def _leads_to(self, member: str, name: str) -> bool:
+        """Whether a member is `name`, or a made group that holds it at any depth."""
+        return member == name or any(self._leads_to(inner, name) for inner in self._made.get(member, ()))
+
+    def _check(self, name: str) -> None:
+        tables = (self._made, self._layout.groups, self._layout.short_names, self._layout.device_index)
+        if not any(name in names for names in tables):
+            raise UnknownName("LED or group", name, [n for names in tables for n in names])
 
 
 class ALLeds:
-    """ALLeds as the simulated robot offers it.
-
-    Args:
-        simulation: Whose LEDs these are; touched in the simulation thread only.
-        runner: That thread.
-    """
+    """Part of ALLeds: lights at once, and over time."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation
         self._runner = runner
-        self._names = LedNames(simulation.led_layout)
-
-    # --- at once --------------------------------------------------------------------------------------------------
+        self._layout = simulation.led_layout
+        self.names = LedNames(self._layout)
 
     def on(self, name: str) -> Task:
-        return self._set(uniform(self._names.devices(name), 1.0))
+        return self._set(uniform(self.names.devices(name), 1.0))
 
     def off(self, name: str) -> Task:
-        return self._set(uniform(self._names.devices(name), 0.0))
+        return self._set(uniform(self.names.devices(name), 0.0))
 
     def setIntensity(self, name: str, intensity: float) -> Task:
-        return self._set(uniform(self._names.devices(name), number(intensity, "intensity", 0.0, 1.0)))
+        return self._set(uniform(self.names.devices(name), number(intensity, "intensity", 0.0, 1.0)))
 
     def reset(self, name: str) -> Task:
-        default = led_animations.power_on(self._simulation.led_layout)
-        return self._set({index: default[index] for index in self._names.devices(name)})
+        default = led_animations.power_on(self._layout)
+        return self._set({index: default[index] for index in self.names.devices(name)})
 
     def getIntensity(self, name: str) -> Any:
         values = self._simulation.robot.leds.values
-        found = [values[index] for index in self._names.devices(name)]
+        found = [values[index] for index in self.names.devices(name)]
         return found[0] if len(found) == 1 else found
 
-    # --- over time ------------------------------------------------------------------------------------------------
-
     def fade(self, name: str, intensity: float, duration: float) -> Task:
-        target = uniform(self._names.devices(name), number(intensity, "intensity", 0.0, 1.0))
+        target = uniform(self.names.devices(name), number(intensity, "intensity", 0.0, 1.0))
         return self._fade("fade", target, number(duration, "duration", 0.0))
 
     def fadeRGB(self, name: str, *args: Any) -> Task:
         *color, duration = args
-        target = led_animations.colored(self._simulation.led_layout, self._names.devices(name), _color(color))
+        target = led_animations.colored(self._layout, self.names.devices(name), _color(color))
         return self._fade("fadeRGB", target, number(duration, "duration", 0.0))
 
     def fadeListRGB(self, name: str, colors: Any, times: Any) -> Task:
-        devices = self._names.devices(name)
+        devices = self.names.devices(name)
         times = numbers(times, "timeList", 0.0)
         require_few("timeList", len(times), "colours")
         if not isinstance(colors, (list, tuple)) or len(colors) != len(times) or not times:
             raise BadValue("rgbList", colors, f"as many colours as times, {len(times)}, at least 1")
         if any(b <= a for a, b in zip(times, times[1:])):
             raise BadValue("timeList", times, "rising times")
-        layout = self._simulation.led_layout
-        frames = [
-            LedKeyframe(time, led_animations.colored(layout, devices, _color([color])))
-            for time, color in zip(times, colors)
-        ]
+        lit = (led_animations.colored(self._layout, devices, _color([color])) for color in colors)
+        frames = [LedKeyframe(time, target) for time, target in zip(times, lit)]
         return self._animate("fadeListRGB", lambda: frames)
 
     def randomEyes(self, duration: float) -> Task:
         duration = number(duration, "duration", 0.0)
-        return self._animate(
-            "randomEyes",
-            lambda: led_animations.random_eyes(self._simulation.led_layout, duration, self._simulation.robot.random),
-            step=True,
-        )
+        eyes = lambda: led_animations.random_eyes(self._layout, duration, self._simulation.robot.random)  # noqa: E731
+        return self._animate("randomEyes", eyes, step=True)
 
     def rasta(self, duration: float) -> Task:
         duration = number(duration, "duration", 0.0)
-        return self._animate("rasta", lambda: led_animations.rasta(self._simulation.led_layout, duration), step=True)
+        return self._animate("rasta", lambda: led_animations.rasta(self._layout, duration), step=True)
 
     def rotateEyes(self, rgb: int, rotation: float, duration: float) -> Task:
         color = _color([rgb])
         if not number(rotation, "timeForRotation", 0.0) > 0.0:
             raise BadValue("timeForRotation", rotation, "above 0")
         duration = number(duration, "totalDuration", 0.0)
-        layout = self._simulation.led_layout
-        return self._animate(
-            "rotateEyes", lambda: led_animations.rotate_eyes(layout, color, rotation, duration), step=True
-        )
+        eyes = lambda: led_animations.rotate_eyes(self._layout, color, rotation, duration)  # noqa: E731
+        return self._animate("rotateEyes", eyes, step=True)
 
     def earLedsSetAngle(self, degrees: int, duration: float, leave_on: bool) -> Task:
         duration = number(duration, "duration", 0.0)
-        layout = self._simulation.led_layout
-        return self._animate(
-            "earLedsSetAngle", lambda: led_animations.ear_angle(layout, degrees, duration, leave_on), step=True
-        )
-
-    # --- names ----------------------------------------------------------------------------------------------------
-
-    def createGroup(self, name: str, members: list[str]) -> None:
-        self._names.make_group(name, members)
-
-    def listGroup(self, name: str) -> list[str]:
-        return self._names.members(name)
-
-    def listGroups(self) -> list[str]:
-        return self._names.groups()
-
-    def listLED(self, name: str) -> list[str]:
-        return self._names.device_names(name)
-
-    def listLEDs(self) -> list[str]:
-        return self._names.short_names()
-
-    # --- inside ---------------------------------------------------------------------------------------------------
+        ears = lambda: led_animations.ear_angle(self._layout, degrees, duration, leave_on)  # noqa: E731
+        return self._animate("earLedsSetAngle", ears, step=True)
 
     def _set(self, values: Mapping[int, float]) -> Task:
         return self._runner.execute(lambda: self._simulation.robot.leds.set(values), "setIntensity")
@@ -143,9 +159,13 @@ def _color(color: Sequence[Any]) -> led_animations.Color:
         return numbers(color, "colour", 0.0, 1.0)
     value = color[0]
     if isinstance(value, str):
-        if value not in led_animations.COLOR_NAMES:
-            raise UnknownName("colour", value, led_animations.COLOR_NAMES)
-        return led_animations.COLOR_NAMES[value]
+        return led_animations.COLOR_NAMES[known(value, "colour", led_animations.COLOR_NAMES)]
     if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= 0xFFFFFF:
         raise NaoqiError(f"colour is {value!r}, allowed is 0x000000 to 0xFFFFFF")
     return led_animations.color_of_int(value)
+
+
+def parts(simulation: Simulation, runner: SimulationRunner) -> list[Any]:
+    """The objects that together have the methods of ALLeds."""
+    lights = ALLeds(simulation, runner)
+    return [lights, lights.names]

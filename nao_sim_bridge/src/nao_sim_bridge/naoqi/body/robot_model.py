@@ -11,11 +11,7 @@ PREFERENCES = "RobotConfig/"
 
 
 class ALRobotModel:
-    """ALRobotModel as the simulated robot offers it.
-
-    Args:
-        version: Of the robot, V5 or V6.
-    """
+    """ALRobotModel as the simulated robot offers it."""
 
     def __init__(self, version: str) -> None:
         self._version = version

@@ -15,51 +15,32 @@ LIMP_BELOW, STIFF_ABOVE = 0.05, 0.95
 """Mean stiffness of the body."""
 
 
-class StiffnessEvents:
-    """Raises `BodyStiffnessChanged`; called after every tick, in the simulation thread.
+class ALSensors:
+    """ALSensors as the simulated robot offers it; raises `BodyStiffnessChanged`, called after every tick."""
 
-    Args:
-        memory: Where events go.
-    """
-
-    def __init__(self, memory: MemoryStore) -> None:
+    def __init__(self, runner: SimulationRunner, memory: MemoryStore) -> None:
+        self._runner = runner
         self._memory = memory
         self._stiffnesses: Any = None
         self._level: int | None = None
 
+    def parts(self) -> list[Any]:
+        """The objects that together have the methods of ALSensors; its event is raised without subscribers, too."""
+        nothing = lambda: None  # noqa: E731
+        return [self, Extractor(NAME, self._memory, nothing, nothing, [EVENT])]
+
+    def run(self) -> Any:
+        # One round of what goes on at every tick anyway.
+        return self._runner.execute(lambda: self._look(self._runner.snapshot), "run")
+
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the robot."""
         if snapshot.stiffnesses is not self._stiffnesses:
             self._stiffnesses = snapshot.stiffnesses
-            self.look(snapshot)
+            self._look(snapshot)
 
-    def look(self, snapshot: Snapshot) -> None:
-        """Tell the level of stiffness when it has changed."""
+    def _look(self, snapshot: Snapshot) -> None:
         mean = sum(snapshot.stiffnesses) / len(snapshot.stiffnesses)
         level = LIMP if mean < LIMP_BELOW else STIFF if mean > STIFF_ABOVE else BETWEEN
         if level != self._level:
             self._level = level
             self._memory.raise_event(EVENT, level)
-
-
-class ALSensors:
-    """ALSensors as the simulated robot offers it. Only NAOqi methods live here.
-
-    Args:
-        events: What it raises.
-        runner: Whose robot it looks at.
-    """
-
-    def __init__(self, events: StiffnessEvents, runner: SimulationRunner) -> None:
-        self._events = events
-        self._runner = runner
-
-    def run(self) -> Any:
-        # One round of what goes on at every tick anyway.
-        return self._runner.execute(lambda: self._events.look(self._runner.snapshot), "run")
-
-
-def parts(events: StiffnessEvents, runner: SimulationRunner, memory: MemoryStore) -> list[Any]:
-    """The objects that together have the methods of ALSensors; its event is raised without subscribers, too."""
-    nothing = lambda: None  # noqa: E731
-    return [ALSensors(events, runner), Extractor(NAME, memory, nothing, nothing, [EVENT])]

@@ -8,7 +8,6 @@ from collections import deque
 from contextlib import suppress
 from typing import Any, Callable, Deque, Dict, Mapping, Tuple
 
-from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError, SimulationStopped
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
@@ -16,9 +15,10 @@ from nao_sim_bridge.body.sensors.sonar import NO_ECHO
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.extractor import Extractor, Subscription
+from nao_sim_bridge.naoqi.memory.live_keys import FILE, key_prefix, key_tables
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
-NAME, KEYS_FILE = "ALSonar", "naoqi_memory_keys.json"
+NAME = "ALSonar"
 SIDES = ("Left", "Right")
 DETECTED = tuple(f"Sonar{side}Detected" for side in SIDES)
 NOTHING = tuple(f"Sonar{side}NothingDetected" for side in SIDES)
@@ -40,19 +40,14 @@ MOST_ECHOES = 10
 Echoes = Tuple[float, ...]
 
 
-class Sonar:
-    """What the robot is told of its sonars; called after every tick, in the simulation thread.
+class ALSonar:
+    """ALSonar as the simulated robot offers it, beside an extractor; called after every tick, in the simulation thread.
 
     They fire for subscribers of ALSonar or of its events, and for ALMotion while the robot walks. Else the keys of
     ALMemory keep what was measured last.
 
     Attributes:
         firing: Whether they fire.
-
-    Args:
-        simulation: Of the robot.
-        runner: Its thread.
-        memory: Where events go.
     """
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
@@ -69,16 +64,26 @@ class Sonar:
         self._filtered = [NOT_MEASURED, NOT_MEASURED]
         self.firing = False
 
-    def start(self) -> Task:
+    def getFilteredValues(self) -> list[float]:
+        """[right, left], m: medians of the last readings."""
+        return list(self._filtered)
+
+    def parts(self) -> list[Any]:
+        """The objects that together have the methods of ALSonar."""
+        keys, events = [f"Device/SubDeviceList/US/{side}/Sensor/Value" for side in SIDES], [*DETECTED, *NOTHING]
+        work = (self._start, self._stop)
+        return [self, Extractor(NAME, self._memory, *work, events, keys, DEFAULT, self._changed, by_events=True)]
+
+    def _start(self) -> Task:
         """Somebody is subscribed; ends with the first shot, so that who looks next sees no old values."""
         return self._runner.execute(self._subscribe, "subscribe")
 
-    def stop(self) -> None:
+    def _stop(self) -> None:
         """Nobody is subscribed any more."""
         with suppress(SimulationStopped):  # then nothing fires, either
             self._runner.execute(self._unsubscribe, "unsubscribe")
 
-    def changed(self, subscriptions: Mapping[str, Subscription]) -> None:
+    def _changed(self, subscriptions: Mapping[str, Subscription]) -> None:
         """Somebody wants events at another pace."""
         period = min((subscription.period for subscription in subscriptions.values()), default=DEFAULT.period)
         self._period = period / 1000.0
@@ -87,12 +92,7 @@ class Sonar:
         """Distances that a side has measured last, m, nearest first; empty before the first shot."""
         return self._echoes[side]
 
-    def filtered(self) -> list[float]:
-        """[right, left], m: medians of the last readings."""
-        return list(self._filtered)
-
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the sonars."""
         if not (self._subscribed or self._simulation.robot.locomotion.active):
             self.firing = False
             return
@@ -142,53 +142,28 @@ def _told(snapshot: Snapshot, side: int) -> Echoes:
     return tuple(round(max(echo, PRESENT) * RESOLUTION) / RESOLUTION for echo in echoes[:MOST_ECHOES])
 
 
-class ALSonar:
-    """ALSonar as the simulated robot offers it. Only NAOqi methods live here; most are those of an extractor.
-
-    Args:
-        sonar: What is measured.
-    """
-
-    def __init__(self, sonar: Sonar) -> None:
-        self._sonar = sonar
-
-    def getFilteredValues(self) -> list[float]:
-        return self._sonar.filtered()
-
-
-def parts(sonar: Sonar, memory: MemoryStore) -> list[Any]:
-    """The objects that together have the methods of ALSonar."""
-    keys = [f"Device/SubDeviceList/US/{side}/Sensor/Value" for side in SIDES]
-    extractor = Extractor(
-        NAME, memory, sonar.start, sonar.stop, [*DETECTED, *NOTHING], keys, DEFAULT, sonar.changed, by_events=True
-    )
-    return [ALSonar(sonar), extractor]
-
-
-def sonar_keys(sonar: Sonar) -> Dict[str, Callable[[], float]]:
+def sonar_keys(sonar: ALSonar) -> Dict[str, Callable[[], float]]:
     """ALMemory's keys of the sonars: key -> function without arguments that reads its present value.
 
     Raises:
         ConfigError: The file names a key that nothing can read.
     """
-    tables = read_json(config_file(KEYS_FILE))
-    prefix = tables["_meta"]["prefix"]
-    return {prefix + key: _reader(key, sonar) for key in tables["devices"]["sonar"]["keys"]}
+    return {key_prefix() + key: _reader(key, sonar) for key in key_tables()["devices"]["sonar"]["keys"]}
 
 
-def _reader(key: str, sonar: Sonar) -> Callable[[], float]:
+def _reader(key: str, sonar: ALSonar) -> Callable[[], float]:
     if key == "US/Actuator/Value":
         return lambda: ACTUATOR_PERIODIC if sonar.firing else ACTUATOR_IDLE
     if key == "US/Sensor/Value":
         return lambda: min(_echo(sonar, side, 0) for side in range(len(SIDES)))
     match = re.fullmatch(r"US/(Left|Right)/Sensor/Value(\d?)", key)
     if match is None:
-        raise ConfigError(KEYS_FILE, f"nothing in the simulation can read {key!r}")
+        raise ConfigError(FILE, f"nothing in the simulation can read {key!r}")
     side, number = SIDES.index(match[1]), int(match[2] or 0)
     return lambda: _echo(sonar, side, number)
 
 
-def _echo(sonar: Sonar, side: int, number: int) -> float:
+def _echo(sonar: ALSonar, side: int, number: int) -> float:
     echoes = sonar.echoes(side)
     if not echoes:
         return NOT_MEASURED

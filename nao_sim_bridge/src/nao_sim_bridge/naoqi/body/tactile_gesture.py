@@ -18,89 +18,66 @@ NAME = "ALTactileGesture"
 GESTURE, RELEASE = f"{NAME}/Gesture", f"{NAME}/Release"
 
 
-class TactileGestures:
-    """Raises the events about gestures; called after every tick, in the simulation thread.
-
-    Attributes:
-        book: Gestures that are known.
-        times: How long touches may take.
-        on_gesture: Signal with the name of each gesture.
-        on_release: Signal without a value.
-
-    Args:
-        memory: Where events go.
-    """
+class ALTactileGesture:
+    """ALTactileGesture as the simulated robot offers it; called after every tick for its events and signals."""
 
     def __init__(self, memory: MemoryStore) -> None:
-        self.book = GestureBook()
-        self.times = Times()
-        self.on_gesture, self.on_release = qi.Signal("(s)"), qi.Signal("()")
-        self._recogniser = GestureRecogniser(self.book, self.times)
+        self._book = GestureBook()
+        self._times = Times()
+        self._on_gesture, self._on_release = qi.Signal("(s)"), qi.Signal("()")
+        self._recogniser = GestureRecogniser(self._book, self._times)
         self._memory = memory
+        self._lock = threading.Lock()  # methods come in several threads
         for event in (GESTURE, RELEASE):
             memory.declare_event(event, NAME)
 
     def __call__(self, snapshot: Snapshot) -> None:
-        """Look at the head."""
         touched = snapshot.touched
         pattern = "".join("1" if sensor in touched else "0" for sensor in HEAD) if touched else FREE
         seen = self._recogniser.feed(pattern, snapshot.time)
         if seen.gesture:
             self._memory.raise_event(GESTURE, seen.gesture)
-            self.on_gesture(seen.gesture)
+            self._on_gesture(seen.gesture)
         if seen.released:
             self._memory.raise_event(RELEASE, 1)
-            self.on_release()
-
-
-class ALTactileGesture:
-    """ALTactileGesture as the simulated robot offers it. Only NAOqi methods live here, and its signals.
-
-    Args:
-        gestures: What looks at the head.
-    """
-
-    def __init__(self, gestures: TactileGestures) -> None:
-        self._gestures = gestures
-        self._lock = threading.Lock()  # methods come in several threads
+            self._on_release()
 
     @property
     def signals(self) -> dict[str, Any]:
-        """Signals of the service by name."""
-        return {"onGesture": self._gestures.on_gesture, "onRelease": self._gestures.on_release}
+        return {"onGesture": self._on_gesture, "onRelease": self._on_release}
 
     def take_over(self, former: ALTactileGesture) -> None:
         """Go on with the signals that clients are connected to."""
-        gestures = former._gestures
-        self._gestures.on_gesture, self._gestures.on_release = gestures.on_gesture, gestures.on_release
-        gestures.on_gesture = gestures.on_release = lambda *_: None
+        self._on_gesture, self._on_release = former._on_gesture, former._on_release
+        former._on_gesture = former._on_release = lambda *_: None
 
     def createGesture(self, sequence: Any) -> str:
         with self._lock:
-            return self._gestures.book.add(_patterns(sequence))
+            return self._book.add(_patterns(sequence))
 
     def getGesture(self, sequence: Any) -> str | None:
-        return self._gestures.book.name_of(_patterns(sequence))
+        return self._book.name_of(_patterns(sequence))
 
     def getGestures(self) -> dict[str, list[str]]:
         with self._lock:
-            return self._gestures.book.all()
+            return self._book.all()
 
     def getSequence(self, name: str) -> list[str]:
         with self._lock:
-            sequence = self._gestures.book.sequence_of(name)
+            sequence = self._book.sequence_of(name)
         return [] if sequence is None else sequence
 
     def setHoldTime(self, seconds: Any) -> bool:
-        self._gestures.times.hold = _time(seconds, "hold time")
-        return True
+        return self._set_time("hold", seconds)
 
     def setSequenceTime(self, seconds: Any) -> bool:
-        self._gestures.times.sequence = _time(seconds, "sequence time")
-        return True
+        return self._set_time("sequence", seconds)
 
     def setSettleTime(self, seconds: Any) -> bool:
-        self._gestures.times.settle = _time(seconds, "settle time")
+        return self._set_time("settle", seconds)
+
+    def _set_time(self, which: str, seconds: Any) -> bool:
+        setattr(self._times, which, _time(seconds, f"{which} time"))
         return True
 
 

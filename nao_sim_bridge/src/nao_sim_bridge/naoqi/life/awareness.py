@@ -10,7 +10,7 @@ from nao_sim_bridge.base.errors import MoveRefused, UnknownName
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.frames import ROBOT
 from nao_sim_bridge.naoqi.binding.arguments import number
-from nao_sim_bridge.naoqi.binding.module_calls import ModuleCalls
+from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.life.stimuli import MOVEMENT, NAME, PEOPLE, Stimuli
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.tracker.targets import Sighting

@@ -9,8 +9,8 @@ from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import SimulationStopped, UnknownName
 from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.binding.module_calls import ModuleCalls
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.tracker.targets import FACE_WIDTH, Parameters, Sighting, read_faces, read_sound
 from nao_sim_bridge.tracking import geometry

@@ -7,7 +7,7 @@ from typing import Any
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
-from nao_sim_bridge.naoqi.binding.module_calls import ModuleCalls
+from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.life import abilities as ability_names
 from nao_sim_bridge.naoqi.life import autonomous_life, awareness, movements

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import BadValue
@@ -38,7 +38,6 @@ class Extractor:
     """Subscribers of an extractor, and the methods that NAOqi has for them. Only NAOqi methods are public.
 
     Args:
-        module: NAOqi name of the module.
         memory: Where its events are declared.
         start: Called when the first subscriber comes; when it raises, nobody is subscribed and the caller gets the
             error. A task that it returns is what everybody waits for who subscribes before it has ended. Should it end
@@ -102,7 +101,6 @@ class Extractor:
         return started if isinstance(started, Task) and not started.finished else None
 
     def unsubscribe(self, name: str) -> None:
-        """Work for `name` no longer."""
         with self._lock:
             self._of(name)
             del self._subscriptions[name]
@@ -116,32 +114,27 @@ class Extractor:
             self.unsubscribe(module)
 
     def updatePeriod(self, name: str, period: int) -> None:
-        """Change the period of a subscriber, ms."""
-        period = _period(period)
+        checked = _period(period)
         with self._lock:
-            self._set(name, Subscription(period, self._of(name).precision))
+            self._set(name, replace(self._of(name), period=checked))
 
     def updatePrecision(self, name: str, precision: float) -> None:
-        """Change the precision of a subscriber."""
-        precision = _precision(precision)
+        checked = _precision(precision)
         with self._lock:
-            self._set(name, Subscription(self._of(name).period, precision))
+            self._set(name, replace(self._of(name), precision=checked))
 
     def getCurrentPeriod(self) -> int:
         """The smallest period that somebody asks for, ms; that of the module when nobody does."""
         return min((s.period for s in self._all().values()), default=self._default.period)
 
     def getCurrentPrecision(self) -> float:
-        """The highest precision that somebody asks for."""
         return max((s.precision for s in self._all().values()), default=self._default.precision)
 
     def getMyPeriod(self, name: str) -> int:
-        """Period of a subscriber, ms."""
         with self._lock:
             return self._of(name).period
 
     def getMyPrecision(self, name: str) -> float:
-        """Precision of a subscriber."""
         with self._lock:
             return self._of(name).precision
 
@@ -150,15 +143,12 @@ class Extractor:
         return [[name, s.period, s.precision] for name, s in self._all().items()]
 
     def getEventList(self) -> list[str]:
-        """Events that the module raises."""
         return list(self._events)
 
     def getMemoryKeyList(self) -> list[str]:
-        """Keys that the module writes, without the events."""
         return list(self._keys)
 
     def getOutputNames(self) -> list[str]:
-        """Events and keys."""
         return [*self._events, *self._keys]
 
     def _follow(self, event: str, modules: Sequence[str]) -> None:

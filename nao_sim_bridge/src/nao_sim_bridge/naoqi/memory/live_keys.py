@@ -6,18 +6,18 @@ The names come from `config/naoqi_memory_keys.json`; a key of the file that noth
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.readings import FootForces
+from nao_sim_bridge.body.sensors.battery import BatteryReading
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.temperatures import heat_status
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.leds_layout import LedLayout
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.naoqi.memory.battery_keys import READERS as BATTERY
-from nao_sim_bridge.naoqi.memory.battery_keys import battery_reader
 
 FILE = "naoqi_memory_keys.json"
 GRAVITY = 9.81
@@ -31,10 +31,34 @@ JOINT_SUFFIXES: Mapping[str, Callable[[int], Read]] = {
     "Temperature/Sensor/Status": lambda i: lambda s: heat_status(s.temperatures[i]),
     "Hardness/Actuator/Value": lambda i: lambda s: s.stiffnesses[i],
 }
+# Current into the battery is positive: clients take a negative one for discharging. Voltages are in mV, capacities in
+# mAh.
+BATTERY: Mapping[str, Callable[[BatteryReading], Any]] = {
+    "Charge/Sensor/Value": lambda battery: battery.charge,
+    "Charge/Sensor/Status": lambda battery: int(battery.status),
+    "Charge/Sensor/CellVoltageMin": lambda battery: _milli(battery.cell_voltages[0]),
+    "Charge/Sensor/CellVoltageMax": lambda battery: _milli(battery.cell_voltages[1]),
+    "Charge/Sensor/TotalVoltage": lambda battery: _milli(battery.voltage),
+    "Charge/Sensor/RemainingCapacity": lambda battery: _milli(battery.capacity_ah * battery.charge),
+    "Charge/Sensor/FullChargeCapacity": lambda battery: _milli(battery.capacity_ah),
+    "Current/Sensor/Value": lambda battery: -battery.current,
+    "Temperature/Sensor/Value": lambda battery: battery.temperature,
+}
 CORNERS = ("FrontLeft", "FrontRight", "RearLeft", "RearRight")
 AXES = {"X": 0, "Y": 1, "Z": 2}
 # A foot touches the ground from this load on, in N.
 CONTACT_LOAD = 3.0
+
+
+@lru_cache(maxsize=None)
+def key_tables() -> Mapping[str, Any]:
+    """What `FILE` says, by section."""
+    return read_json(config_file(FILE))
+
+
+def key_prefix() -> str:
+    """What every key of a device begins with."""
+    return key_tables()["_meta"]["prefix"]
 
 
 def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_values: Callable[[], tuple]) -> dict:
@@ -46,15 +70,14 @@ def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_
     readers: dict[str, Callable[[], Any]] = {}
     for key, read in _snapshot_keys(model).items():
         readers[key] = lambda read=read: read(runner.snapshot)
-    prefix = read_json(config_file(FILE))["_meta"]["prefix"]
     for index, device in enumerate(leds.devices):
-        readers[prefix + device] = lambda index=index: led_values()[index]
+        readers[key_prefix() + device] = lambda index=index: led_values()[index]
     return readers
 
 
 def constants(version: str) -> dict[str, Any]:
     """Keys whose value never changes: what the robot is made of."""
-    tables = read_json(config_file(FILE))
+    tables = key_tables()
     values = {k: v for k, v in tables["robot_config_V6"].items() if k != "note"}
     if version != "V6":
         values.update({k: v for k, v in tables[f"robot_config_{version}"].items() if k != "note"})
@@ -64,8 +87,8 @@ def constants(version: str) -> dict[str, Any]:
 
 
 def _snapshot_keys(model: RobotModel) -> dict[str, Read]:
-    tables = read_json(config_file(FILE))
-    prefix = tables["_meta"]["prefix"]
+    tables = key_tables()
+    prefix = key_prefix()
     keys: dict[str, Read] = {}
     for joint in tables["joints"]["names"]:
         for suffix in tables["joints"]["suffixes"]:
@@ -89,45 +112,38 @@ def _device_reader(key: str) -> Read:
     raise ConfigError(FILE, f"nothing in the simulation can read {key!r}")
 
 
-def _foot(side: str) -> Callable[[Snapshot], FootForces]:
-    return (lambda s: s.left_foot) if side == "L" else (lambda s: s.right_foot)
+def _foot(snapshot: Snapshot, side: str) -> FootForces:
+    return snapshot.left_foot if side == "L" else snapshot.right_foot
 
 
-def _corner(side: str, corner: str) -> Read:
-    foot, index = _foot(side), CORNERS.index(corner)
-    return lambda s: foot(s).forces[index] / GRAVITY
+def _vector(field: str) -> Callable[[str], Read]:
+    return lambda axis: lambda s: getattr(s.imu, field)[AXES[axis]]
 
 
-def _total(side: str) -> Read:
-    foot = _foot(side)
-    return lambda s: foot(s).total / GRAVITY
-
-
-def _center(side: str, axis: str) -> Read:
-    foot, index = _foot(side), AXES[axis]
-    return lambda s: foot(s).center_of_pressure[index]
-
-
-def _touch(device: str) -> Read:
-    return lambda s: float(device in s.touched)
-
-
-def _vector(field: str, axis: str) -> Read:
-    index = AXES[axis]
-    return lambda s: getattr(s.imu, field)[index]
+def _milli(value: float) -> int:
+    return round(1000.0 * value)
 
 
 _PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (
-    (r"([LR])Foot/FSR/(FrontLeft|FrontRight|RearLeft|RearRight)/Sensor/Value", _corner),
-    (r"([LR])Foot/FSR/TotalWeight/Sensor/Value", _total),
-    (r"([LR])Foot/FSR/CenterOfPressure/([XY])/Sensor/Value", _center),
-    (r"InertialSensor/Gyroscope([XYZ])/Sensor/Value", lambda a: _vector("gyroscope", a)),
-    (r"InertialSensor/Gyr([XY])/Sensor/Value", lambda a: _vector("gyroscope", a)),
-    (r"InertialSensor/Accelerometer([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
-    (r"InertialSensor/Acc([XYZ])/Sensor/Value", lambda a: _vector("accelerometer", a)),
-    (r"InertialSensor/Angle([XYZ])/Sensor/Value", lambda a: _vector("angles", a)),
-    (r"((?:[LR]Foot/Bumper|[LR]Hand/Touch|Head/Touch|ChestBoard/Button).*?)/Sensor/Value", _touch),
-    (rf"Battery/({'|'.join(BATTERY)})", battery_reader),
+    (
+        r"([LR])Foot/FSR/(FrontLeft|FrontRight|RearLeft|RearRight)/Sensor/Value",
+        lambda side, corner: lambda s: _foot(s, side).forces[CORNERS.index(corner)] / GRAVITY,
+    ),
+    (r"([LR])Foot/FSR/TotalWeight/Sensor/Value", lambda side: lambda s: _foot(s, side).total / GRAVITY),
+    (
+        r"([LR])Foot/FSR/CenterOfPressure/([XY])/Sensor/Value",
+        lambda side, axis: lambda s: _foot(s, side).center_of_pressure[AXES[axis]],
+    ),
+    (r"InertialSensor/Gyroscope([XYZ])/Sensor/Value", _vector("gyroscope")),
+    (r"InertialSensor/Gyr([XY])/Sensor/Value", _vector("gyroscope")),
+    (r"InertialSensor/Accelerometer([XYZ])/Sensor/Value", _vector("accelerometer")),
+    (r"InertialSensor/Acc([XYZ])/Sensor/Value", _vector("accelerometer")),
+    (r"InertialSensor/Angle([XYZ])/Sensor/Value", _vector("angles")),
+    (
+        r"((?:[LR]Foot/Bumper|[LR]Hand/Touch|Head/Touch|ChestBoard/Button).*?)/Sensor/Value",
+        lambda device: lambda s: float(device in s.touched),
+    ),
+    (rf"Battery/({'|'.join(BATTERY)})", lambda key: lambda s: BATTERY[key](s.battery)),
     (r"Head/Temperature/Sensor/Value", lambda: lambda s: s.head_temperature),
 )
 

@@ -1,4 +1,4 @@
-"""ALMemory of the simulated robot. Only NAOqi methods live here; the keys and events are in `memory_store`."""
+"""ALMemory of the simulated robot; its keys and events are in `store`."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class EventSignal:
 
 
 class ALMemory:
-    """ALMemory as the simulated robot offers it.
+    """ALMemory as the simulated robot offers it. Only NAOqi methods live here.
 
     Args:
         store: Keys and events.
@@ -73,13 +73,10 @@ class ALMemory:
         return self._store.next_change(key)
 
     def getDataPtr(self, key: str) -> None:
-        self._no_pointer(key)
+        self._store.kind(key)
+        raise NaoqiError("pointers are for modules inside the robot's own process; use getData")
 
-    def getFloatPtr(self, key: str) -> None:
-        self._no_pointer(key)
-
-    def getIntPtr(self, key: str) -> None:
-        self._no_pointer(key)
+    getFloatPtr = getIntPtr = getDataPtr
 
     def getDescriptionList(self, keys: list[str]) -> list:
         return self._store.describe(keys)
@@ -107,8 +104,7 @@ class ALMemory:
             self._store.insert(_name(key), value, by_client=True)
 
     def removeData(self, key: str) -> None:
-        self._store.remove(key)
-        self._signals.pop(key, None)
+        self._remove(key)
 
     def declareEvent(self, name: str, extractor: str = "") -> None:
         self._store.declare_event(_name(name), extractor, by_client=True)
@@ -120,12 +116,10 @@ class ALMemory:
         self._store.raise_micro_event(_name(name), value, by_client=True)
 
     def removeEvent(self, name: str) -> None:
-        self._store.remove(name, EVENT)
-        self._signals.pop(name, None)
+        self._remove(name, EVENT)
 
     def removeMicroEvent(self, name: str) -> None:
-        self._store.remove(name, MICRO_EVENT)
-        self._signals.pop(name, None)
+        self._remove(name, MICRO_EVENT)
 
     def getEventList(self) -> list[str]:
         return self._store.names(EVENT)
@@ -159,8 +153,7 @@ class ALMemory:
     def subscribeToMicroEvent(self, name: str, module: str, message: str, method: str) -> None:
         self._subscribe(name, module, message, method, MICRO_EVENT)
 
-    def unsubscribeToMicroEvent(self, name: str, module: str) -> None:
-        self._store.unsubscribe(name, module)
+    unsubscribeToMicroEvent = unsubscribeToEvent
 
     def unregisterModuleReference(self, module: str) -> None:
         self._store.forget_module(module)
@@ -192,6 +185,10 @@ class ALMemory:
             except RuntimeError:
                 pass  # the client has gone
 
+    def _remove(self, key: str, kind: str | None = None) -> None:
+        self._store.remove(key, kind)
+        self._signals.pop(key, None)
+
     def _subscribe(self, name: str, module: str, message: str, method: str, kind: str) -> None:
         def notify(event: str, value: Any, text: str) -> None:
             self._broker.call(module, method, [event, value, text])
@@ -211,10 +208,6 @@ class ALMemory:
         )
         link = answer(connecting, threading.Condition(), lambda: True, PATIENCE)
         self._mappings[service, signal, event] = raising, link
-
-    def _no_pointer(self, key: str) -> None:
-        self._store.kind(key)
-        raise NaoqiError("pointers are for modules inside the robot's own process; use getData")
 
 
 def _done(value: Any) -> Any:

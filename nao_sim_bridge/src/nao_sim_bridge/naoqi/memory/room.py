@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections import deque
 from typing import Any, Deque, Hashable, Tuple
 
 from nao_sim_bridge.base.sizes import MemorySizes, load_sizes
@@ -17,11 +16,7 @@ History = Deque[Tuple[Any, float, int]]
 
 
 class MemoryRoom:
-    """Counts what clients have in a memory. Not thread-safe: the memory has a lock.
-
-    Args:
-        sizes: What they may have.
-    """
+    """Counts what clients have in a memory. Not thread-safe: the memory has a lock."""
 
     def __init__(self, sizes: MemorySizes | None = None) -> None:
         self._sizes = load_sizes().memory if sizes is None else sizes
@@ -63,7 +58,6 @@ class MemoryRoom:
         self._bytes += size
 
     def forget(self, history: History) -> None:
-        """A key is gone."""
         self._bytes -= sum(entry[2] for entry in history)
 
     def _require(self, more: int) -> None:
@@ -71,11 +65,6 @@ class MemoryRoom:
             raise NaoqiError(
                 f"clients have {self._bytes} bytes in the memory, and this is {more} more: {self._sizes.bytes} at most"
             )
-
-
-def empty_history(length: int) -> History:
-    """A history of so many values."""
-    return deque(maxlen=length)
 
 
 def size_of(value: Any) -> int:

@@ -7,6 +7,7 @@ Any thread may call anything; subscribers are called outside the lock, in the th
 from __future__ import annotations
 
 import threading
+from collections import deque
 from dataclasses import dataclass, field
 from typing import Any, Callable, Hashable, Iterable, Mapping
 
@@ -14,8 +15,9 @@ from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.guard import Guard
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.memory.room import History, MemoryRoom, empty_history, size_of
+from nao_sim_bridge.naoqi.memory.room import History, MemoryRoom, size_of
 
 DATA, EVENT, MICRO_EVENT = "Data", "Event", "MicroEvent"
 HISTORY_LENGTH = 32
@@ -23,7 +25,7 @@ HISTORY_LENGTH = 32
 MOST_WAITING = load_sizes().clients.changes
 # What clients make beside values and subscriptions.
 KEY, DESCRIPTION, SIGNAL = object(), object(), object()
-NOTHING = empty_history(HISTORY_LENGTH)
+NOTHING: History = deque(maxlen=HISTORY_LENGTH)
 KEY_ADDED, KEY_REMOVED = "ALMemory/KeyAdded", "ALMemory/KeyRemoved"
 
 Subscriber = Callable[[str, Any, str], None]
@@ -38,7 +40,7 @@ class _Entry:
     exists: bool = False
     description: str = ""
     extractor: str = ""
-    history: History = field(default_factory=lambda: empty_history(HISTORY_LENGTH))
+    history: History = field(default_factory=lambda: deque(maxlen=HISTORY_LENGTH))
 
 
 class MemoryStore:
@@ -73,11 +75,7 @@ class MemoryStore:
                 self._entries.setdefault(key, _Entry(DATA, exists=True))
 
     def get(self, key: str) -> Any:
-        """Value of a key.
-
-        Raises:
-            UnknownName: The key holds nothing.
-        """
+        """Value of a key; an UnknownName when it holds nothing."""
         live = self._live.get(key)
         if live is not None:
             return live[0]()
@@ -127,9 +125,7 @@ class MemoryStore:
     def kind(self, key: str) -> str:
         """Data, Event or MicroEvent."""
         with self._lock:
-            if key not in self._entries:
-                raise UnknownName("key", key, self._entries)
-            return self._entries[key].kind
+            return self._known(key).kind
 
     def timestamp(self, key: str) -> tuple[Any, float]:
         """Value of a key and the time it was written, s; a live key was written just now."""
@@ -147,10 +143,9 @@ class MemoryStore:
     def set_description(self, key: str, text: str) -> None:
         """Attach a text to a key, for a client."""
         with self._lock:
-            if key not in self._entries:
-                raise UnknownName("key", key, self._entries)
+            entry = self._known(key)
             self._room.hold((DESCRIPTION, key), text)
-            self._entries[key].description = text
+            entry.description = text
 
     def describe(self, keys: Iterable[str]) -> list[list[str]]:
         """[key, kind, description] of the keys, of all when there are none."""
@@ -195,7 +190,6 @@ class MemoryStore:
         self._write(name, value, MICRO_EVENT, by_client)
 
     def events_of(self, extractor: str) -> list[str]:
-        """Events that an extractor declared."""
         with self._lock:
             return sorted(n for n, e in self._entries.items() if e.kind == EVENT and e.extractor == extractor)
 
@@ -260,7 +254,6 @@ class MemoryStore:
             self._watchers[name] = watcher
 
     def subscribers(self, name: str) -> list[str]:
-        """Modules subscribed to an event."""
         with self._lock:
             return sorted(self._subscribers.get(name, {}))
 
@@ -281,10 +274,7 @@ class MemoryStore:
     def listen(self, name: str, listener: Callable[[Any], None], declare: bool = True) -> None:
         """Call `listener(value)` once at each event; for the signals of qi-style subscribers, which clients make.
 
-        Args:
-            name: Of the event.
-            listener: See above; one that listens already goes on.
-            declare: Whether the event becomes known by it.
+        One that listens already goes on; `declare` says whether the event becomes known by it.
         """
         with self._lock:
             if declare:
@@ -351,12 +341,13 @@ class MemoryStore:
         return key in self._live or (key in self._entries and self._entries[key].exists)
 
     def _entry(self, key: str) -> _Entry:
-        entry = self._entries.get(key)
-        if entry is None:
-            raise UnknownName("key", key, self._entries)
+        entry = self._known(key)
         if not entry.exists:  # an event that is declared, and was never raised
             raise UnknownName("value of key", key, ())
         return entry
+
+    def _known(self, key: str) -> _Entry:
+        return self._entries[known(key, "key", self._entries)]
 
     def _names(self, kind: str | None) -> list[str]:
         return [n for n, e in self._entries.items() if kind is None or e.kind == kind]

@@ -7,43 +7,19 @@ from typing import Any
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.motion.angles import Angles
-from nao_sim_bridge.naoqi.motion.bezier import Bezier
-from nao_sim_bridge.naoqi.motion.body import Body
-from nao_sim_bridge.naoqi.motion.cartesian import Cartesian
-from nao_sim_bridge.naoqi.motion.collisions import Collisions
-from nao_sim_bridge.naoqi.motion.falls import Falls
-from nao_sim_bridge.naoqi.motion.footsteps import Footsteps
-from nao_sim_bridge.naoqi.motion.idling import Idling
-from nao_sim_bridge.naoqi.motion.mass import Mass
-from nao_sim_bridge.naoqi.motion.stiffness import Stiffness
-from nao_sim_bridge.naoqi.motion.switches import Switches
-from nao_sim_bridge.naoqi.motion.task_list import TaskList
+from nao_sim_bridge.naoqi.motion.cartesian import Cartesian, Mass
+from nao_sim_bridge.naoqi.motion.joints import Body, Joints, TaskList
+from nao_sim_bridge.naoqi.motion.reflexes import Collisions, Idling, Switches
 from nao_sim_bridge.naoqi.motion.wake import Wake
-from nao_sim_bridge.naoqi.motion.walk_events import MoveFailures
-from nao_sim_bridge.naoqi.motion.walk_position import WalkPosition
 from nao_sim_bridge.naoqi.motion.walking import Walking
 from nao_sim_bridge.naoqi.motion.whole_body import WholeBody
 
 
 def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> list[Any]:
     """Objects that together have the methods of ALMotion."""
-    failures = MoveFailures(memory)
     return [
-        Body(simulation, runner),
-        Angles(simulation, runner),
-        Bezier(simulation, runner),
-        Stiffness(simulation, runner),
+        *(part(simulation, runner) for part in (Body, Joints, TaskList, Cartesian, Mass, WholeBody)),
         Wake(simulation, runner, memory),
-        TaskList(simulation, runner),
-        Cartesian(simulation, runner),
-        Mass(simulation, runner),
-        WholeBody(simulation, runner),
-        Walking(simulation, runner, failures),
-        Footsteps(simulation, runner, failures),
-        WalkPosition(simulation, runner),
-        Falls(simulation, runner),
-        Collisions(simulation, runner),
-        Idling(simulation, runner),
-        Switches(simulation, runner),
+        Walking(simulation, runner, memory),
+        *(part(simulation, runner) for part in (Collisions, Idling, Switches)),
     ]

@@ -1,4 +1,4 @@
-"""Part of ALMotion: where effectors are, and moving them there."""
+"""Parts of ALMotion about places: where effectors are, moving them there, the centre of mass."""
 
 from __future__ import annotations
 
@@ -6,15 +6,17 @@ from typing import Any, Callable, Sequence
 
 import numpy as np
 
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
 from nao_sim_bridge.control.whole_body.cartesian_move import CartesianMove, EffectorMove, moving_joints
 from nao_sim_bridge.control.whole_body.cartesian_path import PosePath, joint_curves
 from nao_sim_bridge.control.whole_body.inverse_kinematics import solve
 from nao_sim_bridge.control.whole_body.tasks import end_paths, lead_to, led_joints, start_paths
-from nao_sim_bridge.model.frames import Placement, frame_of, sensor_places, space_in_torso
+from nao_sim_bridge.model.body_mass import center_of_links, convex_hull, links_of, mass_of
+from nao_sim_bridge.model.frames import EVEN, TORSO, Placement, frame_of, sensor_places
 from nao_sim_bridge.naoqi.binding.arguments import number
-from nao_sim_bridge.naoqi.motion.cartesian_arguments import (
+from nao_sim_bridge.naoqi.motion.arguments import (
     as_position,
     as_transform,
     effectors,
@@ -23,13 +25,39 @@ from nao_sim_bridge.naoqi.motion.cartesian_arguments import (
     paths_of,
     pose_of_position,
     pose_of_transform,
+    space_of,
 )
 from nao_sim_bridge.naoqi.motion.part import MotionPart
-from nao_sim_bridge.naoqi.motion.placements import placement, space_of
 
 # Top speeds of an effector under whole body control, m/s and rad/s.
 LEAD_SPEED = (0.5, 3.0)
 PoseReader = Callable[[Any], np.ndarray]
+
+
+def _moves(form: str, pose: PoseReader) -> tuple[Callable[..., Task], ...]:
+    """NAOqi's methods that move effectors by poses of one form: set one or several, change, follow one or several."""
+    noun = form.capitalize()
+
+    def set_one(part: Cartesian, name: str, space: int, target: Any, fraction: float, mask: int) -> Task:
+        return part._set(f"set{noun}", [name], space, [pose(target)], fraction, mask)
+
+    def set_several(part: Cartesian, names: Any, spaces: Any, targets: Any, fraction: float, masks: Any) -> Task:
+        poses = [pose(target) for target in one_each(targets, len(effectors(names)), "targets", nested=True)]
+        return part._set(f"set{noun}s", names, spaces, poses, fraction, masks)
+
+    def change(part: Cartesian, name: str, space: int, by: Any, fraction: float, mask: int) -> Task:
+        now = part._pose(name, space, part._placement(False))
+        return part._set(f"change{noun}", [name], space, [_moved(now, pose(by))], fraction, mask)
+
+    def follow(part: Cartesian, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
+        return part._interpolate(f"{form}Interpolation", [name], space, [path], mask, [times], absolute, pose)
+
+    def follow_several(
+        part: Cartesian, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
+    ) -> Task:
+        return part._interpolate(f"{form}Interpolations", names, spaces, paths, masks, times, absolute, pose)
+
+    return set_one, set_several, change, follow, follow_several
 
 
 class Cartesian(MotionPart):
@@ -44,61 +72,16 @@ class Cartesian(MotionPart):
     def getTransform(self, name: str, space: int, use_sensors: bool) -> list[float]:
         return as_transform(self._pose(name, space, self._placement(use_sensors)))
 
-    def setPosition(self, name: str, space: int, position: Any, fraction: float, mask: int) -> Task:
-        return self._set("setPosition", [name], space, [pose_of_position(position)], fraction, mask)
-
-    def setPositions(self, names: Any, spaces: Any, positions: Any, fraction: float, mask: Any) -> Task:
-        return self._set_many("setPositions", names, spaces, positions, pose_of_position, fraction, mask)
-
-    def setTransform(self, name: str, space: int, target: Any, fraction: float, mask: int) -> Task:
-        return self._set("setTransform", [name], space, [pose_of_transform(target)], fraction, mask)
-
-    def setTransforms(self, names: Any, spaces: Any, targets: Any, fraction: float, mask: Any) -> Task:
-        return self._set_many("setTransforms", names, spaces, targets, pose_of_transform, fraction, mask)
-
-    def changePosition(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
-        now = self._pose(name, space, self._placement(False))
-        target = _moved(now, pose_of_position(change))
-        return self._set("changePosition", [name], space, [target], fraction, mask)
-
-    def changeTransform(self, name: str, space: int, change: Any, fraction: float, mask: int) -> Task:
-        now = self._pose(name, space, self._placement(False))
-        target = _moved(now, pose_of_transform(change))
-        return self._set("changeTransform", [name], space, [target], fraction, mask)
-
-    def positionInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
-        call = "positionInterpolation"
-        return self._interpolate(call, [name], space, [path], mask, [times], absolute, pose_of_position)
-
-    def positionInterpolations(
-        self, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
-    ) -> Task:
-        call = "positionInterpolations"
-        return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_position)
-
-    def transformInterpolation(self, name: str, space: int, path: Any, mask: int, times: Any, absolute: bool) -> Task:
-        call = "transformInterpolation"
-        return self._interpolate(call, [name], space, [path], mask, [times], absolute, pose_of_transform)
-
-    def transformInterpolations(
-        self, names: Any, spaces: Any, paths: Any, masks: Any, times: Any, absolute: bool = True
-    ) -> Task:
-        call = "transformInterpolations"
-        return self._interpolate(call, names, spaces, paths, masks, times, absolute, pose_of_transform)
-
-    def _placement(self, use_sensors: bool) -> Placement:
-        return placement(self._model, self._robot, self._runner.snapshot, use_sensors)
+    setPosition, setPositions, changePosition, positionInterpolation, positionInterpolations = _moves(
+        "position", pose_of_position
+    )
+    setTransform, setTransforms, changeTransform, transformInterpolation, transformInterpolations = _moves(
+        "transform", pose_of_transform
+    )
 
     def _pose(self, name: str, space: int, placed: Placement) -> np.ndarray:
         frame = frame_of(self._model, name)
-        return np.linalg.inv(space_in_torso(self._model, space_of(space), placed)) @ placed.in_torso(frame)
-
-    def _set_many(
-        self, call: str, names: Any, spaces: Any, targets: Any, pose: PoseReader, fraction: float, masks: Any
-    ) -> Task:
-        count = len(effectors(names))
-        poses = [pose(target) for target in one_each(targets, count, "targets", nested=True)]
-        return self._set(call, names, spaces, poses, fraction, masks)
+        return self._torso_in(space, placed) @ placed.in_torso(frame)
 
     def _set(
         self, call: str, names: Any, spaces: Any, poses: Sequence[np.ndarray], fraction: float, masks: Any
@@ -172,3 +155,34 @@ def _moved(pose: np.ndarray, change: np.ndarray) -> np.ndarray:
     moved[:3, :3] = change[:3, :3] @ pose[:3, :3]
     moved[:3, 3] += change[:3, 3]
     return moved
+
+
+# A sole this much higher than the other one, m, carries nothing.
+LIFTED = 0.005
+
+
+class Mass(MotionPart):
+    """What follows from the masses of the links and the soles on the ground."""
+
+    def getMass(self, name: str) -> float:
+        return mass_of(links_of(self._model, name))
+
+    def getCOM(self, name: str, space: int, use_sensors: bool) -> list[float]:
+        links = links_of(self._model, name)
+        now = self._runner.snapshot
+        center = center_of_links(self._model, links, now.positions if use_sensors else self._robot.joints.commands)
+        return (self._torso_in(space, self._placement(use_sensors, now)) @ np.append(center, 1.0))[:3].tolist()
+
+    def getSupportPolygon(self, space: int, use_sensors: bool) -> list[list[float]]:
+        if space_of(space) == TORSO:
+            raise BadValue("space", space, "1 (FRAME_WORLD) or 2 (FRAME_ROBOT)")
+        placed = self._placement(use_sensors)
+        to_space = self._torso_in(space, placed)
+        soles = []
+        for side in ("L", "R"):
+            contour = self._model.sole_polygon(side)
+            corners = np.column_stack((contour, np.full((len(contour), 2), (-self._model.sole_height, 1.0))))
+            soles.append((to_space @ placed.links[f"{side}AnkleRoll"] @ corners.T).T)
+        ground = min(sole[:, 2].min() for sole in soles) + EVEN
+        standing = [sole for sole in soles if sole[:, 2].min() <= ground + LIFTED]
+        return [list(corner) for corner in convex_hull(np.vstack(standing)[:, :2])]

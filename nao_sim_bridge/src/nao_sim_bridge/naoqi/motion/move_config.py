@@ -6,27 +6,21 @@ move takes them.
 
 from __future__ import annotations
 
-from typing import Any, Callable, Mapping
+from operator import attrgetter
+from typing import Any
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
-from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, Parameter, feet_gait, parameters
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.naoqi.binding.arguments import known
+from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, feet_gait, parameters
 
 FIELD = "moveConfig"
 # Clients in C++ send numbers of single precision: 0.035 comes as 0.035000001. No parameter means anything by less.
 DECIMALS = 6
-LISTS: Mapping[str, Callable[[Parameter], float]] = {
-    "Default": lambda parameter: parameter.default,
-    "Min": lambda parameter: parameter.minimum,
-    "Max": lambda parameter: parameter.maximum,
-}
+LISTS = {"Default": attrgetter("default"), "Min": attrgetter("minimum"), "Max": attrgetter("maximum")}
 
 
 def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:
-    """The gait of a move.
-
-    Args:
-        config: Pairs of name and value; none for the default gait.
-        frequency: Share 0..1 of the top frequency, when it is an argument of its own.
+    """The gait of a move; `frequency` is a share 0..1 of the top one, when it is an argument of its own.
 
     Raises:
         UnknownName: There is no such parameter.
@@ -48,21 +42,12 @@ def gait_of_feet(left: Any, right: Any, frequency: float) -> FeetGait:
     values: dict[str, float] = {FREQUENCY: frequency}
     for side, config in (("Left", left), ("Right", right)):
         for name, value in _pairs(config, f"{side.lower()}FootMoveConfig").items():
-            if name not in FIELDS:
-                raise UnknownName("gait parameter of a foot", name, FIELDS)
-            values[side + name] = value
+            values[side + known(name, "gait parameter of a foot", FIELDS)] = value
     return feet_gait(values)
 
 
 def gait_list(which: str) -> list[list[Any]]:
-    """Pairs of all parameters that moves may set, in NAOqi's order.
-
-    Args:
-        which: "Default", "Min" or "Max".
-
-    Raises:
-        BadValue: It is none of them.
-    """
+    """Pairs of all parameters that moves may set, in NAOqi's order: their "Default", "Min" or "Max"."""
     if which not in LISTS:
         raise BadValue("config", which, ", ".join(LISTS))
     return [[name, LISTS[which](parameter)] for name, parameter in parameters().items() if parameter.settable]

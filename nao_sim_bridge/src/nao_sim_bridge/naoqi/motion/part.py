@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import Any, Callable, Sequence
 
+import numpy as np
+
 from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.robot import SimulatedRobot
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import per_item
-from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.motion.arguments import joint_indices
+from nao_sim_bridge.model.frames import Placement, commanded, space_in_torso
+from nao_sim_bridge.model.kinematics import LinkPoses, quaternion_matrix, transform
+from nao_sim_bridge.naoqi.motion.arguments import joint_indices, space_of
 
 
 class MotionPart:
@@ -36,12 +39,6 @@ class MotionPart:
     def _indices(self, names: Any) -> list[int]:
         return joint_indices(names, self._model)
 
-    def _speeds(self, indices: Sequence[int], fraction: Any) -> dict[int, float]:
-        fractions = per_item(fraction, len(indices), "fractionMaxSpeed", 0.0, 1.0)
-        if 0.0 in fractions:
-            raise NaoqiError("fractionMaxSpeed is 0, allowed is above 0 to 1")
-        return {i: share * self._model.joints[i].max_velocity for i, share in zip(indices, fractions)}
-
     def _follow(self, name: str, indices: Sequence[int], curves: Callable[[Sequence[float]], dict]) -> Task:
         return self._runner.execute(lambda: self._robot.motion.follow(name, indices, curves), name)
 
@@ -50,3 +47,14 @@ class MotionPart:
         joints = self._robot.joints
         limp = [i for i in indices if joints.stiffnesses[i] == 0.0 and not self._robot.motion.busy([i])]
         joints.hold(self._runner.snapshot.positions, limp)
+
+    def _placement(self, use_sensors: bool, now: Snapshot | None = None) -> Placement:
+        """Where the links are measured to be, or commanded to be."""
+        now = now or self._runner.snapshot
+        torso = transform(quaternion_matrix(now.odometry.orientation), now.odometry.position)
+        measured = Placement(LinkPoses(self._model, now.positions), torso)
+        return measured if use_sensors else commanded(self._model, self._robot.joints.commands, measured)
+
+    def _torso_in(self, space: Any, placed: Placement) -> np.ndarray:
+        """(4, 4) pose of FRAME_TORSO in the frame that a caller names by its number."""
+        return np.linalg.inv(space_in_torso(self._model, space_of(space), placed))

@@ -12,30 +12,24 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.part import MotionPart
 
-AWAKE = "robotIsWakeUp"
-EVENTS = (
-    AWAKE,
-    "ALMotion/Stiffness/wakeUpStarted",
-    "ALMotion/Stiffness/wakeUpFinished",
-    "ALMotion/Stiffness/restStarted",
-    "ALMotion/Stiffness/restFinished",
-)
+AWAKE, STATES = "robotIsWakeUp", "ALMotion/Stiffness/"
+
+
+def set_awake(memory: MemoryStore, awake: bool) -> None:
+    """Raise the event about being awake, unless it has said so already."""
+    if memory.get(AWAKE) != awake:
+        memory.raise_event(AWAKE, awake)
 
 
 class Wake(MotionPart):
-    """Waking up, resting, and the events about it.
-
-    Args:
-        simulation: As for every part.
-        runner: As for every part.
-        memory: Where events go.
-    """
+    """Waking up, resting, and the events about it."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
         super().__init__(simulation, runner)
         self._memory = memory
-        for event in EVENTS:
-            memory.declare_event(event, "ALMotion")
+        memory.declare_event(AWAKE, "ALMotion")
+        for event in ("wakeUpStarted", "wakeUpFinished", "restStarted", "restFinished"):
+            memory.declare_event(f"{STATES}{event}", "ALMotion")
         memory.raise_event(AWAKE, False)
 
     def wakeUp(self) -> Task:
@@ -45,8 +39,7 @@ class Wake(MotionPart):
         if chain != "Body":
             indices = self._indices(chain)
             return self._runner.execute(
-                lambda: sequences.stiffness_task(self._robot, "rest", indices, 0.0, sequences.STIFFEN_TIME),
-                "rest",
+                lambda: sequences.stiffness_task(self._robot, "rest", indices, 0.0, sequences.STIFFEN_TIME), "rest"
             )
         return self._change_state("rest", sequences.rest, awake=False)
 
@@ -55,20 +48,16 @@ class Wake(MotionPart):
 
     def _change_state(self, name: str, sequence: Callable[..., Task], awake: bool) -> Task:
         def end() -> None:
-            self._memory.raise_event(f"ALMotion/Stiffness/{name}Finished", True)
+            self._memory.raise_event(f"{STATES}{name}Finished", True)
             if not awake:
-                self._set_awake(False)
+                set_awake(self._memory, False)
 
         def start() -> Task:
             if awake and self._robot.reflexes.wake_forbidden:
                 raise NaoqiError(self._robot.reflexes.wake_forbidden)
-            self._memory.raise_event(f"ALMotion/Stiffness/{name}Started", True)
+            self._memory.raise_event(f"{STATES}{name}Started", True)
             if awake:
-                self._set_awake(True)
+                set_awake(self._memory, True)
             return sequence(self._robot, lambda: self._runner.snapshot, end)
 
         return self._runner.execute(start, name)
-
-    def _set_awake(self, awake: bool) -> None:
-        if self._memory.get(AWAKE) != awake:
-            self._memory.raise_event(AWAKE, awake)

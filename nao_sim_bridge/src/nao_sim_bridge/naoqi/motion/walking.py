@@ -1,22 +1,27 @@
-"""Part of ALMotion: walking at a velocity or to a place, its end, and the arms meanwhile."""
+"""Parts of ALMotion about walking: at a velocity or to a place, its end, the arms meanwhile, where the robot is."""
 
 from __future__ import annotations
 
-from typing import Any, Callable
+from typing import Any, Callable, Iterable, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.motion.arguments import require_rising
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of, gait_of_feet
 from nao_sim_bridge.naoqi.motion.part import MotionPart
-from nao_sim_bridge.naoqi.motion.walk_events import MoveFailures
+from nao_sim_bridge.walk.footstep_plan import SIDES, FootstepPlan
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
 from nao_sim_bridge.walk.locomotion import Locomotion
+from nao_sim_bridge.walk.steps_course import Placement
 
+FAILED = "ALMotion/MoveFailed"
+NOT_STARTED, STOPPED = 0, 1
 ARM_GROUPS = {"LArm": ("LArm",), "RArm": ("RArm",), "Arms": ("LArm", "RArm")}
 # Shares of a speed may be beyond 1 by this: rounding of single precision.
 ROUNDING = 1e-6
@@ -24,32 +29,29 @@ ROUNDING = 1e-6
 MOST = 1e6
 
 
-class WalkPart(MotionPart):
-    """What the parts about walking share.
+class MoveFailures:
+    """Raises `ALMotion/MoveFailed`: [cause, 0 not started or 1 stopped on the way, place of an obstacle or None]."""
 
-    Args:
-        simulation: As for every part.
-        runner: As for every part.
-        failures: Who is told of moves that fail.
-    """
+    def __init__(self, memory: MemoryStore) -> None:
+        self._memory = memory
+        memory.declare_event(FAILED, "ALMotion")
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, failures: MoveFailures) -> None:
-        super().__init__(simulation, runner)
-        self._failures = failures
+    def watch(self, locomotion: Locomotion) -> None:
+        """Tell of the moves of this one; more than once is as good as once. Simulation thread only."""
+        if self._tell not in locomotion.failures:
+            locomotion.failures.append(self._tell)
 
-    def _walk(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
-        """Run a command of the robot's locomotion in the simulation thread."""
-
-        def run() -> Any:
-            locomotion = self._robot.locomotion
-            self._failures.watch(locomotion)
-            return command(locomotion)
-
-        return self._runner.execute(run, call)
+    def _tell(self, cause: str, started: bool, obstacle: Sequence[float] | None) -> None:
+        place = None if obstacle is None else list(obstacle)
+        self._memory.raise_event(FAILED, [cause, STOPPED if started else NOT_STARTED, place])
 
 
-class Walking(WalkPart):
+class Walking(MotionPart):
     """Moves. Those at a velocity return at once; those to a place return when the robot stands there, or elsewhere."""
+
+    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
+        super().__init__(simulation, runner)
+        self._failures = MoveFailures(memory)
 
     def moveInit(self) -> Task:
         return self._walk("moveInit", lambda locomotion: locomotion.init())
@@ -89,46 +91,84 @@ class Walking(WalkPart):
         return gait_list(which)
 
     def getMoveArmsEnabled(self, chain: str) -> bool:
-        if chain not in ARM_GROUPS:
-            raise UnknownName("arm or group", chain, ARM_GROUPS)
-        enabled = self._robot.locomotion.arms.enabled
-        return all(enabled[arm] for arm in ARM_GROUPS[chain])
+        arms, enabled = ARM_GROUPS[known(chain, "arm or group", ARM_GROUPS)], self._robot.locomotion.arms.enabled
+        return all(enabled[arm] for arm in arms)
 
     def setMoveArmsEnabled(self, left: bool, right: bool) -> Task:
         wanted = dict(zip(ARM_GROUPS["Arms"], (bool(left), bool(right))))
         return self._walk("setMoveArmsEnabled", lambda locomotion: locomotion.arms.enabled.update(wanted))
 
+    # --- steps of one foot after the other, each placed beside the other foot; what legs cannot do is clipped ---------
+
+    def setFootSteps(self, legs: list[str], steps: Any, times: list[float], clear: bool) -> Task:
+        """Each time, s from the first step's begin, is that of a landing."""
+        placed = _placed(legs, steps)
+        # A foot that steps twice in a row needs a step of the other one in between, and no time is given for that.
+        if any(one == next_ for (one, _), (next_, _) in zip(placed, placed[1:])):
+            raise BadValue("legName", legs, "LLeg and RLeg in turns")
+        landings = _one_each(times, len(placed), "timeList")
+        require_rising(landings, "timeList", times)
+        steps = _placements(placed, [b - a for a, b in zip([0.0, *landings], landings)])
+
+        def start(locomotion: Locomotion) -> None:
+            locomotion.set_steps(steps, FeetGait(), bool(clear))
+
+        return self._walk("setFootSteps", start)
+
+    def setFootStepsWithSpeed(self, legs: list[str], steps: Any, fractions: list[float], clear: bool) -> Task:
+        """One fraction of the top frequency for all steps, or one for each."""
+        placed, gait = _placed(legs, steps), FeetGait()
+        shares = _one_each(fractions, len(placed), "fractionMaxSpeed", (0.0, 1.0), one_for_all=True)
+        steps = _placements(placed, [gait.of(side).period(share) for (side, _), share in zip(placed, shares)])
+        begin = lambda locomotion: locomotion.set_steps(steps, gait, bool(clear)).then(lambda _: None)  # noqa: E731
+        return self._walk("setFootStepsWithSpeed", begin)
+
+    def getFootSteps(self) -> Task:
+        return self._walk("getFootSteps", lambda locomotion: _as_list(locomotion.steps()))
+
+    # --- poses [x, y, theta] and velocities of the robot on the ground, in FRAME_WORLD ------------------------------
+
+    def getRobotPosition(self, use_sensors: bool) -> Task:
+        return self._read("getRobotPosition", lambda locomotion: locomotion.position(bool(use_sensors)))
+
+    def getNextRobotPosition(self) -> Task:
+        return self._read("getNextRobotPosition", lambda locomotion: locomotion.next_position())
+
+    def getRobotVelocity(self) -> Task:
+        return self._read("getRobotVelocity", lambda locomotion: locomotion.velocity())
+
     # --- older names ----------------------------------------------------------------------------------------------
 
-    def walkInit(self) -> Task:
-        return self.moveInit()
+    walkInit = moveInit
+    stopWalk = stopMove
+    killWalk = killMove
+    waitUntilWalkIsFinished = waitUntilMoveIsFinished
+    walkIsActive = moveIsActive
+    getFootGaitConfig = getMoveConfig
+    setWalkArmsEnabled = setMoveArmsEnabled
 
     def walkTo(self, *arguments: Any) -> Task:
         return self._to("walkTo", arguments)
-
-    def stopWalk(self) -> Task:
-        return self.stopMove()
-
-    def killWalk(self) -> Task:
-        return self.killMove()
-
-    def waitUntilWalkIsFinished(self) -> Task:
-        return self.waitUntilMoveIsFinished()
-
-    def walkIsActive(self) -> bool:
-        return self.moveIsActive()
-
-    def getFootGaitConfig(self, which: str) -> list:
-        return gait_list(which)
 
     def getWalkArmsEnabled(self) -> list[bool]:
         enabled = self._robot.locomotion.arms.enabled
         return [enabled[arm] for arm in ARM_GROUPS["Arms"]]
 
-    def setWalkArmsEnabled(self, left: bool, right: bool) -> Task:
-        return self.setMoveArmsEnabled(left, right)
-
     # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _walk(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
+        """Run a command of the robot's locomotion in the simulation thread."""
+
+        def run() -> Any:
+            locomotion = self._robot.locomotion
+            self._failures.watch(locomotion)
+            return command(locomotion)
+
+        return self._runner.execute(run, call)
+
+    def _read(self, call: str, reading: Callable[[Locomotion], Iterable[float]]) -> Task:
+        # Between two ticks: plan, commands and sensors are of one moment there.
+        return self._runner.execute(lambda: list(reading(self._robot.locomotion)), call)
 
     def _toward(self, call: str, x: float, y: float, theta: float, gait: FeetGait) -> Task:
         shares = tuple(_share(value, name, -1.0) for name, value in (("x", x), ("y", y), ("theta", theta)))
@@ -178,3 +218,45 @@ def _share(value: Any, field: str, least: float) -> float:
     if not least - ROUNDING <= checked <= 1.0 + ROUNDING:
         raise BadValue(field, value, f"{least:g} to 1")
     return min(max(checked, least), 1.0)
+
+
+def _placed(legs: Any, steps: Any) -> list[tuple[int, FootPose]]:
+    """Side and place of each step.
+
+    Raises:
+        BadValue: A leg has another name, a step other numbers, there is not one step for each leg, or too many are.
+    """
+    if isinstance(steps, (list, tuple)):
+        require_few("footSteps", len(steps), "steps")
+    if not isinstance(legs, (list, tuple)) or not legs or any(leg not in SIDES for leg in legs):
+        raise BadValue("legName", legs, f"a list of {' and '.join(SIDES)}, at least one")
+    if not isinstance(steps, (list, tuple)) or len(steps) != len(legs):
+        raise BadValue("footSteps", steps, f"as many steps [x, y, theta] as legs: {len(legs)} here")
+    placed = []
+    for position, (leg, step) in enumerate(zip(legs, steps)):
+        three = numbers(step, f"footSteps[{position}]")
+        if len(three) != 3:
+            raise BadValue(f"footSteps[{position}]", step, "x, y in m, theta in rad, from the other foot")
+        placed.append((SIDES[leg], FootPose(*three)))
+    return placed
+
+
+def _one_each(
+    values: Any, count: int, field: str, limits: tuple[float, ...] = (), one_for_all: bool = False
+) -> list[float]:
+    listed = numbers(values, field, *limits)
+    if one_for_all and len(listed) == 1:
+        return listed * count
+    if len(listed) != count:
+        raise BadValue(field, values, f"as many as steps: {count} here")
+    return listed
+
+
+def _placements(placed: Iterable[tuple[int, FootPose]], periods: Iterable[float]) -> list[Placement]:
+    return [Placement(side, beside, period) for (side, beside), period in zip(placed, periods)]
+
+
+def _as_list(plan: FootstepPlan) -> list:
+    """Poses of the feet in FRAME_WORLD, steps that nothing can change any more, steps after them."""
+    parts = ([[step.leg, step.time, list(step.placement)] for step in part] for part in (plan.fixed, plan.clearable))
+    return [[list(plan.left), list(plan.right)], *parts]

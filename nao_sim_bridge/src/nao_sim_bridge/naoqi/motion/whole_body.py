@@ -15,10 +15,9 @@ from nao_sim_bridge.control.whole_body.tasks import go_to_balance, lead_to
 from nao_sim_bridge.control.whole_body.whole_body import WholeBody as Control
 from nao_sim_bridge.model.frames import FEET, ROBOT
 from nao_sim_bridge.model.kinematics import rpy_matrix, transform
-from nao_sim_bridge.naoqi.binding.arguments import number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.part import MotionPart
-from nao_sim_bridge.naoqi.motion.placements import placement
 
 SUPPORTS = {"Legs": FEET, **{foot: (foot,) for foot in FEET}}
 POSITION, ROTATION, ALL = 7, 56, 63
@@ -41,11 +40,9 @@ class WholeBody(MotionPart):
         return self._runner.execute(lambda: self._robot.whole_body.enable(bool(enabled)), "wbEnable")
 
     def wbFootState(self, state: str, leg: str) -> Task:
-        states = {known.value: known for known in FootState}
-        if state not in states:
-            raise UnknownName("foot state", state, states)
-        feet = _support(leg)
-        return self._while_on("wbFootState", lambda control: control.set_foot_states(feet, states[state]))
+        states = {one.value: one for one in FootState}
+        wanted, feet = states[known(state, "foot state", states)], _support(leg)
+        return self._while_on("wbFootState", lambda control: control.set_foot_states(feet, wanted))
 
     def wbEnableBalanceConstraint(self, enabled: bool, leg: str) -> Task:
         feet = _support(leg) if enabled else ()
@@ -61,8 +58,7 @@ class WholeBody(MotionPart):
         return self._go("wbGoToBalanceWithSpeed", leg, lambda control: control.way_to(feet) / speed)
 
     def wbEnableEffectorControl(self, name: str, enabled: bool) -> Task:
-        if name not in CONTROLLED:
-            raise UnknownName("effector", name, CONTROLLED)
+        known(name, "effector", CONTROLLED)
 
         def switch() -> None:
             control = self._robot.whole_body
@@ -73,8 +69,7 @@ class WholeBody(MotionPart):
         return self._runner.execute(switch, "wbEnableEffectorControl")
 
     def wbSetEffectorControl(self, name: str, target: Any) -> Task:
-        if name not in CONTROLLED:
-            raise UnknownName("effector", name, CONTROLLED)
+        known(name, "effector", CONTROLLED)
         three = numbers(target, "targetCoordinate")
         if len(three) != 3:
             raise BadValue("targetCoordinate", target, "wx, wy, wz in rad for Head, x, y, z in m for an arm")
@@ -85,8 +80,7 @@ class WholeBody(MotionPart):
         def lead(control: Control) -> None:
             if name not in control.controlled:
                 raise NaoqiError(f"{name} is not controlled, call wbEnableEffectorControl({name!r}, True) before")
-            placed = placement(self._model, self._robot, self._runner.snapshot, use_sensors=False)
-            lead_to(control, [move], TARGET_SPEED, placed)
+            lead_to(control, [move], TARGET_SPEED, self._placement(False))
 
         return self._while_on("wbSetEffectorControl", lead)
 
@@ -136,6 +130,4 @@ class WholeBody(MotionPart):
 
 
 def _support(leg: Any) -> tuple[str, ...]:
-    if leg not in SUPPORTS:
-        raise UnknownName("support leg", leg, SUPPORTS)
-    return tuple(SUPPORTS[leg])
+    return tuple(SUPPORTS[known(leg, "support leg", SUPPORTS)])

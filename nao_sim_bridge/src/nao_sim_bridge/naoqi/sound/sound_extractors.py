@@ -24,7 +24,7 @@ from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.switch import Switch, SwitchModule
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.motion.cartesian_arguments import as_position
+from nao_sim_bridge.naoqi.motion.arguments import as_position
 from nao_sim_bridge.sound.ears import Ears, Listener, MicrophoneBlock
 
 DETECTION, DETECTED = "ALSoundDetection", "SoundDetected"

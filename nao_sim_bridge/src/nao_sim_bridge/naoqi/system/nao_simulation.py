@@ -10,7 +10,7 @@ from nao_sim_bridge.base.record_dir import world_of_client
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import FASTEST
 from nao_sim_bridge.naoqi.binding.binding import typed
-from nao_sim_bridge.naoqi.binding.client_watch import ClientWatch
+from nao_sim_bridge.naoqi.binding.client_calls import ClientWatch
 
 NAME = "NaoSimulation"
 
@@ -27,39 +27,35 @@ class NaoSimulation:
         self._host = host
         self._watch = ClientWatch(lambda: host.broker.has_clients())
 
-    @property
-    def _runner(self) -> Any:
-        return self._host.runner
-
     @typed(NAME, qi.Float, [])
     def time(self) -> float:
         """Simulated time, s."""
-        return self._runner.snapshot.time
+        return self._host.runner.snapshot.time
 
     @typed(NAME, qi.Float, [])
     def speed(self) -> float:
         """Simulated seconds per wall second that are asked for; 0 when as fast as possible."""
-        return 0.0 if self._runner.speed == FASTEST else self._runner.speed
+        return 0.0 if self._host.runner.speed == FASTEST else self._host.runner.speed
 
     @typed(NAME, qi.Void, [qi.Float])
     def setSpeed(self, speed: float) -> Any:
         """Simulated seconds per wall second; 0 for as fast as possible."""
-        return self._runner.set_speed(speed if speed else FASTEST)
+        return self._host.runner.set_speed(speed if speed else FASTEST)
 
     @typed(NAME, qi.Void, [])
     def pause(self) -> None:
         """Let time stand still; calls are still answered."""
-        self._runner.pause()
+        self._host.runner.pause()
 
     @typed(NAME, qi.Void, [])
     def resume(self) -> None:
         """Let time pass again."""
-        self._runner.resume()
+        self._host.runner.resume()
 
     @typed(NAME, qi.Bool, [])
     def isPaused(self) -> bool:
         """Whether time stands still."""
-        return self._runner.paused
+        return self._host.runner.paused
 
     @typed(NAME, qi.Float, [qi.Float])
     def advance(self, seconds: float) -> Any:
@@ -67,7 +63,7 @@ class NaoSimulation:
 
         A pause or a reset before that is over ends it with an error; it ends, too, when no client is left.
         """
-        return self._watch.add(self._runner.advance(seconds)).then(lambda snapshot: snapshot and snapshot.time)
+        return self._watch.add(self._host.runner.advance(seconds)).then(lambda snapshot: snapshot and snapshot.time)
 
     @typed(NAME, qi.Void, [])
     def reset(self) -> Any:
@@ -173,13 +169,13 @@ class NaoSimulation:
     @typed(NAME, qi.List(qi.Float), [])
     def torsoPose(self) -> list[float]:
         """True pose of the torso in world: x, y, z in m, quaternion x, y, z, w."""
-        pose = self._runner.snapshot.torso
+        pose = self._host.runner.snapshot.torso
         return [*pose.position, *pose.orientation]
 
     @typed(NAME, qi.Map(qi.String, qi.List(qi.Float)), [])
     def objectPoses(self) -> dict[str, list[float]]:
         """True poses of what can be moved, was placed or moved, as `torsoPose`: of centres of mass."""
-        return {n: [*p.position, *p.orientation] for n, p in self._runner.snapshot.objects.items()}
+        return {n: [*p.position, *p.orientation] for n, p in self._host.runner.snapshot.objects.items()}
 
     @typed(NAME, qi.Void, [qi.String])
     def placeObject(self, description: str) -> Any:

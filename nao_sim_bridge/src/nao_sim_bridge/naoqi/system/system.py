@@ -25,12 +25,10 @@ class ALSystem:
     What would flash the robot's disk or change its users is refused, with what to do instead: a simulation has neither.
 
     Args:
-        memory: Where events go.
         reboot: Puts robot and world to the start.
         shutdown: Ends the simulator.
         icon: Draws a PNG picture of the robot, so many pixels wide and high.
         name: Of the robot, until somebody gives it another one.
-        zone: What its clock shows.
     """
 
     def __init__(
@@ -63,8 +61,7 @@ class ALSystem:
     def systemVersion(self) -> str:
         return VERSION
 
-    def previousSystemVersion(self) -> str:
-        return VERSION
+    previousSystemVersion = systemVersion
 
     def systemInfo(self) -> list:
         return [["name", self._name], ["version", VERSION], ["simulated", True], ["cpus", os.cpu_count() or 1]]

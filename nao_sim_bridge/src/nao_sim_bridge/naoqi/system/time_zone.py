@@ -49,7 +49,6 @@ class TimeZone:
 
 
 def _own() -> tuple[str, tzinfo]:
-    """Name and zone of this process."""
     if "TZ" not in os.environ:
         return _computers_name(), tz.tzlocal()
     name = os.environ["TZ"].lstrip(":") or UTC

@@ -13,9 +13,9 @@ from nao_sim_bridge.control.joints.curves import Ramp
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.frames import TORSO
-from nao_sim_bridge.naoqi.binding.arguments import number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import numbers, speed_share
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.motion.placements import space_of
+from nao_sim_bridge.naoqi.motion.arguments import space_of
 from nao_sim_bridge.naoqi.tracker.tracking import Tracking
 from nao_sim_bridge.tracking import geometry
 from nao_sim_bridge.tracking.follower import EFFECTORS
@@ -24,13 +24,7 @@ FARTHEST = 1000.0
 
 
 class Looking:
-    """Looks and points at places, and knows places of landmarks. Only NAOqi methods are public.
-
-    Args:
-        tracking: What is tracked now.
-        simulation: Whose robot it is.
-        runner: Its thread.
-    """
+    """Looks and points at places, and knows places of landmarks. Only NAOqi methods are public."""
 
     def __init__(self, tracking: Tracking, simulation: Simulation, runner: SimulationRunner) -> None:
         self._tracking = tracking
@@ -44,7 +38,7 @@ class Looking:
         Ends when the robot looks there, as far as it can.
         """
         frame, fraction, whole_body = _frame_first(rest, 3)
-        point, share = _point(position), _share(fraction)
+        point, share = _point(position), speed_share(fraction, "pFractionMaxSpeed")
 
         def look() -> Task:
             in_torso = self._in_torso(point, frame)
@@ -59,7 +53,7 @@ class Looking:
         frame, fraction = _frame_first(rest, 2)
         if effector not in EFFECTORS or effector == "None":
             raise BadValue("pEffector", effector, f"one of {', '.join(n for n in EFFECTORS if n != 'None')}")
-        point, share = _point(position), _share(fraction)
+        point, share = _point(position), speed_share(fraction, "pFractionMaxSpeed")
 
         def aim() -> Task:
             in_torso = self._in_torso(point, frame)
@@ -92,17 +86,14 @@ class Looking:
         seen = [s for s in self._tracking.sightings if s.number in self._marks]
         return robot_position([s.place for s in seen], [self._marks[s.number] for s in seen])
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _in_torso(self, point: Sequence[float], frame: int) -> geometry.Point:
         model = self._simulation.model
         return geometry.in_torso(model, geometry.placement(model, self._simulation.snapshot), point, frame)
 
     def _head(self, in_torso: geometry.Point) -> tuple[float, float]:
         yaw, pitch = geometry.head_angles(self._simulation.model, in_torso)
-        low, high = self._simulation.robot.joints.limits_beside(
-            self._simulation.model.joint_index[geometry.HEAD[1]], yaw
-        )
+        pitching = self._simulation.model.joint_index[geometry.HEAD[1]]
+        low, high = self._simulation.robot.joints.limits_beside(pitching, yaw)
         return yaw, min(max(pitch, low), high)
 
     def _move(self, name: str, angles: Mapping[str, float], share: float) -> Task:
@@ -147,10 +138,3 @@ def _point(position: Any) -> list[float]:
     if len(point) != 3:
         raise BadValue("pPosition", position, "[x, y, z] in m")
     return point
-
-
-def _share(fraction: Any) -> float:
-    share = number(fraction, "pFractionMaxSpeed", 0.0, 1.0)
-    if share == 0.0:
-        raise BadValue("pFractionMaxSpeed", fraction, "above 0 to 1")
-    return share

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Mapping, Sequence, Tuple
+from typing import Any, Callable, Iterable, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.naoqi.binding.arguments import number
@@ -49,16 +49,7 @@ Read = Callable[[Any, Parameters], Sequence[Sighting]]
 
 @dataclass(frozen=True)
 class Target:
-    """A kind of target.
-
-    Attributes:
-        name: As NAOqi has it.
-        module: Whose events tell where it is.
-        event: Which one.
-        period: Default period of the module, ms.
-        read: Reads its value.
-        parameters: Checks what a client registers.
-    """
+    """A kind of target: the module whose event tells where it is, and its default period in ms."""
 
     name: str
     module: str
@@ -79,25 +70,25 @@ def read_ball(value: Any, parameters: Parameters) -> list[Sighting]:
 
 def read_faces(value: Any, parameters: Parameters) -> list[Sighting]:
     """`FaceDetected`: the last of its faces is what is new about names."""
-    found = []
-    for face in value[1][:-1] if value else ():
-        (_, alpha, beta, width, _), number_of_face = face[0], int(face[1][0])
-        if parameters.numbers and number_of_face not in parameters.numbers:
-            continue
-        distance = distance_of(parameters.length, width)
-        found.append(Sighting(seen_place(value[3], alpha, beta, distance), distance, number_of_face))
-    return sorted(found, key=lambda sighting: sighting.distance)
+    faces = [(int(face[1][0]), *face[0][1:4]) for face in value[1][:-1]] if value else []
+    return _nearest_first(value, parameters, faces)
 
 
 def read_landmarks(value: Any, parameters: Parameters) -> list[Sighting]:
     """`LandmarkDetected`: a mark that is seen from the side is as wide as it is high."""
+    marks = value[1] if value else ()
+    return _nearest_first(value, parameters, [(int(mark), *shape[1:3], max(shape[3:5])) for shape, (mark, *_) in marks])
+
+
+def _nearest_first(
+    value: Any, parameters: Parameters, seen: Iterable[Tuple[int, float, float, float]]
+) -> list[Sighting]:
+    """Sightings of what counts among number, angles in the picture, and angular size of each, in rad."""
     found = []
-    for shape, (mark, *_) in value[1] if value else ():
-        _, alpha, beta, width, height = shape[:5]
-        if parameters.numbers and int(mark) not in parameters.numbers:
-            continue
-        distance = distance_of(parameters.length, max(width, height))
-        found.append(Sighting(seen_place(value[3], alpha, beta, distance), distance, int(mark)))
+    for number_of_it, alpha, beta, size in seen:
+        if not parameters.numbers or number_of_it in parameters.numbers:
+            distance = distance_of(parameters.length, size)
+            found.append(Sighting(seen_place(value[3], alpha, beta, distance), distance, number_of_it))
     return sorted(found, key=lambda sighting: sighting.distance)
 
 

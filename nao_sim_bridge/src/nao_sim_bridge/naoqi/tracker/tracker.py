@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.frames import TORSO
-from nao_sim_bridge.naoqi.binding.arguments import number, whole_number
+from nao_sim_bridge.naoqi.binding.arguments import known, number, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.motion.arguments import space_of
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of
-from nao_sim_bridge.naoqi.motion.placements import space_of
 from nao_sim_bridge.naoqi.tracker.targets import TARGETS, Parameters
 from nao_sim_bridge.naoqi.tracker.tracking import DEFAULT_DISTANCE, DEFAULT_TIMEOUT, Tracking
 from nao_sim_bridge.tracking.approach import Relative
@@ -27,10 +27,6 @@ class ALTracker:
 
     Velocity and acceleration are those of the head, rad/s and rad/s2. Landmarks give the robot's position when their
     places are known, see `Looking`.
-
-    Args:
-        tracking: Does the work.
-        runner: Runs commands in the simulation thread.
     """
 
     def __init__(self, tracking: Tracking, runner: SimulationRunner) -> None:
@@ -112,9 +108,7 @@ class ALTracker:
         return self._follower.effector.name
 
     def setEffector(self, effector: str) -> None:
-        if effector not in EFFECTORS:
-            raise BadValue("pEffector", effector, f"one of {', '.join(EFFECTORS)}")
-        self._follower.effector = EFFECTORS[effector]
+        self._follower.effector = EFFECTORS[_effector(effector)]
 
     def getRelativePosition(self) -> list[float]:
         relative = self._follower.approach.relative
@@ -138,7 +132,7 @@ class ALTracker:
 
     def setMoveConfig(self, config: Any) -> None:
         self._follower.approach.gait = gait_of(config)
-        given = {name: value for name, value in config}
+        given = dict(config)
         self._move_config = [[name, given.get(name, value)] for name, value in gait_list("Default")]
 
     def getTimeOut(self) -> int:
@@ -169,8 +163,7 @@ class ALTracker:
         return self._tracking.periods[_known(target)]
 
     def setExtractorPeriod(self, target: str, period: int) -> Task:
-        checked = whole_number(period, "pPeriod", FASTEST_PERIOD, SLOWEST_PERIOD)
-        name = _known(target)
+        checked, name = whole_number(period, "pPeriod", FASTEST_PERIOD, SLOWEST_PERIOD), _known(target)
         return self._runner.execute(lambda: self._tracking.set_period(name, checked), "setExtractorPeriod")
 
     def isSearchEnabled(self) -> bool:
@@ -203,36 +196,19 @@ class ALTracker:
 
         return self._runner.execute(reset, "initialize")
 
+    def removeEffector(self, effector: str) -> None:
+        if _effector(effector) == self.getEffector():
+            self._follower.effector = EFFECTORS["None"]
+
     # --- older names ----------------------------------------------------------------------------------------------
 
-    def addTarget(self, target: str, parameters: Any) -> None:
-        self.registerTarget(target, parameters)
-
-    def removeTarget(self, target: str) -> None:
-        self.unregisterTarget(target)
-
-    def removeTargets(self, targets: list[str]) -> None:
-        self.unregisterTargets(targets)
-
-    def removeAllTargets(self) -> None:
-        self.unregisterAllTargets()
-
-    def getManagedTargets(self) -> list[str]:
-        return self.getRegisteredTargets()
-
-    def getTargetNames(self) -> list[str]:
-        return self.getSupportedTargets()
-
-    def addEffector(self, effector: str) -> None:
-        self.setEffector(effector)
-
-    def removeEffector(self, effector: str) -> None:
-        if effector not in EFFECTORS:
-            raise BadValue("pEffector", effector, f"one of {', '.join(EFFECTORS)}")
-        if effector == self.getEffector():
-            self.setEffector("None")
-
-    # --- inside ---------------------------------------------------------------------------------------------------
+    addTarget = registerTarget
+    removeTarget = unregisterTarget
+    removeTargets = unregisterTargets
+    removeAllTargets = unregisterAllTargets
+    getManagedTargets = getRegisteredTargets
+    getTargetNames = getSupportedTargets
+    addEffector = setEffector
 
     def _check_registered(self, target: str) -> None:
         if _known(target) not in self._registered:
@@ -241,6 +217,10 @@ class ALTracker:
 
 
 def _known(target: str) -> str:
-    if target not in TARGETS:
-        raise UnknownName("target", target, TARGETS)
-    return target
+    return known(target, "target", TARGETS)
+
+
+def _effector(name: str) -> str:
+    if name not in EFFECTORS:
+        raise BadValue("pEffector", name, f"one of {', '.join(EFFECTORS)}")
+    return name

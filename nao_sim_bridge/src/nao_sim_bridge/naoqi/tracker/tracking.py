@@ -13,7 +13,7 @@ from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.frames import ROBOT, WORLD
 from nao_sim_bridge.naoqi.binding.arguments import numbers
-from nao_sim_bridge.naoqi.binding.module_calls import ModuleCalls
+from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.tracker.targets import TARGETS, Parameters, Sighting
 from nao_sim_bridge.tracking import geometry
@@ -47,12 +47,6 @@ class Tracking:
         searches: Whether it looks around for a target that is lost.
         periods: Of the modules, ms, by name of the target.
         sightings: What was seen last.
-
-    Args:
-        simulation: Whose robot it is.
-        runner: Its thread.
-        memory: Where events come from and go to.
-        calls: Calls the modules that see and hear.
     """
 
     def __init__(
@@ -67,11 +61,7 @@ class Tracking:
         self._memory = memory
         self._calls = calls
         self._active: _Active | None = None
-        self._seen: float | None = None
-        self._lost = True
-        self._new = False
-        self._place: Point | None = None
-        self.sightings: Sequence[Sighting] = ()
+        self._forget()
         self._listening: set[str] = set()
         for event in (CHANGED, DETECTED, LOST, REACHED):
             memory.declare_event(event, NAME)
@@ -88,7 +78,6 @@ class Tracking:
 
     @property
     def lost(self) -> bool:
-        """Whether the target is not seen."""
         return self._active is None or self._lost
 
     @property
@@ -120,8 +109,7 @@ class Tracking:
         """Track nothing any more."""
         active, self._active = self._active, None
         self.follower.stop()
-        self._seen, self._lost, self._place, self._new = None, True, None, False
-        self.sightings = ()
+        self._forget()
         if active is not None:
             if active.module:
                 self._calls.tell(active.module, "unsubscribe", NAME)
@@ -132,6 +120,12 @@ class Tracking:
         self.periods[name] = period
         if self._active is not None and self._active.name == name:
             self._calls.tell(self._active.module, "updatePeriod", NAME, period)
+
+    def _forget(self) -> None:
+        self._seen: float | None = None
+        self._lost, self._new = True, False
+        self._place: Point | None = None
+        self.sightings: Sequence[Sighting] = ()
 
     def _begin(self, active: _Active, event: str) -> None:
         self.stop()
