@@ -65,8 +65,6 @@ def exposure_of(pixels: np.ndarray, values: Mapping[int, int], sensor: SensorMod
 
     Args:
         pixels: (h, w, 3) uint8, what is metered.
-        values: Parameters of the camera.
-        sensor: What they mean.
     """
     if not values[AUTO_EXPOSURE]:
         return Exposure(values[EXPOSURE], values[GAIN])

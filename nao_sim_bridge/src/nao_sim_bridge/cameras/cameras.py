@@ -54,14 +54,10 @@ class Cameras:
 
     Attributes:
         tables: Resolutions, colour spaces and parameters that there are.
-        ticks_per_second: Of the simulation.
         lock: Guards everything in here and in the streams.
         active: Index of the camera that NAOqi's modules take when nobody says which.
 
     Args:
-        model: The robot.
-        tick_s: Length of a tick, s.
-        renderer: What draws.
         look: What there is to see at a snapshot.
         released: Called when time that waited need not wait any more.
         guard: Calls who gets frames; None for one of its own.

@@ -33,17 +33,7 @@ class CapturesPictures(Protocol):
 
 
 class Darkroom:
-    """Turns moments into frames.
-
-    Attributes:
-        renderer: What draws.
-
-    Args:
-        renderer: See above.
-        places: Where the cameras are.
-        version: Robot version.
-        guard: Does what is put.
-    """
+    """Turns moments into frames."""
 
     def __init__(self, renderer: CapturesPictures, places: CameraPlaces, version: str, guard: Guard) -> None:
         self._guard = guard

@@ -17,8 +17,6 @@ class Frame:
     Attributes:
         time: Simulated time at which it was taken, s.
         camera: Index, 0 top, 1 bottom.
-        width: Pixels.
-        height: Pixels.
         color_space: NAOqi's id.
         layers: Bytes a pixel.
         data: The pixels, row by row from the upper left corner.

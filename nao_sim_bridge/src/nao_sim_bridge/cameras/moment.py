@@ -16,7 +16,6 @@ class Moment:
     """A frame of a camera that has not been drawn.
 
     Attributes:
-        camera: Index.
         number: Counts the frames of the camera.
         snapshot: What was sensed.
         state: What there was to see.

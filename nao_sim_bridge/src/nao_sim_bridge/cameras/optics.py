@@ -103,7 +103,6 @@ class CameraOptics(Optics):
     """The optics of one camera of a robot.
 
     Args:
-        version: Robot version.
         index: 0 top, 1 bottom.
     """
 

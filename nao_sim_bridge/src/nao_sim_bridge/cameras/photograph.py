@@ -22,7 +22,6 @@ class Photograph:
     """A picture with what the automatic chose for it.
 
     Attributes:
-        chosen: Exposure, gain, white balance and mean luminance.
         data: The pixels in the colour space of the shot.
     """
 
@@ -35,7 +34,6 @@ def photograph(picture: np.ndarray, shot: Shot) -> bytes:
 
     Args:
         picture: (h, w, 3) uint8 RGB as a perfect camera would show it.
-        shot: What the camera was asked for.
 
     Returns:
         The pixels in the shot's colour space, behind a header that `read_photograph` takes apart.

@@ -17,14 +17,7 @@ from nao_sim_bridge.world.render_state import RenderState
 
 
 class CameraPlaces:
-    """The cameras of one robot.
-
-    Attributes:
-        optics: Of each camera.
-
-    Args:
-        model: The robot.
-    """
+    """The cameras of one robot."""
 
     def __init__(self, model: RobotModel) -> None:
         self._model = model

@@ -65,7 +65,6 @@ def develop(picture: np.ndarray, shot: Shot) -> tuple[np.ndarray, Chosen]:
 
     Args:
         picture: (h, w, 3) uint8 RGB as a perfect camera would show it.
-        shot: The settings.
 
     Returns:
         (h, w, 3) uint8 RGB, and what the automatics chose.

@@ -24,8 +24,6 @@ class Resolution:
     Attributes:
         id: NAOqi's number.
         name: NAOqi's name.
-        width: Pixels.
-        height: Pixels.
         most_fps: The most frames a second, for each camera; 0 where it cannot be had.
     """
 
@@ -58,10 +56,6 @@ class CameraParameter:
     Attributes:
         id: NAOqi's number.
         name: NAOqi's name.
-        least: Smallest value.
-        most: Largest value.
-        default: What it is at the start.
-        read_only: It can be read only.
     """
 
     id: int
@@ -96,14 +90,10 @@ class CameraTables:
     """What the cameras of one robot version can do.
 
     Attributes:
-        version: Robot version.
         model_id: NAOqi's number of the camera model.
         most_fps: The most frames a second of any resolution.
         same_name: How many subscribers may have the same name.
-        resolutions: By id.
         color_spaces: By id, those included that only depth cameras have.
-        parameters: By id.
-        sensor: What the parameters do.
     """
 
     version: str

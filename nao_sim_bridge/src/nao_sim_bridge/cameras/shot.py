@@ -19,11 +19,8 @@ class Shot:
         orientation: Of the camera in world, quaternion (x, y, z, w); X along the optical axis, Y left, Z up.
         hfov: Horizontal field of view, rad.
         vfov: Vertical field of view, rad.
-        width: Pixels.
-        height: Pixels.
         color_space: NAOqi's id.
         parameters: Settings of the camera, by NAOqi's id; what is not there is at its default.
-        seed: Of the noise.
     """
 
     version: str

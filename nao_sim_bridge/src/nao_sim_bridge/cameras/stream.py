@@ -56,8 +56,6 @@ class CameraStream:
 
     Args:
         cameras: Its owner; its lock guards what is in here.
-        name: See above.
-        every: See above.
         keep: How many frames wait at most.
     """
 

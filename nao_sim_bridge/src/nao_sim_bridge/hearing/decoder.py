@@ -54,8 +54,6 @@ class Heard:
     """What an utterance may be other than a phrase.
 
     Attributes:
-        everyday: Everyday words.
-        sounds: Single sounds.
         origin: Time at which its sound begins, with the silence before it, s.
         onset: Time of its first sound, s.
         end: Time of its last sound, s.
@@ -73,9 +71,6 @@ class Decoder:
 
     Args:
         grammars: What may be said; with none, nothing is ever recognised.
-        pronouncer: Knows how words are said.
-        settings: Noise reduction, gain, confidence.
-        everyday: Knows what else may have been said.
 
     Raises:
         NoPronunciation: A word cannot be said.
@@ -106,12 +101,7 @@ class Decoder:
         return engine
 
     def recognise(self, utterance: Utterance, most: int = 1) -> list[Hypothesis]:
-        """The phrases that may have been said, best first.
-
-        Args:
-            utterance: What was heard.
-            most: How many at most.
-        """
+        """The phrases that may have been said, best first."""
         if not self._network.tokens:
             return []
         speech = self._cleaned(utterance)

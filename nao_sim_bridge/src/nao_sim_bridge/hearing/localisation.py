@@ -58,7 +58,6 @@ class DirectionFinder:
     """Finds directions with one array.
 
     Args:
-        array: The microphones.
         rate: Of the samples, Hz.
     """
 
@@ -77,7 +76,6 @@ class DirectionFinder:
         """Direction that the loudest sound of a block comes from.
 
         Args:
-            spectra: Of the block.
             up: Unit vector upwards in the world, in the frame of the head.
         """
         shadow, coherence = self.shadow(spectra)

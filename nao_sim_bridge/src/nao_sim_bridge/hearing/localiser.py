@@ -47,7 +47,6 @@ class Localiser:
     """Locates the sounds that stand out from the background.
 
     Args:
-        array: The microphones.
         rate: Hz.
     """
 

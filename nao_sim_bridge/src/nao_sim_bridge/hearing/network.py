@@ -18,8 +18,6 @@ class Arc:
     """A way from one state to another.
 
     Attributes:
-        start: State.
-        end: State.
         token: Name in `Network.tokens` of what is said on the way; None for nothing.
     """
 
@@ -60,7 +58,6 @@ def build(
     """The network of several grammars, any of which may be said.
 
     Args:
-        grammars: What may be said.
         pronounce: Pronunciations of a word.
         other_phones: Sounds that other speech is made of.
 

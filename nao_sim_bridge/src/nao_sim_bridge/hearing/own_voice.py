@@ -12,12 +12,7 @@ FULL_SCALE = 32768.0
 
 
 class OwnVoice:
-    """Works out what the loudspeakers add to the microphones. Any thread.
-
-    Args:
-        model: The robot.
-        sound: Its loudspeakers and microphones.
-    """
+    """Works out what the loudspeakers add to the microphones. Any thread."""
 
     def __init__(self, model: RobotModel, sound: SoundWorld) -> None:
         self._sound = sound

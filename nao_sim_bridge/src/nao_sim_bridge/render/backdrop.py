@@ -28,7 +28,6 @@ class Backdrop:
     """A world without robot and objects; drawn once for a camera that stays where it is.
 
     Args:
-        world: Floor and background colours.
         still: Shadow of what never moves, on the floor; None for a floor without.
     """
 

@@ -49,7 +49,6 @@ class Renderer:
 
     Args:
         world_name: Name or path of the world.
-        version: Robot version.
         engine: What draws: "opengl"; "builtin", which is slower and needs nothing of the computer; or "auto" for
             OpenGL where it can be had.
 
@@ -95,8 +94,6 @@ class Renderer:
         """Make a picture.
 
         Args:
-            state: What is to be seen.
-            camera: From where.
             timeout: Longest time to wait for the picture, s; starting the process does not count.
 
         Returns:
@@ -112,7 +109,6 @@ class Renderer:
         """Make what a camera in the robot's head gives.
 
         Args:
-            state: What is to be seen.
             shot: From where, in which colour space, and with which settings of the camera.
             timeout: Longest time to wait, s; starting the process does not count.
 
@@ -201,10 +197,6 @@ class Viewer:
     Attributes:
         on_pointer: Called in `show` with the line of sight through the mouse while its button is pressed, and with None
             when it is released.
-
-    Args:
-        world_name: Name or path of the world.
-        version: Robot version.
     """
 
     def __init__(self, world_name: str = "empty", version: str = "V6") -> None:

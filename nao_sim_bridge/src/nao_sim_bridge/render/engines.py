@@ -35,8 +35,6 @@ def open_engine(wanted: str, world: World, version: str) -> tuple[Engine, str | 
 
     Args:
         wanted: "opengl", "builtin", or "auto" for OpenGL where it can be had.
-        world: What it is to draw.
-        version: Robot version.
 
     Returns:
         It, and why it is not the better one; None if it is what was wanted.

@@ -23,10 +23,6 @@ class FilmCamera:
 
     Args:
         view: A name of a view; see `PRESETS`.
-        model: The robot.
-        width: Of the picture, pixels.
-        height: Of the picture, pixels.
-        supersampling: See `Camera`.
 
     Raises:
         UnknownName: There is no such view; when the first camera is asked for.
@@ -45,7 +41,6 @@ class FilmCamera:
 
         Args:
             time: Of the frame, s; rises from call to call.
-            state: What is to be seen.
         """
         if self._view not in PRESETS or PRESETS[self._view].follows != "body":
             return preset_camera(self._view, self._model, state, *self._size)

@@ -38,10 +38,6 @@ class Studio:
 
     Attributes:
         name: Of the engine, for people.
-
-    Args:
-        world: Floor, light, background and objects.
-        version: Robot version.
     """
 
     name = "the built-in renderer (PyBullet's TinyRenderer)"

@@ -21,8 +21,6 @@ class Window:
 
     Args:
         pipe: Where ("show", state) comes from; ("shown", None) and ("pointer", ray or None) go back.
-        world: Floor and objects.
-        version: Robot version.
 
     Raises:
         SimulationError: If the window does not open.

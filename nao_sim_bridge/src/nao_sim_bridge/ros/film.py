@@ -25,9 +25,6 @@ class RosFilm:
     """Begins and ends films.
 
     ROS API: services `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs).
-
-    Args:
-        server: The running simulator.
     """
 
     def __init__(self, server: SimulatorServer) -> None:

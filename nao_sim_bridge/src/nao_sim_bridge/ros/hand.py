@@ -29,7 +29,6 @@ class RosHand:
     ROS API: services `~touch`, `~release` (nao_library_msgs).
 
     Args:
-        server: The running simulator.
         private: What the names of its services begin with.
         stamp: ROS time of a time of the server's `now`, s.
     """

@@ -18,7 +18,6 @@ class RosHealth:
     ROS API: services `~plug_charger` (std_srvs/SetBool), `~set_battery` (nao_library_msgs/SetFloat; 0..1).
 
     Args:
-        server: The running simulator.
         private: What the names of its services begin with.
     """
 

@@ -47,7 +47,6 @@ class RosSide:
 
     Args:
         server: The running simulator; of several robots that of the first.
-        publish_clock: Whether to publish `/clock`.
         several: Several robots by name; empty for one that is alone.
     """
 

@@ -29,9 +29,6 @@ class RosSounds:
     """Places sounds and lets persons speak.
 
     ROS API: services `~place_sound`, `~move_sound`, `~remove_sound`, `~person_says` (nao_library_msgs).
-
-    Args:
-        server: The running simulator.
     """
 
     def __init__(self, server: SimulatorServer) -> None:

@@ -17,8 +17,6 @@ def success_service(
     """Offer a service that answers when what it begins has ended.
 
     Args:
-        name: Of the service.
-        kind: Its class.
         answer: Class of its answer, which has `success` and `message`; whatever else it has keeps its default.
         begin: Starts what a request asks for.
         when_killed: What to say when that was ended before its time.

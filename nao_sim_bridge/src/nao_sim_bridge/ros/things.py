@@ -38,9 +38,6 @@ class RosThings:
     """Places, moves and removes things.
 
     ROS API: services `~place_object`, `~move_object`, `~remove_object` (nao_library_msgs).
-
-    Args:
-        server: The running simulator.
     """
 
     def __init__(self, server: SimulatorServer) -> None:

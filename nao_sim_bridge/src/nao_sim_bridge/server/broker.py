@@ -36,9 +36,6 @@ class Broker:
     Attributes:
         name: Name that modules report as their broker.
         port: Port it listens on, known after `listen`.
-
-    Args:
-        name: See above.
     """
 
     def __init__(self, name: str = "nao_sim") -> None:

@@ -39,7 +39,6 @@ class FilmReport:
     """A film that is complete.
 
     Attributes:
-        path: The file.
         frames: How many pictures it has.
         duration: s.
         left_out: Frames that the computer was too slow for.
@@ -65,8 +64,7 @@ class Film:
         path: The file.
 
     Args:
-        simulation: What is filmed.
-        path: See above; one that is there is replaced.
+        path: The file; one that is there is replaced.
         view: A name of a view.
         size: Width and height, pixels.
         frame_rate: Pictures a second of simulated time.

@@ -28,9 +28,6 @@ class FilmControl:
     """Begins and ends films, one at a time. For any thread.
 
     Args:
-        simulation: What is filmed.
-        runner: Its thread.
-        files: Where clients may have files written to.
         engine: What draws; see `Renderer`.
     """
 

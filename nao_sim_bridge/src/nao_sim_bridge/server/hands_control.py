@@ -12,12 +12,7 @@ from nao_sim_bridge.naoqi.binding.arguments import number
 
 
 class HandsControl:
-    """Lets hands come and go.
-
-    Args:
-        simulation: Whose robot they touch.
-        runner: Its thread.
-    """
+    """Lets hands come and go."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation

@@ -15,12 +15,7 @@ COLDEST, HOTTEST = -40.0, 200.0
 
 
 class HealthControl:
-    """Changes what a user of a robot cannot: each task ends when it is done.
-
-    Args:
-        simulation: Whose robot it is; touched in the simulation thread only.
-        runner: That thread.
-    """
+    """Changes what a user of a robot cannot: each task ends when it is done."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation

@@ -27,7 +27,6 @@ class Pictures:
 
     Args:
         simulation: What to draw; only its published values are read.
-        runner: Its thread.
     """
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:

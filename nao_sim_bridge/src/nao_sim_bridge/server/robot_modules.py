@@ -61,8 +61,6 @@ class Workers:
         voice: Makes the robot's speech.
         persons: Makes the speech of persons: they may speak while the robot does.
         vision: Where detectors look at pictures.
-        recogniser: Recognises speech.
-        sounds: Reads sound files.
     """
 
     def __init__(self) -> None:
@@ -93,11 +91,9 @@ class RobotModules:
         speech, vision, video, film, sounds, things, hands, health: See `SimulatorServer`.
 
     Args:
-        options: How the robot is started.
         simulation: The robot and its world, at time 0.
         runner: The thread that it runs in, or will.
         broker: Finds modules of clients.
-        workers: See `Workers`.
         system: What ALSystem makes of the memory and the time zone.
     """
 

@@ -66,7 +66,6 @@ class SimulatorServer:
         ended: Set when a client shut the robot down or the simulation failed.
 
     Args:
-        options: How it is started.
         simulation: A robot in a world that is there already; None for one of its own.
         runner: The thread of that world.
         factory_reset: Makes that world, the one of this name, and all its robots anew.
@@ -286,10 +285,6 @@ class SimulatorServer:
 
     def take(self, robot: RobotModules, began: float) -> Callable[[], None]:
         """Be another robot from now on; simulation thread, which has just taken its simulation.
-
-        Args:
-            robot: Its modules.
-            began: Its `began`.
 
         Returns:
             To be called outside the thread: closes what was left behind, but for what draws.

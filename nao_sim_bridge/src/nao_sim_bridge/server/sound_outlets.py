@@ -37,7 +37,6 @@ class SoundFile:
     While the disk is full, it is silent.
 
     Args:
-        simulation: Whose loudspeakers.
         path: The file; one that is there is replaced in the end.
 
     Raises:

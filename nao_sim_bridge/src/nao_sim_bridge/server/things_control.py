@@ -24,8 +24,6 @@ class ThingsControl:
     """Places, moves and removes things.
 
     Args:
-        simulation: Whose world it is.
-        runner: Its thread.
         files: Where clients may have pictures read from.
     """
 
@@ -68,7 +66,6 @@ class ThingsControl:
         """Put a thing to another place.
 
         Args:
-            name: Of the thing.
             position: [x, y, z] in m over the floor; see `Things.move`.
             rpy: [roll, pitch, yaw] in rad; [] to keep it.
             duration: How long it is on its way, s of simulated time.

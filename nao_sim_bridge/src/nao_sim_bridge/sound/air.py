@@ -16,17 +16,10 @@ class Air:
     """What robots in one world hear of it and of each other.
 
     Attributes:
-        settings: Levels.
-        ids: Source of the tasks' numbers.
-        tick_s: Length of a tick, s.
         timeline: The clock of sound.
-        sources: Sounds in the world.
-        voices: Of the robots in the world.
         numbers: For the names of sounds that nobody named.
 
     Args:
-        ids: Source of the tasks' numbers.
-        tick_s: Length of a tick, s.
         settings: None for those of the file.
     """
 

@@ -49,11 +49,7 @@ class MicrophoneBlock:
 
 
 class Listener:
-    """Somebody who hears.
-
-    Attributes:
-        name: For the log.
-    """
+    """Somebody who hears."""
 
     def __init__(
         self,
@@ -93,8 +89,6 @@ class Ears:
     """Listeners and their thread, which runs as long as there are any.
 
     Args:
-        timeline: The clock.
-        microphones: What is heard.
         released: Called when time that waited need not wait any more.
         guard: Told of listeners that fail.
     """

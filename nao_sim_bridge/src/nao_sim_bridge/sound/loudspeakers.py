@@ -41,8 +41,6 @@ class Loudspeakers:
     """Both loudspeakers. Simulation thread, but for reading properties and `played`.
 
     Args:
-        timeline: The clock.
-        ids: Source of the tasks' numbers.
         volume: Of the start, 0..100.
     """
 
@@ -109,11 +107,9 @@ class Loudspeakers:
         Args:
             sound: One channel for both loudspeakers, or two for left and right; of more the first two count. A long
                 one should have RATE already: else it is converted here.
-            name: Name of the task.
             volume: Its own volume, 0..1.
             pan: -1 left, 0 both, 1 right.
             start: Where in the sound to begin, s.
-            loop: Again and again, until it is stopped.
             marks: (seconds, callback), called in the simulation thread when playing passes that place.
             after: Begin at the very frame at which this one will end as things are, so that they follow without a gap;
                 now when that is over, paused or a loop.

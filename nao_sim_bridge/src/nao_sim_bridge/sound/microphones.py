@@ -27,16 +27,6 @@ GUARD = 96
 class Microphones:
     """What the microphones hear. `heard` and `render` are for any thread, the rest for the simulation thread.
 
-    Args:
-        model: The robot.
-        settings: Levels and channels.
-        timeline: The clock.
-        loudspeakers: In the same head.
-        sources: In the world.
-        frames_per_tick: Length of a tick.
-        seed: Of the background noise.
-        others: Voices of the other robots.
-
     Raises:
         ConfigError: The settings name a microphone that the robot does not have.
     """

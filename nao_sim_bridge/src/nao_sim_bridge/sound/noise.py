@@ -15,11 +15,6 @@ class Background:
     """Noise of several channels, independent of each other.
 
     Each chunk is cut from the supply at a place of its own, so that nothing comes again at regular times.
-
-    Args:
-        seed: Of the noise.
-        rms: Its size.
-        channels: How many.
     """
 
     def __init__(self, seed: int, rms: float, channels: int = 4) -> None:

@@ -31,7 +31,6 @@ class PoseTrack:
     """Remembers torso and head of each tick. Written in the simulation thread, read in any.
 
     Args:
-        model: The robot.
         link: Link of the head, from which the neck is followed down to the torso.
         keep: Number of ticks that are remembered.
     """

@@ -44,7 +44,6 @@ class SoundReader:
         """The sound in a file, at its own rate and with its own channels; blocks until it is there.
 
         Args:
-            path: The file.
             longest: Longest sound allowed, s; that of a sound of a world when None.
 
         Raises:

@@ -12,19 +12,7 @@ from nao_sim_bridge.sound.timeline import Timeline
 
 
 class RobotVoice:
-    """The loudspeakers of a robot, heard from outside: half-way between the two. Any thread.
-
-    Attributes:
-        loudspeakers: What plays.
-
-    Args:
-        model: The robot.
-        settings: Levels.
-        timeline: The clock.
-        loudspeakers: Of the robot.
-        poses: Where its head is.
-        frames_per_tick: Length of a tick.
-    """
+    """The loudspeakers of a robot, heard from outside: half-way between the two. Any thread."""
 
     def __init__(
         self,

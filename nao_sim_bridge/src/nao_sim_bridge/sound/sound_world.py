@@ -18,17 +18,10 @@ class SoundWorld:
     """What sounds and what is heard. It stays at a reset of the simulation, which ends everything that plays.
 
     Attributes:
-        settings: Levels.
-        loudspeakers: Of the robot.
         sources: Sounds in the world, which other robots may hear, too.
-        microphones: Of the robot.
-        ears: Listeners.
-        timeline: The clock of sound.
         numbers: For the names of sounds of the world that nobody named.
 
     Args:
-        model: The robot.
-        air: Around it.
         seed: Of the background noise.
         released: Called when time that waited for ears need not wait any more.
     """

@@ -39,11 +39,9 @@ class SoundSource:
     """A sound at a place in the world. Best made outside the simulation thread: a long sound takes a moment.
 
     Attributes:
-        name: Its name.
         position: In world, m.
         sound: What sounds; becomes one channel at RATE.
         level_db: Level at 1 m, dB SPL, of its loud parts (root mean square).
-        loop: Begin again at the end.
         start: Where in the sound to begin, s.
         loudness: Root mean square of the sound's loud parts.
     """
@@ -66,12 +64,10 @@ class Stint:
     """A time at one place, or on one way without jumps.
 
     Attributes:
-        places: Where it is.
         presence: 0..1: 1 while the source is here.
 
     Args:
         position: First place in world, m.
-        presence: At first.
     """
 
     def __init__(self, position: Position, presence: float) -> None:
@@ -88,7 +84,6 @@ class SourcePlaying(Playing):
     """A source that sounds.
 
     Attributes:
-        name: Its name.
         stints: Where it is and was, one after the other.
     """
 
@@ -147,13 +142,7 @@ class SourcePlaying(Playing):
 
 
 class Sources:
-    """All sounds of the world. Simulation thread, but for `names` and `sounding`.
-
-    Args:
-        timeline: The clock.
-        ids: Source of the tasks' numbers.
-        settings: Levels.
-    """
+    """All sounds of the world. Simulation thread, but for `names` and `sounding`."""
 
     def __init__(self, timeline: Timeline, ids: TaskIds, settings: SoundSettings) -> None:
         self._timeline = timeline

@@ -49,7 +49,6 @@ class Timeline:
 
     Args:
         keep: How long the past is kept, s.
-        guard: Does what is due.
     """
 
     def __init__(self, keep: float, guard: Guard) -> None:

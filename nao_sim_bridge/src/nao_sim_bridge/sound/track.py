@@ -31,7 +31,6 @@ class Track:
 
     Args:
         samples: (frames, channels) of the sound.
-        loop: Whether it begins again at its end.
     """
 
     def __init__(self, samples: np.ndarray, loop: bool) -> None:

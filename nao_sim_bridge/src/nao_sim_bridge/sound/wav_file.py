@@ -23,7 +23,6 @@ class WavFile:
     Args:
         path: Where; a file that is there is replaced when this one is closed.
         rate: Samples a second.
-        channels: Their number.
     """
 
     def __init__(self, path: Path, rate: int, channels: int) -> None:
@@ -83,13 +82,7 @@ class WavFile:
 
 
 class OggFile:
-    """An Ogg Vorbis file.
-
-    Args:
-        path: Where; a file that is there is replaced when this one is closed.
-        rate: Samples a second.
-        channels: Their number.
-    """
+    """An Ogg Vorbis file."""
 
     def __init__(self, path: Path, rate: int, channels: int) -> None:
         self._target = WholeFile(path)

@@ -103,12 +103,7 @@ def _libsndfile(file: BinaryIO) -> Iterator[Any]:
 
 
 class _From:
-    """A file from a byte on: in the tags before it FFmpeg would look for pictures, and decode them.
-
-    Args:
-        file: The file.
-        begin: The byte.
-    """
+    """A file from a byte on: in the tags before it FFmpeg would look for pictures, and decode them."""
 
     def __init__(self, file: BinaryIO, begin: int) -> None:
         self.read = file.read

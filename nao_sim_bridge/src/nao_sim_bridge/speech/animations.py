@@ -38,7 +38,6 @@ class Animation:
     Attributes:
         name: NAOqi's path, for example "animations/Stand/Gestures/Hey_1".
         length: s.
-        tags: What it is for.
         joints: Key frames by name of the joint; arms, hands and head only.
     """
 
@@ -51,7 +50,6 @@ class Animation:
         """The way of a joint.
 
         Args:
-            joint: Its name.
             start: Where it is, rad.
             home: Where it began and ends, rad.
             stretch: Factor of all times.
@@ -67,7 +65,6 @@ class AnimationLibrary:
     """The animations that a robot knows, their tags, and the words that call for a tag. Any thread.
 
     Attributes:
-        animations: By name.
         body_language: Tag of those that go with any text.
         words: Word or words in lower case -> tags.
     """

@@ -29,9 +29,6 @@ class Animator:
 
     Where a joint was before it was first moved is its home; a gesture that begins while another one is under way, or
     on its way back, ends there, too.
-
-    Args:
-        simulation: Whose robot it is.
     """
 
     def __init__(self, simulation: Any) -> None:
@@ -63,7 +60,6 @@ class Animator:
         """Begin with an animation, at once or as soon as its joints are free.
 
         Args:
-            animation: What.
             length: How long it takes, s; as it is made when None.
 
         Returns:

@@ -33,9 +33,7 @@ class Style:
     """How everything of one text is spoken.
 
     Attributes:
-        voice: Who speaks.
         prosody: How, where no tag says otherwise.
-        double: The second voice.
         pronunciations: What is spoken instead of what is written.
         volume: 0 to 1, of the loudspeakers.
     """
@@ -68,7 +66,6 @@ class Clip:
     """A sentence as sound.
 
     Attributes:
-        text: The sentence.
         sound: One channel.
         marks: (s from its beginning, what comes there), in rising order.
     """
@@ -85,11 +82,7 @@ class Clip:
 
 
 class ClipMaker:
-    """Makes clips. Any thread may ask.
-
-    Args:
-        engine: Who makes the sound of the words.
-    """
+    """Makes clips. Any thread may ask."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine

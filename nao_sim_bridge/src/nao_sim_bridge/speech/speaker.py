@@ -40,7 +40,6 @@ class SpeechEvent:
     Attributes:
         kind: One of the words above. A text is enqueued and started, has sentences, words and bookmarks, and is at
             last done, stopped, or thrown because it cannot be said.
-        task_id: Number of the text.
         value: The `Clip` of the sentence, the `SpokenWord`, the number of the bookmark; None for the others.
     """
 
@@ -69,10 +68,6 @@ class Speaker:
 
     Attributes:
         listeners: Called with every `SpeechEvent`.
-
-    Args:
-        simulation: In whose loudspeakers and time it speaks.
-        studio: Who makes the sound.
     """
 
     def __init__(self, simulation: Any, studio: Studio) -> None:
@@ -90,7 +85,6 @@ class Speaker:
 
         Args:
             items: See `Studio.read`.
-            style: How.
             name: NAOqi name of the call.
 
         Returns:

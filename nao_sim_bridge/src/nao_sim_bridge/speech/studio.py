@@ -44,7 +44,6 @@ class Studio:
 
     Attributes:
         engines: Who speaks.
-        tags: Reads texts.
         released: Called when a sentence is there that may have been waited for.
 
     Args:

@@ -74,11 +74,7 @@ Piece = Union[Spoken, Pause, Bookmark, Cue, Gate]
 
 
 class TagReader:
-    """Reads texts; says once of each tag that it is left out.
-
-    Args:
-        warn: Where it says that.
-    """
+    """Reads texts; says once of each tag that it is left out."""
 
     def __init__(self, warn: Callable[[str], None] = log.warning) -> None:
         self._warn = warn
@@ -88,7 +84,6 @@ class TagReader:
         """Pieces of a text in their order.
 
         Args:
-            text: With tags.
             prosody: How it is spoken where no tag says otherwise.
         """
         return list(_Reading(self, prosody).pieces(text))

@@ -54,8 +54,6 @@ class Voices:
     """All languages and voices that the robot knows, installed or not.
 
     Attributes:
-        languages: By name.
-        voices: By name.
         default_language: What the robot speaks at the start.
     """
 

@@ -35,7 +35,6 @@ class GoalRun:
 
     Args:
         client: Client of a server that is there.
-        goal: The goal message.
     """
 
     def __init__(self, client: actionlib.SimpleActionClient, goal: Any) -> None:

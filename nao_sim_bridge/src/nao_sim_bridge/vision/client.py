@@ -140,7 +140,6 @@ class RemoteDetector:
     When the process dies at work, the detector is made again in a new one and the same work is asked for again, once.
 
     Attributes:
-        name: Which detector.
         arguments: Gives the arguments of its constructor.
         key: What the process knows it by.
         home: The process in which it is; belongs to VisionProcess, as the next.

@@ -39,10 +39,6 @@ class Detector(Protocol):
 def make_detector(name: str, arguments: tuple = ()) -> Detector:
     """A new detector.
 
-    Args:
-        name: A key of `DETECTORS`.
-        arguments: Of its constructor.
-
     Raises:
         UnknownName: There is none of this name.
     """

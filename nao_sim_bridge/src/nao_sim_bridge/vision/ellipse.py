@@ -56,9 +56,6 @@ class Ellipse:
         """(2,) each: where in the unit circle the middle of a circle is seen that looks like this.
 
         There are two circles in space that do, slanted to opposite sides, and the edge does not tell which it is.
-
-        Args:
-            lens: Of the picture.
         """
         # The directions to the edge are a cone; the circles are cuts through it. Source: the eigenvectors of a cone
         # give the two planes that cut it in circles, and the middle is the pole of their line at infinity.

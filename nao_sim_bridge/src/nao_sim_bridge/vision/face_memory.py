@@ -69,7 +69,6 @@ class FaceMemory:
         """Take people of another memory in.
 
         Args:
-            other: The other one.
             policy: What happens to somebody who is known already: "overwrite" takes the pictures of the other memory
                 instead, "merge" has both, "keep" changes nothing.
         """

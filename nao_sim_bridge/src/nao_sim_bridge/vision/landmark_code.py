@@ -38,12 +38,7 @@ class Reading:
 
 
 class LandmarkCode:
-    """Compares the fans of a disc with those of all marks in all rotations.
-
-    Args:
-        marks: Which there are.
-        settings: How alike they have to be.
-    """
+    """Compares the fans of a disc with those of all marks in all rotations."""
 
     def __init__(self, marks: Landmarks, settings: LandmarkSettings) -> None:
         self._settings = settings
@@ -65,7 +60,6 @@ class LandmarkCode:
         Args:
             grey: (h, w) uint8.
             ellipse: Edge of the disc.
-            lens: Of the picture.
         """
         # Which end of a slanted disc is nearer cannot be told from its edge.
         both = [slant if np.linalg.norm(slant) >= LEAST_SLANT else None for slant in ellipse.slants(lens)]

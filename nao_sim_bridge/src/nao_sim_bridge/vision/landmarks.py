@@ -33,7 +33,6 @@ class Landmark:
     """A landmark in a picture.
 
     Attributes:
-        number: Of the mark.
         alpha: Direction of its middle seen from above, rad, positive to the left.
         beta: Direction of its middle seen from the side, rad, positive downwards.
         width: Angle from its left to its right end, rad.

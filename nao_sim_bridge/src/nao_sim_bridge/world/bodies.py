@@ -26,10 +26,6 @@ class WorldBodies:
         ids: PyBullet's body ids by name; `floor` is among them.
         placed: Things that were added to those of the world.
         gone: Names of things of the world that were taken away.
-
-    Args:
-        world: What is there to begin with.
-        client: PyBullet's physics client.
     """
 
     def __init__(self, world: World, client: int) -> None:

@@ -25,8 +25,6 @@ def build_world(world: World, client: int, visual: bool) -> dict[str, int]:
     """Put the floor and all objects into a PyBullet world.
 
     Args:
-        world: What to build.
-        client: PyBullet's physics client.
         visual: Make something to look at and nothing to touch (pictures), or the other way round (physics).
 
     Returns:

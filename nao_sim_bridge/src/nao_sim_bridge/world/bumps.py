@@ -24,10 +24,6 @@ THROWS = 50
 def read_bumps(entry: Any, where: str) -> tuple[Shape, ...]:
     """Boxes that lie on the floor, in its frame; they may overlap.
 
-    Args:
-        entry: The entry `bumps` of a world file.
-        where: File and place for error texts.
-
     Raises:
         WorldError: If a key is wrong, unknown or missing, or the area leaves no room.
     """

@@ -40,14 +40,6 @@ def number(
 ) -> float:
     """A number of an entry.
 
-    Args:
-        entry: What the file holds.
-        key: Where the number is in it.
-        where: Place of the entry, for error texts.
-        default: The number where there is no such key.
-        lowest: The least it may be.
-        highest: The most it may be.
-
     Raises:
         WorldError: It is no number, or out of these limits.
     """

@@ -75,8 +75,6 @@ def read_object(entry: Any, where: str, files: Callable[[str], Path]) -> WorldOb
     """A thing from its entry.
 
     Args:
-        entry: What the file holds.
-        where: Place for error texts.
         files: From the name of a file that the entry has to its path.
 
     Raises:

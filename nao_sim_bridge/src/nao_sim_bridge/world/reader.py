@@ -41,9 +41,6 @@ def read_world(content: Any, name: str, where: str, folder: Path | None = None) 
     """A world from the content of its file.
 
     Args:
-        content: What the file holds.
-        name: Of the world.
-        where: File name for error texts.
         folder: Where the file is: files that it names are beside it.
 
     Raises:

@@ -59,8 +59,6 @@ class Camera:
         target: What it looks at, m.
         up: Direction that is up in the picture.
         fov: Vertical field of view, rad.
-        width: Of the picture, in pixels.
-        height: Of the picture, in pixels.
         supersampling: 1 is fastest; 2 draws four pixels for each and has smooth edges.
         shadows: Whether things throw shadows; a third faster without.
     """
@@ -124,11 +122,6 @@ def preset_camera(
 
     Args:
         name: One of `PRESETS`.
-        model: The robot.
-        state: Where it is.
-        width: Of the picture, in pixels.
-        height: Of the picture, in pixels.
-        supersampling: See `Camera`.
 
     Raises:
         UnknownName: If there is no such view.

@@ -44,7 +44,6 @@ class WorldSound:
         voice: Who says the text; empty for the voice that the robot has at the start.
         level_db: At 1 m, dB SPL.
         start: When it begins, s after the start or a reset.
-        loop: Again and again.
         pause: Silence between repetitions, s.
         duration: Of a tone or noise, s; None when it does not end.
     """

@@ -16,9 +16,7 @@ def visual_shape(mesh: Mesh, color: Sequence[float], client: int) -> int:
     """A visual shape of PyBullet; its own spheres and cylinders are a few dozen flat triangles.
 
     Args:
-        mesh: What it looks like.
         color: (r, g, b) in 0..1.
-        client: PyBullet's physics client.
 
     Returns:
         Id of the shape, for `createMultiBody`.

@@ -147,7 +147,6 @@ class WorldObject:
         rpy: Of its frame in that of the floor, rad.
         parts: What is to be seen of it.
         mass: kg; 0 is immovable.
-        friction: Coefficient.
         rolling_friction: m; keeps balls from rolling for ever.
         restitution: 0..1.
         body: What is to be felt of it, of the kinds that the physics knows; None for the shapes of its parts.
@@ -180,11 +179,6 @@ class World:
     Attributes:
         name: File name without ending.
         description: One line for people.
-        floor: The floor.
-        light: The light of the pictures.
-        background: Colours behind everything.
-        objects: Everything else.
-        sounds: What is to be heard.
         robots: Where the robots start, the first one first; others stand where they are told to.
     """
 

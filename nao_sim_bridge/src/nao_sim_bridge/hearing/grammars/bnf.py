@@ -68,7 +68,6 @@ class Group:
     """Alternatives, each a row of parts; said so many times.
 
     Attributes:
-        alternatives: Rows of parts.
         least: How often at least.
         most: How often at most; None for any number.
     """
@@ -83,11 +82,9 @@ class BnfGrammar:
     """A grammar file.
 
     Attributes:
-        name: As the file gives it.
         start: Rules that may be said as a whole.
         activatable: Rules that may be switched off.
         slots: Rules that are filled later.
-        rules: What each rule is.
     """
 
     name: str = ""

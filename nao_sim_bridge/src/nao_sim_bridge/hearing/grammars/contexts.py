@@ -23,10 +23,8 @@ class Context:
     """A grammar in use. Never changed: every change makes another one.
 
     Attributes:
-        bnf: The grammar file.
         inactive: Rules that are switched off.
         slots: Words of the slots that have been filled.
-        parameters: Numbers by name.
     """
 
     bnf: BnfGrammar

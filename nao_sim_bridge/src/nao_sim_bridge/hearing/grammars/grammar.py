@@ -54,7 +54,6 @@ class Repeat:
     """A part, several times.
 
     Attributes:
-        part: The part.
         least: How often at least.
         most: How often at most; None for any number of times.
     """
@@ -84,7 +83,6 @@ def vocabulary(name: str, phrases: Iterable[str], word_spotting: bool = False) -
     """A grammar of whole phrases.
 
     Args:
-        name: Of the grammar.
         phrases: As a client writes them; each is heard as written.
         word_spotting: Find them inside of longer speech too; then "<...> phrase <...>" is heard. Words of two or three
             sounds ("no", "two") are often missed there, so that they are not found in all that sounds like them.

@@ -17,9 +17,6 @@ class Canvas:
     """A picture of one size.
 
     Args:
-        context: Of moderngl.
-        width: Pixels.
-        height: Pixels.
         samples: Points of each pixel that edges are drawn for.
     """
 
@@ -56,11 +53,7 @@ class Canvas:
 
 
 class Canvases:
-    """One canvas a size; the last few are kept.
-
-    Args:
-        context: Of moderngl.
-    """
+    """One canvas a size; the last few are kept."""
 
     def __init__(self, context: Any) -> None:
         self._context = context
@@ -70,8 +63,6 @@ class Canvases:
         """A canvas.
 
         Args:
-            width: Pixels.
-            height: Pixels.
             fineness: 1 for one sample a pixel; more for smooth edges.
         """
         samples = SAMPLES if fineness > 1 and width * height <= MANY_PIXELS else 0

@@ -47,10 +47,6 @@ class OpenGLEngine:
     Attributes:
         name: What draws, for people.
 
-    Args:
-        world: Floor, light, background and objects.
-        version: Version of all robots.
-
     Raises:
         SimulationError: OpenGL cannot be had here.
     """

@@ -53,13 +53,6 @@ class Items:
         of_head: (n,) whether it belongs to the head of the robot itself.
         pictures: (n,) number of the picture on it, -1 for none.
         picture_list: The pictures by number.
-
-    Args:
-        world: Floor and objects.
-        placed: What was added.
-        robots: How many robots there are.
-        model: The robot.
-        appearance: Its looks.
     """
 
     def __init__(

@@ -20,8 +20,6 @@ class RobotRows:
     """The rows of one robot; what has not changed is not worked out again.
 
     Args:
-        model: The robot.
-        appearance: Its looks.
         looks: Of its items.
         items: Their numbers.
     """

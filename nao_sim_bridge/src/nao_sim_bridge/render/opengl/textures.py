@@ -14,11 +14,7 @@ ANISOTROPY = 4.0
 
 
 class Textures:
-    """Textures by what is on them.
-
-    Args:
-        context: Of moderngl.
-    """
+    """Textures by what is on them."""
 
     def __init__(self, context: Any) -> None:
         self._context = context

@@ -50,9 +50,6 @@ class Figure:
         lamp_light: (51, 3) light that each lamp gives, (r, g, b) in 0..1.
 
     Args:
-        client: PyBullet's physics client.
-        model: The robot.
-        appearance: Its looks.
         paint_lamps: Change the colour of lamp bodies in the engine. A window needs it; pictures light them up
             later.
     """
@@ -77,12 +74,7 @@ class Figure:
         self._shown = None
 
     def show(self, state: RobotLook, headless: bool = False) -> None:
-        """Put all bodies where the state says; what has not changed is left alone.
-
-        Args:
-            state: The robot.
-            headless: Leave the head out.
-        """
+        """Put all bodies where the state says; what has not changed is left alone."""
         shown = self._shown
         if headless != self._headless:
             shown, self._headless = None, headless

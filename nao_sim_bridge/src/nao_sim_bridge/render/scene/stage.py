@@ -41,9 +41,6 @@ class Stage:
         figures: The robots; the first is the robot itself.
 
     Args:
-        world: Floor and objects.
-        version: Version of all robots.
-        client: PyBullet's physics client.
         floor: Whether the floor is one of the bodies.
         paint_lamps: See `Figure`.
     """
@@ -65,7 +62,6 @@ class Stage:
         """Put everything where the state says; what has not changed is left alone.
 
         Args:
-            state: What is to be seen.
             headless: Leave out the head of the robot itself.
 
         Raises:

@@ -29,8 +29,6 @@ class View:
         eye: (3,) in world, m.
         axes: (3, 3) rows: to the right, upwards, and forward along the optical axis; unit vectors in world.
         tangents: Of half the horizontal and half the vertical field of view.
-        width: Of the picture, in pixels.
-        height: Of the picture, in pixels.
         samples: Rays along each edge of a pixel.
         shadows: Whether things throw shadows.
         from_head: The robot's own camera: its head is not drawn, for it would be in the way.

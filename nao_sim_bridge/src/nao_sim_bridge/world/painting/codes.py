@@ -17,7 +17,6 @@ def paint_code(form: str, content: str) -> np.ndarray:
 
     Args:
         form: `QRCode`, `EAN13` or `Code128`.
-        content: What it says.
 
     Raises:
         ValueError: The content does not fit into such a code.
