@@ -99,7 +99,6 @@ class Cameras:
         self._snapshot, self._seed, self._began = snapshot, seed, snapshot.tick
 
     def tick(self, snapshot: Snapshot) -> None:
-        """A tick has passed."""
         self._snapshot = snapshot
         if snapshot.tick >= self._next_tick:
             with self.lock:
@@ -176,11 +175,9 @@ class Cameras:
 
     @property
     def streams(self) -> tuple[CameraStream, ...]:
-        """Those who look."""
         return self._streams
 
     def optics(self, camera: int) -> CameraOptics:
-        """Field of view of a camera."""
         return self._places.optics[self.tables.camera(camera)]
 
     def rate(self, camera: int) -> float:
@@ -233,7 +230,6 @@ class Cameras:
             self._parameters[camera] = values
 
     def reset_parameters(self, camera: int) -> None:
-        """Put all parameters of a camera to their defaults."""
         with self.lock:
             self._parameters[self.tables.camera(camera)] = self.tables.defaults
             self._chosen[camera] = self._nothing_chosen()
@@ -243,7 +239,6 @@ class Cameras:
         return bool(self._parameters[self.tables.camera(camera)].get(KEEP_ALIVE, 0))
 
     def stopped(self, camera: int) -> bool:
-        """Whether a camera has been stopped."""
         return self._stopped[self.tables.camera(camera)]
 
     def set_stopped(self, camera: int, stopped: bool) -> None:

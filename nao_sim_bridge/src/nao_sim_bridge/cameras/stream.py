@@ -161,7 +161,6 @@ class CameraStream:
 
     @property
     def closed(self) -> bool:
-        """Whether it has been closed."""
         return self._closed
 
     @property
@@ -238,12 +237,10 @@ class CameraStream:
 
     @property
     def size(self) -> Resolution:
-        """Of its pictures."""
         return self._resolution
 
     @property
     def pixels(self) -> ColorSpace:
-        """How its pictures are written."""
         return self._color_space
 
     @property

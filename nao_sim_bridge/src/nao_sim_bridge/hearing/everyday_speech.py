@@ -37,7 +37,6 @@ class Piece:
 
     @property
     def frames(self) -> int:
-        """How many frames it has."""
         return self.end - self.start + 1
 
 

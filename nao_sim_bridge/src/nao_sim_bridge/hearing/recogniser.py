@@ -74,7 +74,6 @@ class SpareProcess:
         process.stop()
 
     def close(self) -> None:
-        """End it."""
         with self._lock:
             self._closed = True
         process = self.take()

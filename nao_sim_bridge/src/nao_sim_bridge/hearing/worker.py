@@ -43,7 +43,6 @@ class Ear:
         self._activity.sensitivity = listening.sensitivity
 
     def background(self, samples: Any) -> None:
-        """Get used to what was heard before it listens."""
         self._activity.get_used_to(samples)
 
     def hear(self, content: Any) -> list[SpeechChange | Recognised]:

@@ -247,7 +247,6 @@ class Viewer:
             raise RenderError(f"window: {self._worker.last_words()}") from error
 
     def close(self) -> None:
-        """Close the window."""
         if self._worker is not None:
             self._worker.stop()
             self._worker = None

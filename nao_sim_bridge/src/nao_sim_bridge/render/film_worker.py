@@ -54,7 +54,6 @@ class _Film:
         self._states = StateReceiver()
 
     def frame(self, content: Any) -> None:
-        """Draw a state."""
         from nao_sim_bridge.render.scene.view import View
 
         time, packed = content
@@ -62,14 +61,12 @@ class _Film:
         self.file.picture(self._drawing.draw(state, View.of_camera(self._camera.at(time, state))), time)
 
     def sound(self, content: Any) -> None:
-        """Add sound."""
         import numpy as np
 
         first, samples = content
         self.file.sound(np.frombuffer(samples, np.int16).reshape(-1, 2), first)
 
     def caption(self, text: str) -> None:
-        """Change the caption."""
         self.file.caption = text
 
 

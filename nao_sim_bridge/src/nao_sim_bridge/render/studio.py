@@ -53,7 +53,6 @@ class Studio:
         self._shadow_of: tuple = ()
 
     def close(self) -> None:
-        """Free the engine."""
         pybullet.disconnect(physicsClientId=self._client)
 
     def draw(self, state: RenderState, view: View) -> np.ndarray:

@@ -19,7 +19,6 @@ class StateSender:
         self._sent: Placed = ()
 
     def pack(self, state: RenderState) -> Packed:
-        """What to send."""
         placed = state.placed
         if placed is self._sent:
             return replace(state, placed=()), None

@@ -76,7 +76,6 @@ class RosSide:
         rospy.on_shutdown(self.close)  # topics close next
 
     def close(self) -> None:
-        """Stop publishing."""
         self._closing.set()
         self._thread.join(1.0)
 

@@ -12,8 +12,6 @@ from nao_sim_bridge.naoqi.binding.arguments import number
 
 
 class HandsControl:
-    """Lets hands come and go."""
-
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation
         self._runner = runner

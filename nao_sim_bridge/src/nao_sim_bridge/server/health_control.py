@@ -22,7 +22,6 @@ class HealthControl:
         self._runner = runner
 
     def plug_charger(self, plugged: bool) -> Task:
-        """Plug the charger in, or pull it."""
         return self._run(lambda: self._simulation.robot.power.battery.plug(bool(plugged)), "plugCharger")
 
     def set_battery_charge(self, charge: float) -> Task:
@@ -66,7 +65,6 @@ class HealthControl:
         return self._run(lambda: self._simulation.robot.faults.repair(name), "repairDevice")
 
     def devices(self) -> list[str]:
-        """Names of all devices that can break."""
         return list(self._simulation.robot.faults.known)
 
     def _run(self, change: Callable[[], None], name: str) -> Task:

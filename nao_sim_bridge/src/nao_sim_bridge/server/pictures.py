@@ -87,7 +87,6 @@ class Pictures:
         threading.Thread(target=self._mirror, args=(self._viewer,), name="window", daemon=True).start()
 
     def close(self) -> None:
-        """Close the window."""
         self._closing.set()
         if self._viewer is not None:
             self._viewer.close()

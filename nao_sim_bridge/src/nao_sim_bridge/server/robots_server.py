@@ -60,7 +60,6 @@ class RobotsServer:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the robots."""
         return tuple(server.options.name for server in self.servers)
 
     def start(self) -> None:

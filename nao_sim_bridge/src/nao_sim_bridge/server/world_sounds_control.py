@@ -64,12 +64,10 @@ class WorldSoundsControl:
         return self._runner.execute(lambda: self._simulation.sound.sources.add(source), "addSound").then(lambda _: None)
 
     def move(self, name: str, position: Sequence[float]) -> Task:
-        """Put a sound to another place."""
         place = _position(position)
         return self._runner.execute(lambda: self._simulation.sound.sources.move(name, place), "moveSound")
 
     def remove(self, name: str) -> Task:
-        """Silence a sound."""
         return self._runner.execute(lambda: self._simulation.sound.sources.remove(name), "removeSound")
 
     def places(self) -> Task:

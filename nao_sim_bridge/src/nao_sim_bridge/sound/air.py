@@ -42,7 +42,6 @@ class Air:
         self.timeline.tick(round(tick * self.tick_s * RATE))
 
     def stop_all(self) -> None:
-        """End everything that sounds."""
         for voice in self.voices:
             voice.loudspeakers.stop_all()
         self.sources.clear()

@@ -49,8 +49,6 @@ class MicrophoneBlock:
 
 
 class Listener:
-    """Somebody who hears."""
-
     def __init__(
         self,
         ears: Ears,
@@ -117,7 +115,6 @@ class Ears:
 
     @property
     def listening(self) -> bool:
-        """Whether anybody listens."""
         return bool(self._listeners)
 
     def holds(self) -> bool:
@@ -213,7 +210,6 @@ class Ears:
                 raise TimeoutError(f"ears have not caught up within {timeout} s; they are {self.lag:.1f} s behind")
 
     def close(self) -> None:
-        """End of all listeners."""
         with self._news:
             for listener in self._listeners:
                 listener.closed = True

@@ -17,8 +17,6 @@ from nao_sim_bridge.sound.track import RAMP
 
 
 class SpeakerPlaying(Playing):
-    """A sound that plays in the loudspeakers."""
-
     def __init__(self, volume: float, pan: float, *args, **options) -> None:
         self.volume, self.pan = _volume(volume), _pan(pan)
         super().__init__(*args, gains=self._sides(), **options)
@@ -133,7 +131,6 @@ class Loudspeakers:
         return player
 
     def stop_all(self) -> None:
-        """Silence at once."""
         for player in self.playing:
             player.stop()
 

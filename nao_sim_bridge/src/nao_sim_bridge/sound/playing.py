@@ -68,7 +68,6 @@ class Playing:
 
     @property
     def paused(self) -> bool:
-        """Whether it is paused."""
         return self._resting is not None and not self.task.finished
 
     @property

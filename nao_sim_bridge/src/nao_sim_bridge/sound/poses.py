@@ -43,7 +43,6 @@ class PoseTrack:
         self._first = self._began = 0
 
     def record(self, tick: int, snapshot: Snapshot) -> None:
-        """Remember where the head is at a tick."""
         torso, angles = snapshot.torso, snapshot.positions
         if not self._poses:
             self._first = self._began = tick
@@ -53,7 +52,6 @@ class PoseTrack:
             self._first += 1
 
     def knows(self, tick: int) -> bool:
-        """Whether it remembers that tick."""
         return tick in self._poses
 
     def at(self, first: int, last: int) -> HeadPoses:

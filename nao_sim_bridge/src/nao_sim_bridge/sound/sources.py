@@ -158,7 +158,6 @@ class Sources:
         return self._all
 
     def names(self) -> list[str]:
-        """Names of those that there are."""
         return [name for name, source in list(self._by_name.items()) if not source.ended]
 
     def get(self, name: str) -> SourcePlaying:
@@ -200,7 +199,6 @@ class Sources:
         self.get(name).stop()
 
     def clear(self) -> None:
-        """Remove all."""
         for name in self.names():
             self.remove(name)
 

@@ -34,7 +34,6 @@ class Alarm:
         return self._frame if self._call is not None else None
 
     def work(self, frame: int) -> None:
-        """Call, if it is time."""
         if self._call is not None and frame >= self._frame:
             call, self._call = self._call, None
             call()

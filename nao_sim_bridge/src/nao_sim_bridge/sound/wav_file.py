@@ -98,6 +98,5 @@ class OggFile:
         self._target.flush()
 
     def close(self) -> None:
-        """End the file; see `WholeFile.close`."""
         self._file.close()
         self._target.close()

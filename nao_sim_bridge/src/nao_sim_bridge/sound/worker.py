@@ -111,12 +111,10 @@ class _From:
         self._begin = begin
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """As files have it."""
         self._file.seek(offset + self._begin if whence == os.SEEK_SET else offset, whence)
         return self.tell()
 
     def tell(self) -> int:
-        """As files have it."""
         return self._file.tell() - self._begin
 
 

@@ -91,22 +91,18 @@ class AnimationLibrary:
         )
 
     def tagged(self, tag: str) -> list[Animation]:
-        """Animations of a tag."""
         return [self.animations[name] for name in self._tags.get(tag.strip().lower(), ()) if name in self.animations]
 
     def of_word(self, word: str) -> list[Animation]:
-        """Animations that go with a word."""
         return [animation for tag in self.words.get(word.lower(), ()) for animation in self.tagged(tag)]
 
     def add(self, animations: Iterable[Animation]) -> None:
-        """Know more animations."""
         for animation in animations:
             self.animations[animation.name] = animation
             for tag in animation.tags:
                 self.add_tag(tag, [animation.name])
 
     def add_tag(self, tag: str, names: Sequence[str]) -> None:
-        """Give animations a tag."""
         known = self._tags.setdefault(tag.strip().lower(), [])
         known.extend(name for name in names if name not in known)
 

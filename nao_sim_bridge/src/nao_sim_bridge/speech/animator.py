@@ -47,11 +47,9 @@ class Animator:
 
     @property
     def busy(self) -> bool:
-        """Whether an animation runs."""
         return any(move.animation is not None for move in self._moves.values())
 
     def running(self, animation: Animation) -> Task | None:
-        """The task of an animation that runs."""
         return next((task for task, move in self._moves.items() if move.animation is animation), None)
 
     # --- moving ---------------------------------------------------------------------------------------------------

@@ -22,11 +22,9 @@ class Pronunciations:
         return Pronunciations((*self.without(word).entries, (word, spoken)))
 
     def without(self, word: str) -> Pronunciations:
-        """These without one word's."""
         return Pronunciations(tuple(entry for entry in self.entries if entry[0].lower() != word.lower()))
 
     def knows(self, word: str) -> bool:
-        """Whether a word has an entry."""
         return any(entry[0].lower() == word.lower() for entry in self.entries)
 
     def spoken(self, text: str) -> tuple[str, list[tuple[int, int]]]:

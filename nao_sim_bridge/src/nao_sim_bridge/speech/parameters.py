@@ -90,14 +90,12 @@ def defaults() -> dict[str, float]:
 
 
 def prosody_of(values: Mapping[str, float]) -> Prosody:
-    """How a voice speaks with these parameters."""
     pitch = (values["pitchShift"] or 1.0) * values["pitch"] / 100.0
     gain = values["volume"] / RANGES["volume"][2]
     return limited(Prosody(values[SPEED] / 100.0, pitch, gain))
 
 
 def double_voice_of(values: Mapping[str, float]) -> DoubleVoice:
-    """The second voice with these parameters."""
     return DoubleVoice(values["doubleVoice"], values["doubleVoiceLevel"], values["doubleVoiceTimeShift"])
 
 

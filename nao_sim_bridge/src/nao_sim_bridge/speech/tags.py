@@ -36,8 +36,6 @@ BREAK, NO_BREAK = "\ue000", "\ue001"
 
 @dataclass(frozen=True)
 class Spoken:
-    """Text to speak."""
-
     text: str
     prosody: Prosody
 

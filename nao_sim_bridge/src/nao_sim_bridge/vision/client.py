@@ -107,7 +107,6 @@ class VisionProcess:
         raise AssertionError("the second round returns or raises")
 
     def forget(self, detector: RemoteDetector) -> None:
-        """Drop a detector."""
         with self._lock:
             process = self._process
             if process is None or process is not detector.home:

@@ -25,8 +25,6 @@ class _Track:
 
 
 class Tracks:
-    """The faces in view."""
-
     def __init__(self) -> None:
         self._tracks: list[_Track] = []
         self._count = 0

@@ -24,15 +24,12 @@ class Detectors:
         self._detectors: dict[int, Detector] = {}
 
     def open(self, key: int, name: str, arguments: tuple) -> None:
-        """Make a detector."""
         self._detectors[key] = make_detector(name, arguments)
 
     def close(self, key: int) -> None:
-        """Drop one, if there is one."""
         self._detectors.pop(key, None)
 
     def call(self, key: int, method: str, arguments: tuple) -> Any:
-        """Have one work."""
         return getattr(self._detectors[key], method)(*arguments)
 
 

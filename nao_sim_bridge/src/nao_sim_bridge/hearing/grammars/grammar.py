@@ -68,8 +68,6 @@ Node = Union[Words, Anything, Sequence, Choice, Repeat]
 
 @dataclass(frozen=True)
 class Grammar:
-    """One named set of phrases."""
-
     name: str
     root: Node
 

@@ -47,7 +47,6 @@ class Canvas:
         return pixels
 
     def release(self) -> None:
-        """Free its memory."""
         for part in (*{self._drawn, self._flat}, *self._parts):
             part.release()
 

@@ -76,7 +76,6 @@ class OpenGLEngine:
         self._items_of: tuple = ()
 
     def close(self) -> None:
-        """Free the context."""
         self._context.release()
 
     def draw(self, state: RenderState, view: View) -> np.ndarray:

@@ -69,7 +69,6 @@ class Geometry:
         return piece
 
     def buffers(self, context: Any) -> tuple[Any, Any]:
-        """Buffers of the vertices and of the vertex indices."""
         return (
             context.buffer(np.concatenate(self._vertices).tobytes()),
             context.buffer(np.concatenate(self._indices).tobytes()),

@@ -100,7 +100,6 @@ class Items:
         )
 
     def buffers(self, context: Any) -> tuple[Any, Any]:
-        """Buffers of vertices and of vertex indices."""
         return self._geometry.buffers(context)
 
     def commands(self, chosen: np.ndarray, levels: np.ndarray | int) -> np.ndarray:

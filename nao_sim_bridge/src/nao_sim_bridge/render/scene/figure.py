@@ -67,7 +67,6 @@ class Figure:
         self._headless = False
 
     def hide(self) -> None:
-        """Put all bodies out of sight."""
         for part in self._parts:
             self._put(part, FAR_AWAY, UNTURNED)
         self.lamp_light = np.zeros_like(self.lamp_light)
