@@ -24,8 +24,7 @@ from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.shapes import KINDS, Shape, read_shape
 from nao_sim_bridge.world.cards import CARDS
-from nao_sim_bridge.world.entries import GREY, check_bounds, color, entries, number, picture
-from nao_sim_bridge.world.kinds import Kind, Made
+from nao_sim_bridge.world.entries import GREY, Kind, Made, check_bounds, color, entries, number, picture
 from nao_sim_bridge.world.people import PERSON
 from nao_sim_bridge.world.robots import NAO
 from nao_sim_bridge.world.world import MOST_PARTS, Part, WorldError, WorldObject

@@ -16,10 +16,8 @@ import numpy as np
 
 from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.shapes import Shape, rod
-from nao_sim_bridge.world.entries import color, number, picture
-from nao_sim_bridge.world.kinds import Kind, Made
-from nao_sim_bridge.world.painting.face_size import HEAD_HALF_HEIGHT
-from nao_sim_bridge.world.painting.known_faces import FaceLook, load_faces
+from nao_sim_bridge.world.entries import Kind, Made, color, number, picture
+from nao_sim_bridge.world.painting.known_faces import HEAD_HALF_HEIGHT, FaceLook, load_faces
 from nao_sim_bridge.world.pictures import WorldPicture
 from nao_sim_bridge.world.world import Color, Part
 

@@ -20,8 +20,7 @@ from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
 from nao_sim_bridge.model.shapes import Shape, rod
 from nao_sim_bridge.model.start_lean import start_pitch
-from nao_sim_bridge.world.entries import color
-from nao_sim_bridge.world.kinds import Kind, Made
+from nao_sim_bridge.world.entries import Kind, Made, color
 from nao_sim_bridge.world.world import Part, WorldError
 
 SHELL, SHELL_COLOR = "shell", (0.16, 0.42, 0.72)

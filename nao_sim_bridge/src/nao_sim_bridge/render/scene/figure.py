@@ -23,8 +23,8 @@ from nao_sim_bridge.model.kinematics import (
 from nao_sim_bridge.model.meshes import Mesh, merged, tessellate
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.shapes import Shape
+from nao_sim_bridge.world.builder import visual_shape
 from nao_sim_bridge.world.render_state import RobotLook
-from nao_sim_bridge.world.visuals import visual_shape
 
 HEAD = ("HeadYaw", "HeadPitch")
 """Links that are in the way of the cameras in the head."""
