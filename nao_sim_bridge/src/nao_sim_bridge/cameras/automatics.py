@@ -12,7 +12,7 @@ from typing import Mapping, Tuple
 import numpy as np
 
 from nao_sim_bridge.cameras.color_spaces import luminance
-from nao_sim_bridge.cameras.parameters import (
+from nao_sim_bridge.cameras.settings import (
     AUTO_EXPOSURE,
     AUTO_WHITE_BALANCE,
     BACKLIGHT,
@@ -21,8 +21,8 @@ from nao_sim_bridge.cameras.parameters import (
     EXPOSURE_ALGORITHM,
     GAIN,
     WHITE_BALANCE,
+    SensorModel,
 )
-from nao_sim_bridge.cameras.settings import SensorModel
 
 GAMMA = 2.2
 """Of the pictures: twice the light makes them 2 ** (1 / 2.2) times as bright."""

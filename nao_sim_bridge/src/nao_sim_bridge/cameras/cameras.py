@@ -18,25 +18,24 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.guard import Guard
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.cameras.asks import Answer, Ask, CameraClosed
 from nao_sim_bridge.cameras.automatics import NEUTRAL_KELVIN
 from nao_sim_bridge.cameras.darkroom import CapturesPictures, Darkroom
-from nao_sim_bridge.cameras.frame import Frame
-from nao_sim_bridge.cameras.moment import Moment
+from nao_sim_bridge.cameras.frame import Answer, Ask, CameraClosed, Frame, Moment
 from nao_sim_bridge.cameras.optics import CameraOptics
-from nao_sim_bridge.cameras.parameters import (
+from nao_sim_bridge.cameras.places import CameraPlaces
+from nao_sim_bridge.cameras.rate import Shutter
+from nao_sim_bridge.cameras.sensor import Chosen
+from nao_sim_bridge.cameras.settings import (
     AUTO_EXPOSURE,
     AUTO_WHITE_BALANCE,
+    CAMERAS,
     EXPOSURE,
     GAIN,
     KEEP_ALIVE,
     LUMINANCE,
     WHITE_BALANCE,
+    load_cameras,
 )
-from nao_sim_bridge.cameras.places import CameraPlaces
-from nao_sim_bridge.cameras.rate import Shutter
-from nao_sim_bridge.cameras.sensor import Chosen
-from nao_sim_bridge.cameras.settings import CAMERAS, load_cameras
 from nao_sim_bridge.cameras.stream import CameraStream
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.world.render_state import RenderState

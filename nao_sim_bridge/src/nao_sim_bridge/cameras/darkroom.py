@@ -10,12 +10,10 @@ import cv2
 
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.guard import Guard
-from nao_sim_bridge.cameras.frame import Frame
-from nao_sim_bridge.cameras.moment import Moment
-from nao_sim_bridge.cameras.photograph import Photograph, photograph, read_photograph
+from nao_sim_bridge.cameras.frame import Frame, Moment
 from nao_sim_bridge.cameras.places import CameraPlaces
+from nao_sim_bridge.cameras.sensor import Photograph, Shot, photograph, read_photograph
 from nao_sim_bridge.cameras.settings import ColorSpace, Resolution
-from nao_sim_bridge.cameras.shot import Shot
 
 TIMEOUT = 30.0
 """Longest time for a picture, s of wall time; a busy machine may take a thousand times as long as an idle one."""

@@ -11,9 +11,7 @@ from typing import Any, Callable, Protocol
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.cameras.asks import Answer, Ask, CameraClosed
-from nao_sim_bridge.cameras.frame import Frame
-from nao_sim_bridge.cameras.moment import Moment
+from nao_sim_bridge.cameras.frame import Answer, Ask, CameraClosed, Frame, Moment
 from nao_sim_bridge.cameras.rate import Share, exact_rate
 from nao_sim_bridge.cameras.settings import CameraTables, ColorSpace, Resolution
 

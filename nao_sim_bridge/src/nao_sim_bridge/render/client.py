@@ -11,11 +11,10 @@ import numpy as np
 
 from nao_sim_bridge.base.child_process import ChildProcess
 from nao_sim_bridge.base.errors import SimulationError, UnknownName
-from nao_sim_bridge.render.wire import StateSender
-from nao_sim_bridge.world.render_state import Camera, RenderState
+from nao_sim_bridge.world.render_state import Camera, RenderState, StateSender
 
 if TYPE_CHECKING:
-    from nao_sim_bridge.cameras.shot import Shot
+    from nao_sim_bridge.cameras.sensor import Shot
     from nao_sim_bridge.render.pointer import Ray
 
 START_TIMEOUT = 60.0

@@ -3,8 +3,8 @@
 It draws states and writes them with sound to a film. Over the inherited pipe FD it gets tuples (kind, content) and
 first sends ("ready", engine) or ("error", text). Then it takes ("frame", (time, state)), ("sound", (first, bytes)) and
 ("caption", text) without an answer; ("end", None) is answered with ("ended", (frames, seconds)), or with
-("error", text) of the first thing that went wrong. States are packed by `wire.py`. A pipe that is closed ends it, and
-the film is complete until then.
+("error", text) of the first thing that went wrong. States are packed by `StateSender`. A pipe that is closed ends it,
+and the film is complete until then.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class _Film:
     """What is drawn goes into the file."""
 
     def __init__(self, drawing: Any, camera: Any, file: Any) -> None:
-        from nao_sim_bridge.render.wire import StateReceiver
+        from nao_sim_bridge.world.render_state import StateReceiver
 
         self.file = file
         self._drawing = drawing

@@ -10,7 +10,7 @@ import pybullet
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.render.pointer import Pointer
 from nao_sim_bridge.render.scene.stage import Stage
-from nao_sim_bridge.render.wire import StateReceiver
+from nao_sim_bridge.world.render_state import StateReceiver
 from nao_sim_bridge.world.world import World
 
 PERIOD = 1.0 / 30.0

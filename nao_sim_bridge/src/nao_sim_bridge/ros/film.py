@@ -15,10 +15,8 @@ from nao_library_msgs.srv import (
     StopFilmRequest,
     StopFilmResponse,
 )
-from nao_sim_bridge.ros.limits import checked
+from nao_sim_bridge.ros.services import ERRORS, checked, success
 from nao_sim_bridge.server.simulator_server import SimulatorServer
-
-ERRORS = (RuntimeError, ValueError, OSError)
 
 
 class RosFilm:
@@ -38,19 +36,16 @@ class RosFilm:
     def _on_start(self, request: StartFilmRequest) -> StartFilmResponse:
         try:
             checked(request)
-            path = self._server.film.start(
+            film = self._server.film.start(
                 request.file, request.view, request.width, request.height, request.frame_rate
-            ).result()
+            )
+            path = film.result()
         except ERRORS as error:
             return StartFilmResponse(success=False, message=str(error))
         return StartFilmResponse(True, "", path)
 
     def _on_caption(self, request: CaptionFilmRequest) -> CaptionFilmResponse:
-        try:
-            self._server.film.caption(checked(request).text)
-        except ERRORS as error:
-            return CaptionFilmResponse(False, str(error))
-        return CaptionFilmResponse(True, "")
+        return CaptionFilmResponse(*success(lambda: self._server.film.caption(checked(request).text)))
 
     def _on_stop(self, _request: StopFilmRequest) -> StopFilmResponse:
         try:

@@ -21,10 +21,9 @@ from nao_library_msgs.srv import (
 from nao_sim_bridge.base.record_dir import world_of_client
 from nao_sim_bridge.ros.diagnostics import RosDiagnostics
 from nao_sim_bridge.ros.film import RosFilm
-from nao_sim_bridge.ros.limits import checked
 from nao_sim_bridge.ros.robot import RosRobot
-from nao_sim_bridge.ros.sounds import RosSounds
-from nao_sim_bridge.ros.things import RosThings
+from nao_sim_bridge.ros.services import checked, success
+from nao_sim_bridge.ros.things import RosSounds, RosThings
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 # The clock is published at most this often, in s of wall time: every message wakes every node.
@@ -106,12 +105,11 @@ class RosSide:
         return AdvanceTimeResponse(rospy.Time.from_sec(self._server.began + snapshot.time))
 
     def _on_reset_world(self, request: ResetWorldRequest) -> ResetWorldResponse:
-        try:
+        def reset() -> None:
             server = self._server
             server.factory_reset(world_of_client(checked(request).world, server.files, server.options.scene.world))
-        except (RuntimeError, ValueError, OSError) as error:
-            return ResetWorldResponse(False, str(error))
-        return ResetWorldResponse(True, "")
+
+        return ResetWorldResponse(*success(reset))
 
     @staticmethod
     def _empty(action: Callable[[], object]) -> Callable[[EmptyRequest], EmptyResponse]:

@@ -39,8 +39,7 @@ from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
 from nao_sim_bridge.server.film import END_LIMIT
 from nao_sim_bridge.server.film_control import FilmControl
-from nao_sim_bridge.server.hands_control import HandsControl
-from nao_sim_bridge.server.health_control import HealthControl
+from nao_sim_bridge.server.robot_control import HandsControl, HealthControl
 from nao_sim_bridge.server.things_control import ThingsControl
 from nao_sim_bridge.server.world_sounds_control import WorldSoundsControl
 from nao_sim_bridge.sound.reader import SoundReader

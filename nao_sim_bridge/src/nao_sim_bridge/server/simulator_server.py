@@ -29,10 +29,9 @@ from nao_sim_bridge.naoqi.vision.wiring import VisionModules
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.server.broker import Broker
 from nao_sim_bridge.server.film_control import FilmControl
-from nao_sim_bridge.server.hands_control import HandsControl
-from nao_sim_bridge.server.health_control import HealthControl
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.server.pictures import Pictures
+from nao_sim_bridge.server.robot_control import HandsControl, HealthControl
 from nao_sim_bridge.server.robot_modules import RobotModules, Workers
 from nao_sim_bridge.server.sound_outlets import SoundCard, SoundFile
 from nao_sim_bridge.server.things_control import ThingsControl

@@ -12,8 +12,8 @@ from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.samples import RATE, pcm16
 from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.sound.files import WavFile
 from nao_sim_bridge.sound.follower import Follower
-from nao_sim_bridge.sound.wav_file import WavFile
 
 log = logging.getLogger("nao_sim.sound")
 

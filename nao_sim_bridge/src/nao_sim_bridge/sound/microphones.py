@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import partial
+from functools import lru_cache, partial
 from typing import Callable, Sequence
 
 import numpy as np
@@ -11,17 +11,18 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue, ConfigError
 from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.sound.loudspeakers import Loudspeakers, checked_past
-from nao_sim_bridge.sound.noise import Background
+from nao_sim_bridge.sound.loudspeakers import Loudspeakers, RobotVoice, checked_past
 from nao_sim_bridge.sound.poses import PoseTrack
 from nao_sim_bridge.sound.propagation import FixedWays, arrivals, at_places, between_knots
-from nao_sim_bridge.sound.robot_voice import RobotVoice
 from nao_sim_bridge.sound.settings import SoundSettings
 from nao_sim_bridge.sound.sources import LONGEST_WAY, Sources
 from nao_sim_bridge.sound.timeline import Timeline
 
 GUARD = 96
 """Frames (2 ms) that the filters look ahead: what is heard at a frame is settled when so much more time has passed."""
+CHUNK = 16384
+SUPPLY = 2**18
+"""Frames that noise is cut from: drawing new ones all the time would be most of the work of hearing."""
 
 
 class Microphones:
@@ -177,3 +178,38 @@ class Microphones:
 def _from_file(sound: Sound, first: int, last: int) -> np.ndarray:
     """A part of a sound of one or four channels as (4, last - first)."""
     return np.broadcast_to(sound.samples[first:last].T, (4, last - first))
+
+
+class Background:
+    """Noise of several channels, independent of each other.
+
+    Each chunk is cut from the supply at a place of its own, so that nothing comes again at regular times.
+    """
+
+    def __init__(self, seed: int, rms: float, channels: int = 4) -> None:
+        self._seed = abs(seed)
+        self._rms = np.float32(rms)
+        self._channels = channels
+        self._supply: np.ndarray | None = None
+        self._cut = lru_cache(maxsize=64)(self._draw_cut)
+
+    def between(self, first: int, last: int) -> np.ndarray:
+        """(channels, last - first) float32 from frame `first` to `last`."""
+        if self._supply is None:
+            chance = np.random.Generator(np.random.SFC64([self._seed]))
+            self._supply = self._rms * chance.standard_normal((self._channels, SUPPLY), np.float32)
+        out = np.empty((self._channels, last - first), np.float32)
+        at = first
+        while at < last:
+            number, offset = divmod(at, CHUNK)
+            count = min(CHUNK - offset, last - at)
+            cut = self._cut(number) + offset
+            out[:, at - first : at - first + count] = self._supply[:, cut : cut + count]
+            at += count
+        return out
+
+    def _draw_cut(self, number: int) -> int:
+        """Where in the supply a chunk is cut out."""
+        # A generator of its own, so that no chunk depends on which others were asked for before.
+        chance = np.random.Generator(np.random.SFC64([self._seed, abs(number), int(number < 0)]))
+        return int(chance.integers(SUPPLY - CHUNK))

@@ -1,4 +1,4 @@
-"""Round things seen at a slant: ellipses in pictures, found from outlines and fitted to their edges."""
+"""Round things seen at a slant: ellipses found from outlines and fitted to edges; and brightness between pixels."""
 
 from __future__ import annotations
 
@@ -115,3 +115,18 @@ def distance_from(ellipse: Ellipse, outline: np.ndarray) -> np.ndarray:
     lengths = np.linalg.norm(unit, axis=0)
     nearest = ellipse.shape @ (unit / np.maximum(lengths, 1e-9))
     return np.linalg.norm(nearest, axis=0) * (lengths - 1.0)
+
+
+def sample(grey: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Brightness at places in a picture, as at its edge for those outside.
+
+    Args:
+        grey: (h, w) uint8 or float32.
+        places: (n, m, 2) in pixels, (0.5, 0.5) is the middle of the first one.
+
+    Returns:
+        (n, m) float32.
+    """
+    where = (places - 0.5).astype(np.float32)
+    values = cv2.remap(grey, where[..., 0], where[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return values.astype(np.float32)

@@ -9,8 +9,7 @@ from typing import Iterator
 import numpy as np
 
 from nao_sim_bridge.cameras.optics import Intrinsics
-from nao_sim_bridge.vision.ellipse import Ellipse
-from nao_sim_bridge.vision.sampling import sample
+from nao_sim_bridge.vision.ellipse import Ellipse, sample
 from nao_sim_bridge.vision.settings import LandmarkSettings
 from nao_sim_bridge.world.painting.known_landmarks import Landmarks
 

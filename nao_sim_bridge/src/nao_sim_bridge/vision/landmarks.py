@@ -10,9 +10,8 @@ import cv2
 import numpy as np
 
 from nao_sim_bridge.cameras.optics import Optics
-from nao_sim_bridge.vision.ellipse import Ellipse, distance_from, ellipse_of
+from nao_sim_bridge.vision.ellipse import Ellipse, distance_from, ellipse_of, sample
 from nao_sim_bridge.vision.landmark_code import LandmarkCode, Reading
-from nao_sim_bridge.vision.sampling import sample
 from nao_sim_bridge.vision.settings import LandmarkSettings, load_vision
 from nao_sim_bridge.world.painting.known_landmarks import Landmarks, load_landmarks
 

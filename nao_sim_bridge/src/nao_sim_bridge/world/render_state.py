@@ -1,10 +1,11 @@
-"""What a picture shows, and where the camera is: small values that can be sent to another process."""
+"""What a picture shows, and where the camera is: small values, and how they go to another process."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Optional, Tuple
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from nao_sim_bridge.base.rotations import Quaternion, Vector3
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.world.world import WorldObject
+
+Placed = Tuple[WorldObject, ...]
 
 
 @dataclass(frozen=True)
@@ -170,3 +173,34 @@ def _upright(base: np.ndarray) -> np.ndarray:
 
 def _vector3(values: np.ndarray) -> Vector3:
     return float(values[0]), float(values[1]), float(values[2])
+
+
+Packed = Tuple[RenderState, Optional[Placed]]
+
+
+class StateSender:
+    """The end that sends; one for each process that receives. What was placed goes over only when it has changed."""
+
+    def __init__(self) -> None:
+        self._sent: Placed = ()
+
+    def pack(self, state: RenderState) -> Packed:
+        placed = state.placed
+        if placed is self._sent:
+            return replace(state, placed=()), None
+        self._sent = placed
+        return replace(state, placed=()), placed
+
+
+class StateReceiver:
+    """The end that receives."""
+
+    def __init__(self) -> None:
+        self._placed: Placed = ()
+
+    def unpack(self, packed: Packed) -> RenderState:
+        """The state that was sent; what was placed is the same tuple until it changes."""
+        state, placed = packed
+        if placed is not None:
+            self._placed = placed
+        return replace(state, placed=self._placed)

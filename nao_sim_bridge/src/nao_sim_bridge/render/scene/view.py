@@ -12,7 +12,7 @@ from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.world.render_state import Camera
 
 if TYPE_CHECKING:
-    from nao_sim_bridge.cameras.shot import Shot
+    from nao_sim_bridge.cameras.sensor import Shot
 
 NEAR = 0.02
 """Nearer things are not drawn, m: a camera of the robot looks through the shell in front of it."""
