@@ -10,10 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from nao_sim_bridge.base.child_process import ChildProcess
-from nao_sim_bridge.base.samples import RATE, pcm16
+from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import START_TIMEOUT, PictureRefused, RenderError
@@ -170,8 +168,7 @@ class Film:
 
     def _hear(self, first: int, last: int) -> None:
         """Take sound; in the thread of the follower."""
-        mixed = self._simulation.sound.loudspeakers.mixed(first, last)
-        samples = np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
+        samples = self._simulation.sound.loudspeakers.pcm(first, last)
         self._put("sound", (first - self._first_sample, samples.tobytes()))
 
     def _behind(self) -> bool:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import logging
 import threading
-from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue, NotAllowed, UnknownName
 from nao_sim_bridge.base.record_dir import ClientFiles, unused
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.base.tasks import Task, TaskIds
+from nao_sim_bridge.base.tasks import Task, TaskIds, worked_out
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import RenderError
@@ -78,7 +77,7 @@ class FilmControl:
                 self._film = film
             return str(path)
 
-        return self._in_background(start, "startFilm")
+        return worked_out(self._ids.make("startFilm"), start, "startFilm")
 
     def caption(self, text: str) -> None:
         """Write a text into the film from now on; empty for none.
@@ -102,7 +101,7 @@ class FilmControl:
                 self._film = None
             return film.end()
 
-        return self._in_background(stop, "stopFilm")
+        return worked_out(self._ids.make("stopFilm"), stop, "stopFilm")
 
     def close(self, limit: float = END_LIMIT) -> None:
         """End the film that is being taken, if there is one; before the simulation ends.
@@ -123,16 +122,3 @@ class FilmControl:
         if self._film is None:
             raise NotAllowed("nothing is being filmed: start a film first")
         return self._film
-
-    def _in_background(self, work: Any, name: str) -> Task:
-        """A task for what takes wall time, which must hold up neither the simulation nor a thread of libqi."""
-        task = self._ids.make(name)
-
-        def run() -> None:
-            try:
-                task.finish(work())
-            except Exception as error:
-                task.finish(error=error)
-
-        threading.Thread(target=run, name=name, daemon=True).start()
-        return task

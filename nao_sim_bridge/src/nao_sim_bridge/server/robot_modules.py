@@ -82,12 +82,16 @@ class RobotModules:
     """The modules of one robot, and what only a simulator can do to it.
 
     Attributes:
-        simulation: Touched in the simulation thread only.
+        simulation: Touched in the simulation thread only; replaced by a factory reset, with everything else in here.
         runner: That thread, for this simulation.
         began: What `SimulatorServer.now` says at time 0 of the simulation, s.
         memory: What ALMemory keeps.
         files: Where clients may have files written to and read from.
-        speech, vision, video, film, sounds, things, hands, health: See `SimulatorServer`.
+        speech: The robot's voice.
+        vision: What it recognises in its pictures.
+        sounds, things: Of the world.
+        hands: What touches the robot.
+        health: Charger, temperatures, broken devices.
 
     Args:
         simulation: The robot and its world, at time 0.

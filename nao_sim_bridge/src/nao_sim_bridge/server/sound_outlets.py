@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from nao_sim_bridge.base.errors import SimulationError
-from nao_sim_bridge.base.samples import RATE, pcm16
+from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.sound.files import WavFile
@@ -69,8 +69,7 @@ class SoundFile:
         self._file.close()
 
     def _write(self, first: int, last: int) -> None:
-        mixed = self._loudspeakers.mixed(first, last)
-        samples = np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
+        samples = self._loudspeakers.pcm(first, last)
         try:
             self._file.write(samples, self._lost)
         except FileTrouble as error:
@@ -116,9 +115,7 @@ class SoundCard:
     def _send(self, first: int, last: int) -> None:
         if self._timeline.now - last > CARD_LATEST * RATE:
             return  # time went faster than the card plays
-        mixed = self._loudspeakers.mixed(first, last)
-        samples = np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
-        if self._stream.write(samples):  # it had run dry: time went slower for a moment
+        if self._stream.write(self._loudspeakers.pcm(first, last)):  # it had run dry: time went slower for a moment
             self._stream.write(np.zeros((round(CARD_DELAY * RATE), 2), np.int16))
 
 

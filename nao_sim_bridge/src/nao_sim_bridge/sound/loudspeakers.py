@@ -7,7 +7,7 @@ from typing import Iterable
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.samples import RATE, Sound, frame_at
+from nao_sim_bridge.base.samples import RATE, Sound, frame_at, pcm16
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.sound.envelope import Envelope
@@ -166,6 +166,11 @@ class Loudspeakers:
             return None
         out *= np.reshape(np.float32(self._master.between(first, last)[0]), (-1, 1))
         return np.clip(out, -1.0, 1.0, out=out)
+
+    def pcm(self, first: int, last: int) -> np.ndarray:
+        """(last - first, 2) int16 from frame `first` to `last`, silence included."""
+        mixed = self.mixed(first, last)
+        return np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
 
     def _set_master(self) -> None:
         on = not (self._muted or self._closed)
