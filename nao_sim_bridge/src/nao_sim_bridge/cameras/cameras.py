@@ -19,10 +19,9 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.guard import Guard
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.cameras.automatics import NEUTRAL_KELVIN
-from nao_sim_bridge.cameras.darkroom import CapturesPictures, Darkroom
+from nao_sim_bridge.cameras.darkroom import CameraPlaces, CapturesPictures, Darkroom
 from nao_sim_bridge.cameras.frame import Answer, Ask, CameraClosed, Frame, Moment
 from nao_sim_bridge.cameras.optics import CameraOptics
-from nao_sim_bridge.cameras.places import CameraPlaces
 from nao_sim_bridge.cameras.rate import Shutter
 from nao_sim_bridge.cameras.sensor import Chosen
 from nao_sim_bridge.cameras.settings import (

@@ -15,7 +15,7 @@ from nao_sim_bridge.world.render_state import Camera, RenderState, StateSender
 
 if TYPE_CHECKING:
     from nao_sim_bridge.cameras.sensor import Shot
-    from nao_sim_bridge.render.pointer import Ray
+    from nao_sim_bridge.render.window import Ray
 
 START_TIMEOUT = 60.0
 """s; building the robot takes well below one, but a busy machine may need long to start an interpreter."""

@@ -45,7 +45,7 @@ def open_engine(wanted: str, world: World, version: str) -> tuple[Engine, str | 
     complaint = None
     if wanted != "builtin":
         try:
-            from nao_sim_bridge.render.opengl import OpenGLEngine
+            from nao_sim_bridge.render.opengl.engine import OpenGLEngine
 
             return OpenGLEngine(world, version), None
         except (ImportError, SimulationError) as error:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import threading
-from typing import Callable, Mapping
+import time
+from typing import Callable, Mapping, Sequence
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
@@ -13,16 +15,24 @@ from nao_library_msgs.srv import (
     AdvanceTime,
     AdvanceTimeRequest,
     AdvanceTimeResponse,
+    CaptionFilm,
+    CaptionFilmRequest,
+    CaptionFilmResponse,
     ResetWorld,
     ResetWorldRequest,
     ResetWorldResponse,
+    StartFilm,
+    StartFilmRequest,
+    StartFilmResponse,
+    StopFilm,
+    StopFilmRequest,
+    StopFilmResponse,
     TakePicture,
 )
+from nao_sim_bridge.base.guard import Failure
 from nao_sim_bridge.base.record_dir import world_of_client
-from nao_sim_bridge.ros.diagnostics import RosDiagnostics
-from nao_sim_bridge.ros.film import RosFilm
 from nao_sim_bridge.ros.robot import RosRobot
-from nao_sim_bridge.ros.services import checked, success
+from nao_sim_bridge.ros.services import ERRORS, checked, success
 from nao_sim_bridge.ros.things import RosSounds, RosThings
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
@@ -30,6 +40,8 @@ from nao_sim_bridge.server.simulator_server import SimulatorServer
 CLOCK_WALL_PERIOD = 0.002
 LOOK_PERIOD = 0.1
 """s of wall time between two looks whether somebody listens, while nobody does."""
+STATUS_PERIOD = 1.0
+STATUS_NAME = "nao_sim: Simulation"
 
 
 class RosSide:
@@ -118,3 +130,81 @@ class RosSide:
             return EmptyResponse()
 
         return call
+
+
+class RosDiagnostics:
+    """Tells once a second what of the simulation has failed.
+
+    ROS API:
+        Publishes `/diagnostics` (diagnostic_msgs/DiagnosticArray): `nao_sim: Simulation`, a warning while something has
+        failed since the start of the robot, with who it was, how often, and the last error of each.
+
+    Args:
+        server: The running simulator; of several robots that of the first.
+    """
+
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
+        self._next = 0.0
+        self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=5)
+
+    def tick(self) -> None:
+        """Publish when it is time, which is that of the wall: simulated time may stand still."""
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next = now + STATUS_PERIOD
+        status = status_of(self._server.simulation.shared.guard.failures())
+        status.hardware_id = f"{self._server.options.address}:{self._server.broker.port}"
+        message = DiagnosticArray(status=[status])
+        message.header.stamp = rospy.Time.now()
+        self._publisher.publish(message)
+
+
+def status_of(failures: Sequence[Failure]) -> DiagnosticStatus:
+    """What there is to say of failures."""
+    status = DiagnosticStatus(level=DiagnosticStatus.OK, name=STATUS_NAME, message="runs")
+    if failures:
+        status.level = DiagnosticStatus.WARN
+        culprits = dict.fromkeys(failure.culprit for failure in failures)
+        status.message = f"runs, but these have failed: {', '.join(culprits)}"
+    for failure in failures:
+        times = "once" if failure.count == 1 else f"{failure.count} times"
+        status.values.append(KeyValue(failure.culprit, f"{times}: {failure.error}"))
+    return status
+
+
+class RosFilm:
+    """Begins and ends films.
+
+    ROS API: services `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs).
+    """
+
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
+        self._services = [
+            rospy.Service("~film/start", StartFilm, self._on_start),
+            rospy.Service("~film/caption", CaptionFilm, self._on_caption),
+            rospy.Service("~film/stop", StopFilm, self._on_stop),
+        ]
+
+    def _on_start(self, request: StartFilmRequest) -> StartFilmResponse:
+        try:
+            checked(request)
+            film = self._server.film.start(
+                request.file, request.view, request.width, request.height, request.frame_rate
+            )
+            path = film.result()
+        except ERRORS as error:
+            return StartFilmResponse(success=False, message=str(error))
+        return StartFilmResponse(True, "", path)
+
+    def _on_caption(self, request: CaptionFilmRequest) -> CaptionFilmResponse:
+        return CaptionFilmResponse(*success(lambda: self._server.film.caption(checked(request).text)))
+
+    def _on_stop(self, _request: StopFilmRequest) -> StopFilmResponse:
+        try:
+            film = self._server.film.stop().result()
+        except ERRORS as error:
+            return StopFilmResponse(success=False, message=str(error))
+        return StopFilmResponse(True, "", str(film.path), film.frames, rospy.Duration.from_sec(film.duration))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import logging
 import threading
+from typing import TYPE_CHECKING
 
 from PIL import Image
 
@@ -12,8 +13,10 @@ from nao_sim_bridge.base.errors import BadValue, SimulationStopped
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import RenderError, Viewer
-from nao_sim_bridge.render.pointer import Ray
 from nao_sim_bridge.world.render_state import RenderState, preset_camera
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.render.window import Ray
 
 log = logging.getLogger("nao_sim.pictures")
 

@@ -230,8 +230,7 @@ class RobotVoice:
         self._poses = poses
         self._tick = frames_per_tick
         self._mouth = np.mean([place.position for place in model.loudspeakers], axis=0)[None]
-        # Each of the two gives half of what both give together at 1 m.
-        self._peak = np.float32(settings.peak_of(settings.loudspeaker_full_scale_db) / 2.0)
+        self._peak = np.float32(settings.loudspeaker_peak)
 
     def silent(self, first: int, last: int) -> bool:
         """Whether nothing has been played from frame `first` to `last`."""

@@ -62,9 +62,9 @@ class Microphones:
         self._per_meter = RATE / settings.speed_of_sound
         speakers = np.array([place.position for place in model.loudspeakers])
         distances = np.linalg.norm(self.places[None] - speakers[:, None], axis=-1)
-        # Each of the two gives half of what both give together at 1 m.
-        own = settings.peak_of(settings.loudspeaker_full_scale_db) / 2.0
-        self._own_ways = FixedWays.of(distances * self._per_meter, own / np.maximum(distances, settings.near_field_m))
+        self.own_gains = settings.loudspeaker_peak / np.maximum(distances, settings.near_field_m)
+        """(2, 4) of each loudspeaker in the same head, as each microphone hears it."""
+        self._own_ways = FixedWays.of(distances * self._per_meter, self.own_gains)
         self._replacements: tuple[tuple[int, Sound | None], ...] = ((-(2**62), None),)
         timeline.forget.append(self._forget)
 

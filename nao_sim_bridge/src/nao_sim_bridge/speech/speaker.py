@@ -21,16 +21,8 @@ log = logging.getLogger("nao_sim.speech")
 AHEAD = 2
 # How long before a sentence ends the next one has to be there when time runs faster than the wall clock, s.
 LOOK_AHEAD = 0.1
-ENQUEUED, STARTED, SENTENCE, WORD, BOOKMARK, DONE, STOPPED, THROWN = (
-    "enqueued",
-    "started",
-    "sentence",
-    "word",
-    "bookmark",
-    "done",
-    "stopped",
-    "thrown",
-)
+KINDS = ("enqueued", "started", "sentence", "word", "bookmark", "done", "stopped", "thrown")
+ENQUEUED, STARTED, SENTENCE, WORD, BOOKMARK, DONE, STOPPED, THROWN = KINDS
 
 
 @dataclass(frozen=True)
@@ -38,7 +30,7 @@ class SpeechEvent:
     """Something that happens while the robot speaks, told at the simulated time it happens.
 
     Attributes:
-        kind: One of the words above. A text is enqueued and started, has sentences, words and bookmarks, and is at
+        kind: One of `KINDS`. A text is enqueued and started, has sentences, words and bookmarks, and is at
             last done, stopped, or thrown because it cannot be said.
         value: The `Clip` of the sentence, the `SpokenWord`, the number of the bookmark; None for the others.
     """

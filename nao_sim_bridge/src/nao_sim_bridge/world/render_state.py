@@ -12,7 +12,7 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Quaternion, Vector3
-from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.model.kinematics import finger_transforms, link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.world.world import WorldObject
 
@@ -173,6 +173,17 @@ def _upright(base: np.ndarray) -> np.ndarray:
 
 def _vector3(values: np.ndarray) -> Vector3:
     return float(values[0]), float(values[1]), float(values[2])
+
+
+def frames_in_world(model: RobotModel, look: RobotLook) -> dict[str, np.ndarray]:
+    """(4, 4) pose of each link by name, and of each phalanx by side and name, as `LFinger11`."""
+    base = transform(quaternion_matrix(look.base_orientation), look.base_position)
+    poses = {name: base @ pose for name, pose in link_transforms(model, look.joint_positions).items()}
+    for joint, position in zip(model.joints, look.joint_positions):
+        if joint.is_hand:
+            for phalanx, pose in finger_transforms(model, position).items():
+                poses[joint.name[0] + phalanx] = poses[joint.parent_link] @ pose
+    return poses
 
 
 Packed = Tuple[RenderState, Optional[Placed]]

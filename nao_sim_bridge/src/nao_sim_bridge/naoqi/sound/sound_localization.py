@@ -9,8 +9,7 @@ from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.hearing.array import microphone_array
 from nao_sim_bridge.hearing.detection import DEFAULT_SENSITIVITY
-from nao_sim_bridge.hearing.localiser import HeardSound, Localiser
-from nao_sim_bridge.hearing.own_voice import OwnVoice
+from nao_sim_bridge.hearing.localiser import HeardSound, Localiser, OwnVoice
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.speech.head_track import HeadTrack
@@ -40,7 +39,7 @@ class SoundLocalization(ListeningModule):
         self._one, self._all = ONE.format(module), ALL.format(module)
         self._memory = memory
         self._array = microphone_array(simulation.sound.microphones.places)
-        self._own_voice = OwnVoice(simulation.model, simulation.sound)
+        self._own_voice = OwnVoice(simulation.sound)
         self._head = HeadTrack(simulation)
         self._sensitivity = DEFAULT_SENSITIVITY
         self._with_energy = False

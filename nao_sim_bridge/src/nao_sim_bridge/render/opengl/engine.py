@@ -11,12 +11,13 @@ import numpy as np
 from nao_sim_bridge.model.appearance import load_appearance
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.render.opengl.geometry import POSITION_FORMAT, VERTEX_FORMAT, VERTEX_NAMES
-from nao_sim_bridge.render.opengl.items import CORE_WHITE, Items, spheres_in_sight
+from nao_sim_bridge.render.opengl.items import Items, spheres_in_sight
 from nao_sim_bridge.render.opengl.looks import STEPS
 from nao_sim_bridge.render.opengl.resources import Canvases, Textures, describe, open_context
 from nao_sim_bridge.render.opengl.scene_block import BLOCK, camera_block, world_constants
 from nao_sim_bridge.render.opengl.shaders import sources
 from nao_sim_bridge.render.opengl.shadow_map import ShadowMap
+from nao_sim_bridge.render.scene.figure import CORE_WHITE
 from nao_sim_bridge.render.scene.view import NEAR, View
 from nao_sim_bridge.world.render_state import RenderState
 from nao_sim_bridge.world.world import World

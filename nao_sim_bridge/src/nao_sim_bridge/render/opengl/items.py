@@ -11,20 +11,18 @@ import numpy as np
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.model.appearance import Appearance
-from nao_sim_bridge.model.kinematics import finger_transforms, link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.model.kinematics import quaternion_matrix, transform
 from nao_sim_bridge.model.meshes import tessellate
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.render.opengl.geometry import COMMAND, Geometry, Piece
 from nao_sim_bridge.render.opengl.looks import STEPS, Look, robot_looks, thing_looks
-from nao_sim_bridge.render.scene.figure import HEAD
+from nao_sim_bridge.render.scene.figure import CORE_WHITE, HEAD
 from nao_sim_bridge.world.builder import heaps_of_bumps, place_of
 from nao_sim_bridge.world.pictures import WorldPicture
-from nao_sim_bridge.world.render_state import RenderState, RobotLook
+from nao_sim_bridge.world.render_state import RenderState, RobotLook, frames_in_world
 from nao_sim_bridge.world.world import World, WorldObject
 
-CORE_WHITE = 0.12
-"""Share of white in the light of a lamp: a saturated colour alone looks like paint, not like light."""
 RUG = "rug"
 """Frame of the looks of rugs, which throw no shadow."""
 RUG_HEIGHT = 0.0002
@@ -48,7 +46,6 @@ class RobotRows:
         self._frames = list(dict.fromkeys(look.frame for look in looks))
         self._frame_of_item = np.array([self._frames.index(look.frame) for look in looks])
         self._lamps = np.array([look.lamp for look in looks])
-        self._hands = [(joint.parent_link, joint.name[0], i) for i, joint in enumerate(model.joints) if joint.is_hand]
         self._posed: tuple | None = None
         self._lit: tuple[float, ...] | None = None
 
@@ -56,21 +53,12 @@ class RobotRows:
         """Write where its items are, and their light."""
         pose = (look.base_position, look.base_orientation, look.joint_positions)
         if pose != self._posed:
-            matrices[self._items] = self._poses(look)[self._frame_of_item]
+            poses = frames_in_world(self._model, look)
+            matrices[self._items] = np.array([poses[frame][:3] for frame in self._frames])[self._frame_of_item]
             self._posed = pose
         if look.led_values != self._lit:
             glow[self._items] = self._light(look.led_values)
             self._lit = look.led_values
-
-    def _poses(self, look: RobotLook) -> np.ndarray:
-        """(f, 3, 4) of all frames."""
-        base = transform(quaternion_matrix(look.base_orientation), look.base_position)
-        links = link_transforms(self._model, look.joint_positions)
-        poses = {name: base @ pose for name, pose in links.items()}
-        for wrist, side, index in self._hands:
-            for phalanx, pose in finger_transforms(self._model, look.joint_positions[index]).items():
-                poses[side + phalanx] = poses[wrist] @ pose
-        return np.array([poses[frame][:3] for frame in self._frames])
 
     def _light(self, values: Sequence[float]) -> np.ndarray:
         """(items, 4) glow of all items."""
