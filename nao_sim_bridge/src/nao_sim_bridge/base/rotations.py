@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Sequence, Tuple
+from typing import Iterable, Sequence, Tuple
 
 Vector3 = Tuple[float, float, float]
 Quaternion = Tuple[float, float, float, float]
+
+
+def vector3(values: Iterable[float]) -> Vector3:
+    """Three numbers of any kind, as of an array, as plain floats."""
+    x, y, z = (float(value) for value in values)
+    return x, y, z
 
 
 def rotate(quaternion: Sequence[float], vector: Sequence[float]) -> Vector3:

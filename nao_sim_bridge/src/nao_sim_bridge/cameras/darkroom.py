@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.guard import Guard
-from nao_sim_bridge.base.rotations import Quaternion, Vector3
+from nao_sim_bridge.base.rotations import Quaternion, Vector3, vector3
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.cameras.frame import Frame, Moment, Position6D
 from nao_sim_bridge.cameras.optics import CameraOptics
@@ -44,8 +44,7 @@ class CameraPlaces:
         """Where a camera truly is."""
         torso = transform(quaternion_matrix(state.base_orientation), state.base_position)
         pose = torso @ self._body.at(state.joint_positions).pose(self._frames[camera])
-        x, y, z = (float(value) for value in pose[:3, 3])
-        return (x, y, z), matrix_quaternion(pose[:3, :3])
+        return vector3(pose[:3, 3]), matrix_quaternion(pose[:3, :3])
 
     def measured(self, snapshot: Snapshot, camera: int) -> tuple[Position6D, Position6D]:
         """Where ALMotion says that a camera is, from the sensors: in the torso's frame, and in the robot's."""
@@ -58,8 +57,7 @@ class CameraPlaces:
 
 
 def _position6d(pose: np.ndarray) -> Position6D:
-    x, y, z = (float(value) for value in pose[:3, 3])
-    return (x, y, z, *matrix_rpy(pose[:3, :3]))
+    return (*vector3(pose[:3, 3]), *matrix_rpy(pose[:3, :3]))
 
 
 class CapturesPictures(Protocol):

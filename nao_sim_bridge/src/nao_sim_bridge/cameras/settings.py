@@ -158,7 +158,9 @@ class CameraTables:
         colored = {space.id: space for space in self.color_spaces.values() if space.layers}
         if number in self.color_spaces and number not in colored:
             space = self.color_spaces[number]
-            raise BadValue("colorSpace", number, f"one of {_ids(colored)}: {space.name} needs a depth camera")
+            raise BadValue(
+                "colorSpace", number, f"one of {', '.join(map(str, colored))}: {space.name} needs a depth camera"
+            )
         _known("colorSpace", number, colored, lambda s: "")
         return colored[number]
 
@@ -189,10 +191,6 @@ def _known(field: str, number: Any, table: Mapping[int, Any], text: Callable[[An
     if isinstance(number, bool) or not isinstance(number, int) or number not in table:
         listed = ", ".join(f"{key} ({text(value)})" if text(value) else str(key) for key, value in table.items())
         raise BadValue(field, number, f"one of {listed}")
-
-
-def _ids(table: Mapping[int, Any]) -> str:
-    return ", ".join(map(str, table))
 
 
 @lru_cache(maxsize=None)

@@ -75,17 +75,14 @@ def evidence(
     words = words_within(everyday, start, end) if inside else [piece for piece in everyday if piece.phones]
     most = MOST_DIFFERENCE_INSIDE if inside else MOST_DIFFERENCE_WHOLE
     score = score_within(phrase, start, end)
+    better = (score - score_within(everyday, start, end)) / frames
     return Evidence(
         difference=min(distance(phones, [phone for word in words for phone in word.phones]) / len(phones), most),
-        everyday=_bounded((score - score_within(everyday, start, end)) / frames, -MOST_EVERYDAY, MOST_EVERYDAY),
+        everyday=min(max(better, -MOST_EVERYDAY), MOST_EVERYDAY),
         sounds=max((score - score_within(sounds, start, end)) / frames, LEAST_SOUNDS),
         same=[word.word for word in words] == list(spoken),
         length=min(len(phones), LONGEST) / LONGEST,
     )
-
-
-def _bounded(value: float, least: float, most: float) -> float:
-    return min(max(value, least), most)
 
 
 def difference(phone: str, other: str) -> float:

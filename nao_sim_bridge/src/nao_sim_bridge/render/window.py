@@ -10,7 +10,7 @@ import numpy as np
 import pybullet
 
 from nao_sim_bridge.base.errors import SimulationError
-from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.base.rotations import Vector3, vector3
 from nao_sim_bridge.render.scene.stage import Stage
 from nao_sim_bridge.world.render_state import StateReceiver
 from nao_sim_bridge.world.world import World
@@ -51,7 +51,7 @@ def ray_through(view: Sequence[float], projection: Sequence[float], x: float, y:
     near, far = (to_world @ (2.0 * x - 1.0, 1.0 - 2.0 * y, depth, 1.0) for depth in (-1.0, 1.0))
     eye = np.linalg.inv(to_camera)[:3, 3]
     direction = far[:3] / far[3] - near[:3] / near[3]
-    return Ray(_vector(eye), _vector(direction / np.linalg.norm(direction)))
+    return Ray(vector3(eye), vector3(direction / np.linalg.norm(direction)))
 
 
 class Pointer:
@@ -89,11 +89,6 @@ class Pointer:
     def _ray(self, x: float, y: float) -> Ray:
         camera = pybullet.getDebugVisualizerCamera(physicsClientId=self._client)
         return ray_through(camera[VIEW], camera[PROJECTION], x / camera[WIDTH], y / camera[HEIGHT])
-
-
-def _vector(values: np.ndarray) -> Vector3:
-    x, y, z = (float(value) for value in values)
-    return x, y, z
 
 
 class Window:

@@ -111,7 +111,7 @@ class Microphones:
             low, high = max(first, begin), min(last, end)
             if low >= high:
                 continue
-            part = self._air(low, high) if sound is None else _from_file(sound, low - begin, high - begin)
+            part = self._air(low, high) if sound is None else sound.samples[low - begin : high - begin].T
             out[:, low - first : high - first] = part
         np.minimum(out, 1.0, out=out)
         return np.maximum(out, -1.0, out=out)
@@ -173,11 +173,6 @@ class Microphones:
         kept = [n for n, (begin, _) in enumerate(self._replacements) if begin <= before]
         if kept and kept[-1] > 0:
             self._replacements = self._replacements[kept[-1] :]
-
-
-def _from_file(sound: Sound, first: int, last: int) -> np.ndarray:
-    """A part of a sound of one or four channels as (4, last - first)."""
-    return np.broadcast_to(sound.samples[first:last].T, (4, last - first))
 
 
 class Background:

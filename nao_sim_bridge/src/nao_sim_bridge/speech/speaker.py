@@ -67,7 +67,7 @@ class Speaker:
         self._simulation = simulation
         self._studio = studio
         self._talks: deque[_Talk] = deque()
-        simulation.after_tick.append(self._tick)
+        simulation.after_tick.append(self._go_on)
         simulation.holds.append(self.waits_for_sound)
         simulation.after_reset.append(self.stop_all)
         studio.released = lambda: simulation.wake()
@@ -121,11 +121,7 @@ class Speaker:
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
-    def _tick(self, _: Any = None) -> None:
-        if self._talks:
-            self._go_on()
-
-    def _go_on(self) -> None:
+    def _go_on(self, _: Any = None) -> None:
         """Do everything that is due now."""
         while self._talks:
             talk = self._talks[0]

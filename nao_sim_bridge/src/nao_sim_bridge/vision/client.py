@@ -112,7 +112,7 @@ class VisionProcess:
             if process is None or process is not detector.home:
                 return
             try:
-                process.ask("close", (detector.key,), ANSWER_TIMEOUT, detector.name)
+                process.ask("close", detector.key, ANSWER_TIMEOUT, detector.name)
             except VisionError as error:
                 log.warning("%s", error)
                 self._process = None

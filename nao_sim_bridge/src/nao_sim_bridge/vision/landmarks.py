@@ -108,12 +108,10 @@ class LandmarkDetector:
                 return None
             off = distance_from(better, edges)
             ellipse = better
-            if np.sqrt(np.mean(off**2)) > self._allowed(better):
+            allowed = self._settings.roundness[0] + self._settings.roundness[1] * better.radii[0]
+            if np.sqrt(np.mean(off**2)) > allowed:
                 return None
         return ellipse
-
-    def _allowed(self, ellipse: Ellipse) -> float:
-        return self._settings.roundness[0] + self._settings.roundness[1] * ellipse.radii[0]
 
 
 # --- inside ---------------------------------------------------------------------------------------------------------

@@ -11,13 +11,12 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
-from multiprocessing.connection import Connection
 from typing import Any, Iterable, Protocol
 
 import cv2
 import numpy as np
 
-from nao_sim_bridge.base.child_process import error_text, pipe_to_parent
+from nao_sim_bridge.base.child_process import pipe_to_parent, serve
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.cameras.optics import Optics
 
@@ -65,13 +64,15 @@ class Detectors:
     def __init__(self) -> None:
         self._detectors: dict[int, Detector] = {}
 
-    def open(self, key: int, name: str, arguments: tuple) -> None:
+    def open(self, content: tuple[int, str, tuple]) -> None:
+        key, name, arguments = content
         self._detectors[key] = make_detector(name, arguments)
 
     def close(self, key: int) -> None:
         self._detectors.pop(key, None)
 
-    def call(self, key: int, method: str, arguments: tuple) -> Any:
+    def call(self, content: tuple[int, str, tuple]) -> Any:
+        key, method, arguments = content
         return getattr(self._detectors[key], method)(*arguments)
 
 
@@ -81,23 +82,8 @@ def main(arguments: Iterable[str]) -> int:
     pipe = pipe_to_parent(descriptor)
     cv2.setNumThreads(1)  # the other cores are for physics and drawing
     pipe.send(("ready", None))
-    try:
-        _serve(pipe, Detectors())
-    except (EOFError, BrokenPipeError, ConnectionResetError):
-        pass  # the parent is gone or wants no more
-    return 0
-
-
-def _serve(pipe: Connection, detectors: Detectors) -> None:
-    requests = {"open": detectors.open, "close": detectors.close, "call": detectors.call}
-    while True:
-        kind, content = pipe.recv()
-        try:
-            answer = requests[kind](*content)
-        except Exception as error:
-            pipe.send(("error", error_text(error)))
-            continue
-        pipe.send((kind, answer))
+    detectors = Detectors()
+    return serve(pipe, {"open": detectors.open, "close": detectors.close, "call": detectors.call})
 
 
 if __name__ == "__main__":

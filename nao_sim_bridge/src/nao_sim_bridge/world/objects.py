@@ -21,6 +21,7 @@ import numpy as np
 
 from nao_sim_bridge.base.config import check_keys, vector
 from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.base.rotations import vector3
 from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.shapes import KINDS, Shape, read_shape
 from nao_sim_bridge.world.cards import CARDS
@@ -106,8 +107,8 @@ def _read(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
     parts, body, middle = _centred(made)
     return WorldObject(
         name=entry["name"],
-        position=_floats(position + rpy_matrix(rpy) @ middle),
-        rpy=_floats(rpy),
+        position=vector3(position + rpy_matrix(rpy) @ middle),
+        rpy=vector3(rpy),
         parts=parts,
         mass=number(entry, "mass", where, values["mass"]),
         friction=number(entry, "friction", where, values["friction"]),
@@ -115,7 +116,7 @@ def _read(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
         restitution=number(entry, "restitution", where, values["restitution"], highest=1.0),
         body=body,
         kind=name if name != "parts" else "thing",
-        origin=_floats(-middle),
+        origin=vector3(-middle),
     )
 
 
@@ -148,7 +149,7 @@ def _centred(made: Made) -> tuple[tuple[Part, ...], tuple[Shape, ...] | None, np
 
 
 def _moved(shape: Shape, middle: np.ndarray) -> Shape:
-    return replace(shape, xyz=_floats(np.array(shape.xyz) - middle))
+    return replace(shape, xyz=vector3(np.array(shape.xyz) - middle))
 
 
 def _volume(shape: Shape) -> float:
@@ -161,8 +162,3 @@ def _volume(shape: Shape) -> float:
         return ball
     rod = math.pi * radius**2 * shape.size[1]
     return rod + ball if shape.kind == "capsule" else rod
-
-
-def _floats(values: Any) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in values)
-    return x, y, z

@@ -68,7 +68,10 @@ def _trunk(scale: float, clothes: Color, trousers: Color, skin: Color) -> tuple[
         parts += [
             Part(_rod(0.052 * scale, shoulder, elbow), clothes),
             Part(_rod(0.042 * scale, elbow, wrist), clothes),
-            Part(Shape("ellipsoid", _scaled((0.035, 0.022, 0.065), scale), _scaled(_hand(side), scale)), skin),
+            Part(
+                Shape("ellipsoid", _scaled((0.035, 0.022, 0.065), scale), _scaled((0.045, side * 0.232, 0.76), scale)),
+                skin,
+            ),
         ]
         body.append(_rod(0.045 * scale, shoulder, wrist))
     parts += [
@@ -82,10 +85,6 @@ def _trunk(scale: float, clothes: Color, trousers: Color, skin: Color) -> tuple[
 
 _LEG = ((0.0, 0.095, 0.86), (0.01, 0.10, 0.47), (-0.005, 0.10, 0.09))
 _ARM = ((0.0, 0.188, 1.32), (-0.02, 0.222, 1.06), (0.03, 0.232, 0.83))
-
-
-def _hand(side: float) -> tuple[float, float, float]:
-    return (0.045, side * 0.232, 0.76)
 
 
 def _head(look: FaceLook, face: WorldPicture, half_axes: tuple[float, float, float], middle: float) -> list[Part]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.readings import Pose
-from nao_sim_bridge.base.rotations import Quaternion, Vector3
+from nao_sim_bridge.base.rotations import Quaternion, Vector3, vector3
 from nao_sim_bridge.model.kinematics import finger_transforms, link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.world.world import WorldObject
@@ -143,9 +143,9 @@ def preset_camera(
     eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))
     up = frame[:3, 2] if view.follows == "head" else np.array((0.0, 0.0, 1.0))
     return Camera(
-        eye=_vector3(eye),
-        target=_vector3(target),
-        up=_vector3(up),
+        eye=vector3(eye),
+        target=vector3(target),
+        up=vector3(up),
         fov=math.radians(view.fov_deg),
         width=width,
         height=height,
@@ -169,10 +169,6 @@ def _upright(base: np.ndarray) -> np.ndarray:
     yaw = math.atan2(forward[1], forward[0])
     c, s = math.cos(yaw), math.sin(yaw)
     return transform(np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), base[:3, 3])
-
-
-def _vector3(values: np.ndarray) -> Vector3:
-    return float(values[0]), float(values[1]), float(values[2])
 
 
 def frames_in_world(model: RobotModel, look: RobotLook) -> dict[str, np.ndarray]:
