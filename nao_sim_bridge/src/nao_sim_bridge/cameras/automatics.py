@@ -61,11 +61,7 @@ def metered(picture: np.ndarray) -> np.ndarray:
 
 
 def exposure_of(pixels: np.ndarray, values: Mapping[int, int], sensor: SensorModel) -> Exposure:
-    """What a picture is exposed with.
-
-    Args:
-        pixels: (h, w, 3) uint8, what is metered.
-    """
+    """What a picture is exposed with, by its metered pixels, (h, w, 3) uint8."""
     if not values[AUTO_EXPOSURE]:
         return Exposure(values[EXPOSURE], values[GAIN])
     levels = luminance(pixels)

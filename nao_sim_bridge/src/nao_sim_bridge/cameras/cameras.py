@@ -52,6 +52,7 @@ class Cameras:
 
     Attributes:
         tables: Resolutions, colour spaces and parameters that there are.
+        streams: Those who look; replaced, never changed.
         lock: Guards everything in here and in the streams.
         active: Index of the camera that NAOqi's modules take when nobody says which.
 
@@ -78,7 +79,7 @@ class Cameras:
         self._look = look
         self._places = CameraPlaces(model)
         self._darkroom = Darkroom(renderer, self._places, model.version, guard or Guard())
-        self._streams: tuple[CameraStream, ...] = ()
+        self.streams: tuple[CameraStream, ...] = ()
         self._shutters = [Shutter(self.ticks_per_second) for _ in CAMERAS]
         self._stopped = [False for _ in CAMERAS]
         self._numbers = [0 for _ in CAMERAS]
@@ -104,7 +105,7 @@ class Cameras:
 
     def holds(self) -> bool:
         """Whether time should wait, when it runs faster than the wall clock."""
-        return any(stream.waits for stream in self._streams)
+        return any(stream.waits for stream in self.streams)
 
     # --- looking --------------------------------------------------------------------------------------------------
 
@@ -142,7 +143,7 @@ class Cameras:
             if self._closed:
                 raise CameraClosed("the cameras are closed: the simulation has ended")
             stream.set_up(camera, resolution, color_space, fps)
-            self._streams = (*self._streams, stream)
+            self.streams = (*self.streams, stream)
             self.changed()
         return stream
 
@@ -170,10 +171,6 @@ class Cameras:
 
         self._darkroom.put(draw)
         return drawn.result().array()
-
-    @property
-    def streams(self) -> tuple[CameraStream, ...]:
-        return self._streams
 
     def optics(self, camera: int) -> CameraOptics:
         return self._places.optics[self.tables.camera(camera)]
@@ -254,7 +251,7 @@ class Cameras:
         """Everybody who waits gets CameraClosed, and nobody sees anything any more."""
         with self.lock:
             self._closed = True
-            for stream in self._streams:
+            for stream in self.streams:
                 stream.close()
         self._darkroom.close()
 
@@ -264,13 +261,13 @@ class Cameras:
         """Somebody looks, or looks no more, or at another rate."""
         now = self._snapshot.tick if self._snapshot is not None else 0
         for camera, shutter in enumerate(self._shutters):
-            rates = [stream.rate for stream in self._streams if stream.camera == camera]
+            rates = [stream.rate for stream in self.streams if stream.camera == camera]
             shutter.set_rate(Fraction(0) if self._stopped[camera] else max(rates, default=Fraction(0)), now)
         self._next_tick = min(shutter.next_tick for shutter in self._shutters)
 
     def forget(self, stream: CameraStream) -> None:
         """A stream has been closed."""
-        self._streams = tuple(other for other in self._streams if other is not stream)
+        self.streams = tuple(other for other in self.streams if other is not stream)
         self.changed()
 
     def draw(self, stream: CameraStream, ask: Ask, moment: Moment) -> None:
@@ -291,7 +288,7 @@ class Cameras:
             if snapshot.tick < shutter.next_tick:
                 continue
             exact_time = shutter.advance(snapshot.tick)
-            wanted = [stream for stream in self._streams if stream.camera == camera and stream.takes(exact_time)]
+            wanted = [stream for stream in self.streams if stream.camera == camera and stream.takes(exact_time)]
             if wanted:
                 state = state or self._look(snapshot)
                 moment = self._moment(camera, snapshot, state)

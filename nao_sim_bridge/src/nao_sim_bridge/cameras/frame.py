@@ -64,11 +64,7 @@ class CameraClosed(SimulationError):
 
 
 class Ask:
-    """Somebody waits for a frame.
-
-    Args:
-        callback: Called once, with a frame or an error.
-    """
+    """Somebody waits for a frame: `callback` is called once, with it or with an error."""
 
     def __init__(self, callback: Callable[[Answer], None]) -> None:
         self.callback = callback

@@ -92,11 +92,7 @@ class Optics:
 
 
 class CameraOptics(Optics):
-    """The optics of one camera of a robot.
-
-    Args:
-        index: 0 top, 1 bottom.
-    """
+    """The optics of one camera of a robot, 0 top or 1 bottom."""
 
     def __init__(self, version: str = "V6", index: int = 0) -> None:
         camera = next(camera for camera in load_model(version).cameras if camera.index == index)

@@ -47,11 +47,7 @@ class HeardSound:
 
 
 class Localiser:
-    """Locates the sounds that stand out from the background.
-
-    Args:
-        rate: Hz.
-    """
+    """Locates the sounds that stand out from the background, in samples of `rate` Hz."""
 
     def __init__(self, array: MicrophoneArray, rate: int) -> None:
         self._detector = SoundDetector(rate, QUIET)

@@ -15,11 +15,7 @@ WINDOW = np.sqrt(np.hanning(FRAME + 1)[:FRAME]).astype(np.float32)
 
 
 def noise_spectrum(background: np.ndarray) -> np.ndarray:
-    """Mean power of noise in each band.
-
-    Args:
-        background: (n,) samples without speech, at least one frame of them.
-    """
+    """Mean power of noise in each band, of (n,) samples without speech, at least one frame of them."""
     return np.mean(np.abs(_spectra(background)) ** 2, axis=0)
 
 

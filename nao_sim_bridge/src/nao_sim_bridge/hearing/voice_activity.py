@@ -85,11 +85,7 @@ class VoiceActivity:
         self._present = False
 
     def get_used_to(self, samples: np.ndarray) -> None:
-        """Start anew, with the background of what was heard before; speech in it is left out.
-
-        Args:
-            samples: (n,) as `hear` takes them.
-        """
+        """Start anew, with the background of samples heard before; speech in it is left out. See `hear`."""
         self.reset()
         frames = _scaled(samples)
         frames = frames[: len(frames) // self._frame * self._frame].reshape(-1, self._frame)

@@ -34,10 +34,16 @@ ENGINES = ("auto", "opengl", "builtin")
 log = logging.getLogger("nao_sim.pictures")
 
 
-def _process(mode: str, world_name: str, version: str) -> ChildProcess:
-    """A new picture process; a window talks about its threads on the standard output, which nobody wants to read."""
-    arguments = (mode, world_name, version)
-    return ChildProcess(MODULE, arguments, "picture process", RenderError, PictureRefused, silent=mode == "window")
+def _started(mode: str, world_name: str, version: str, what: str) -> tuple[ChildProcess, Any]:
+    """A new picture process that is ready, and what it says of itself."""
+    arguments, window = (mode, world_name, version), mode == "window"
+    # A window talks about its threads on the standard output, which nobody wants to read.
+    worker = ChildProcess(MODULE, arguments, "picture process", RenderError, PictureRefused, silent=window)
+    try:
+        return worker, worker.receive(START_TIMEOUT, what)
+    except RenderError:
+        worker.stop()
+        raise
 
 
 class Renderer:
@@ -182,12 +188,8 @@ class Renderer:
             return worker, engine, f"pictures are drawn slowly, for with OpenGL there is an error: {error}"
 
     def _start_with(self, engine: str) -> tuple[ChildProcess, str, str | None]:
-        worker = _process(f"pictures:{engine}", self._world_name, self._version)
-        try:
-            return (worker, *worker.receive(START_TIMEOUT, "starting"))
-        except RenderError:
-            worker.stop()
-            raise
+        worker, told = _started(f"pictures:{engine}", self._world_name, self._version, "starting")
+        return (worker, *told)
 
 
 class Viewer:
@@ -214,13 +216,8 @@ class Viewer:
         """
         if not os.environ.get("DISPLAY"):
             raise RenderError("window: there is no display (DISPLAY is not set); leave the window out, or set it")
-        worker = _process("window", self._world_name, self._version)
-        try:
-            worker.receive(START_TIMEOUT, "window")
-        except RenderError:
-            worker.stop()
-            raise
-        self._worker, self._drawing, self._sender = worker, False, StateSender()
+        self._worker, _ = _started("window", self._world_name, self._version, "window")
+        self._drawing, self._sender = False, StateSender()
         return self
 
     def show(self, state: RenderState) -> None:

@@ -37,11 +37,7 @@ class FilmCamera:
         self._time = 0.0
 
     def at(self, time: float, state: RenderState) -> Camera:
-        """The camera of a frame.
-
-        Args:
-            time: Of the frame, s; rises from call to call.
-        """
+        """The camera of a frame at a time in s, which rises from call to call."""
         if self._view not in PRESETS or PRESETS[self._view].follows != "body":
             return preset_camera(self._view, self._model, state, *self._size)
         x, y, _ = state.base_position

@@ -33,11 +33,7 @@ GLOW = 0.9
 
 
 class Studio:
-    """Where pictures are taken; one thread only.
-
-    Attributes:
-        name: Of the engine, for people.
-    """
+    """Where pictures are taken; one thread only."""
 
     name = "the built-in renderer (PyBullet's TinyRenderer)"
 

@@ -185,9 +185,6 @@ class RosHealth:
     """Plugs the charger and sets the charge.
 
     ROS API: services `~plug_charger` (std_srvs/SetBool), `~set_battery` (nao_library_msgs/SetFloat; 0..1).
-
-    Args:
-        private: What the names of its services begin with.
     """
 
     def __init__(self, server: SimulatorServer, private: str = "~") -> None:

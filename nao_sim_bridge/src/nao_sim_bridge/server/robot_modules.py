@@ -183,11 +183,7 @@ class RobotModules:
                         log.exception("%s does not let go of %s", name, module)
 
     def leaving(self, film_limit: float = END_LIMIT) -> list[Step]:
-        """First steps of the end, while the simulation runs or has been left behind: complete what is under way.
-
-        Args:
-            film_limit: See `FilmControl.close`.
-        """
+        """First steps of the end, while the simulation runs or has been left behind: complete what is under way."""
         return [
             self._life.close,
             *self._audio.closing(),

@@ -44,13 +44,10 @@ class SoundFile:
     """
 
     def __init__(self, simulation: Simulation, path: Path) -> None:
-        self._loudspeakers = simulation.sound.loudspeakers
-        self._wake = simulation.wake
         self._path = path
         self._file = WavFile(path, RATE, 2)
         self._lost = 0  # frames that the disk had no room for
-        self._follower = Follower("sound file", simulation.sound.timeline, self._write, FILE_STEP)
-        simulation.holds.append(self.behind)
+        self._listen_to(simulation)
 
     def behind(self) -> bool:
         """Whether fast time should wait for the file."""
@@ -59,14 +56,17 @@ class SoundFile:
     def follow(self, simulation: Simulation) -> None:
         """Write what another simulation plays from now on, behind what there is; in its thread."""
         self._follower.close()
-        self._loudspeakers, self._wake = simulation.sound.loudspeakers, simulation.wake
-        self._follower = Follower("sound file", simulation.sound.timeline, self._write, FILE_STEP)
-        simulation.holds.append(self.behind)
+        self._listen_to(simulation)
 
     def close(self) -> None:
         """Write what has been played, and end."""
         self._follower.close()
         self._file.close()
+
+    def _listen_to(self, simulation: Simulation) -> None:
+        self._loudspeakers = simulation.sound.loudspeakers
+        self._follower = Follower("sound file", simulation.sound.timeline, self._write, FILE_STEP)
+        simulation.holds.append(self.behind)
 
     def _write(self, first: int, last: int) -> None:
         samples = self._loudspeakers.pcm(first, last)

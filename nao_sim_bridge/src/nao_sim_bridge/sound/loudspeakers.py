@@ -39,11 +39,7 @@ class SpeakerPlaying(Playing):
 
 
 class Loudspeakers:
-    """Both loudspeakers. Simulation thread, but for reading properties and `played`.
-
-    Args:
-        volume: Of the start, 0..100.
-    """
+    """Both loudspeakers. Simulation thread, but for reading properties and `played`. Volumes: 0..100."""
 
     def __init__(self, timeline: Timeline, ids: TaskIds, volume: float = 100.0) -> None:
         self._timeline = timeline

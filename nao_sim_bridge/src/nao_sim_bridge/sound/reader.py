@@ -23,11 +23,7 @@ class _Failed(SoundFileError):
 
 
 class SoundReader:
-    """Its process starts with the first file. Any thread may ask; one file is read at a time.
-
-    Attributes:
-        sizes: What is allowed.
-    """
+    """Its process starts with the first file. Any thread may ask; one file is read at a time."""
 
     def __init__(self) -> None:
         self.sizes: Sizes = load_sizes()

@@ -61,13 +61,10 @@ class SoundSource:
 
 
 class Stint:
-    """A time at one place, or on one way without jumps.
+    """A time at one place in world, m, or on one way without jumps.
 
     Attributes:
         presence: 0..1: 1 while the source is here.
-
-    Args:
-        position: First place in world, m.
     """
 
     def __init__(self, position: Position, presence: float) -> None:
@@ -231,11 +228,7 @@ def position_of(position: Position) -> Position:
 
 
 def loud_rms(samples: np.ndarray) -> float:
-    """Root mean square of a sound without its pauses; 0 for silence.
-
-    Args:
-        samples: (frames, 1) at RATE.
-    """
+    """Root mean square of a sound, (frames, 1) at RATE, without its pauses; 0 for silence."""
     step = RATE // 50
     padded = np.zeros(-(-len(samples) // step) * step)
     padded[: len(samples)] = samples[:, 0]

@@ -40,14 +40,11 @@ class Alarm:
 
 
 class Timeline:
-    """Simulated time in frames. A tick without work costs one comparison.
+    """Simulated time in frames; `keep` s of it are remembered. A tick without work costs one comparison.
 
     Attributes:
         now: The frame of now: what is before it is past and never changes; any thread may read it.
         forget: Called with a frame now and then: what was over before it may be forgotten.
-
-    Args:
-        keep: How long the past is kept, s.
     """
 
     def __init__(self, keep: float, guard: Guard) -> None:

@@ -79,11 +79,7 @@ class TagReader:
         self._left_out: set[str] = set()
 
     def read(self, text: str, prosody: Prosody = PLAIN) -> list[Piece]:
-        """Pieces of a text in their order.
-
-        Args:
-            prosody: How it is spoken where no tag says otherwise.
-        """
+        """Pieces of a text in their order; `prosody` is for where no tag says otherwise."""
         return list(_Reading(self, prosody).pieces(text))
 
     def leave_out(self, tag: str, why: str) -> None:

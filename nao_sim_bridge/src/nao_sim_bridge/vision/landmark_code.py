@@ -54,12 +54,7 @@ class LandmarkCode:
         self._spectra = np.conj(np.fft.rfft(_normalised(blurred), axis=1))
 
     def read(self, grey: np.ndarray, ellipse: Ellipse, lens: Intrinsics) -> Reading | None:
-        """The mark that a disc is, None when it is none.
-
-        Args:
-            grey: (h, w) uint8.
-            ellipse: Edge of the disc.
-        """
+        """The mark that a disc with this edge is in a (h, w) uint8 picture, None when it is none."""
         # Which end of a slanted disc is nearer cannot be told from its edge.
         both = [slant if np.linalg.norm(slant) >= LEAST_SLANT else None for slant in ellipse.slants(lens)]
         readings = [reading for side in both for reading in self._read(grey, ellipse, side)]

@@ -121,10 +121,7 @@ def preset_camera(
     height: int = 480,
     supersampling: int = 2,
 ) -> Camera:
-    """A camera that shows the robot where it is.
-
-    Args:
-        name: One of `PRESETS`.
+    """A camera that shows the robot where it is, from a view of `PRESETS`.
 
     Raises:
         UnknownName: If there is no such view.

@@ -20,12 +20,7 @@ class ContextError(SimulationError):
 
 @dataclass(frozen=True)
 class Context:
-    """A grammar in use. Never changed: every change makes another one.
-
-    Attributes:
-        inactive: Rules that are switched off.
-        slots: Words of the slots that have been filled.
-    """
+    """A grammar in use. Never changed: every change makes another one."""
 
     bnf: BnfGrammar
     inactive: FrozenSet[str] = frozenset()

@@ -42,9 +42,6 @@ HALO_SIZE, HALO_LIGHT = 2.6, 0.4
 class OpenGLEngine:
     """Draws a world with robots; one thread only.
 
-    Attributes:
-        name: What draws, for people.
-
     Raises:
         SimulationError: OpenGL cannot be had here.
     """

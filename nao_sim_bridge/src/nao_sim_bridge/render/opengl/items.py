@@ -32,12 +32,7 @@ AT_HOME = 0.005
 
 
 class RobotRows:
-    """The rows of one robot; what has not changed is not worked out again.
-
-    Args:
-        looks: Of its items.
-        items: Their numbers.
-    """
+    """One robot, at the rows `items` of all; what has not changed is not worked out again."""
 
     def __init__(self, model: RobotModel, appearance: Appearance, looks: Sequence[Look], items: slice) -> None:
         self._model = model

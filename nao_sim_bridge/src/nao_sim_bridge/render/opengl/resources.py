@@ -50,11 +50,7 @@ def describe(context: Any) -> str:
 
 
 class Canvas:
-    """A picture of one size.
-
-    Args:
-        samples: Points of each pixel that edges are drawn for.
-    """
+    """A picture of one size, whose edges are drawn for so many samples of each pixel."""
 
     def __init__(self, context: Any, width: int, height: int, samples: int) -> None:
         self._context = context
@@ -95,11 +91,7 @@ class Canvases:
         self._kept: OrderedDict[tuple[int, int, int], Canvas] = OrderedDict()
 
     def get(self, width: int, height: int, fineness: int) -> Canvas:
-        """A canvas.
-
-        Args:
-            fineness: 1 for one sample a pixel; more for smooth edges.
-        """
+        """A canvas; a fineness of 1 is for one sample a pixel, more is for smooth edges."""
         samples = SAMPLES if fineness > 1 and width * height <= MANY_PIXELS else 0
         key = (width, height, samples)
         if key not in self._kept:
