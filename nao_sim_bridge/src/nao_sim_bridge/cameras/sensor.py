@@ -196,11 +196,7 @@ def _flipped(rgb: np.ndarray, values: Mapping[int, int]) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Photograph:
-    """A picture with what the automatic chose for it.
-
-    Attributes:
-        data: The pixels in the colour space of the shot.
-    """
+    """A picture in the colour space of its shot, with what the automatic chose for it."""
 
     chosen: Chosen
     data: bytes

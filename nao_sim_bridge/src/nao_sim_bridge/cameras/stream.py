@@ -110,13 +110,10 @@ class CameraStream:
         return answers[0]
 
     def ask(self, callback: Callable[[Answer], None]) -> Ask:
-        """As `take`, without waiting.
+        """As `take`, without waiting; returns what `give_up` takes.
 
         Args:
             callback: Called in the cameras' thread, once, with the frame or the error; it must not block.
-
-        Returns:
-            What `give_up` takes.
         """
         ask = Ask(callback)
         with self._lock:

@@ -15,11 +15,7 @@ OTHER = "OTHER-"
 
 @dataclass(frozen=True)
 class Arc:
-    """A way from one state to another.
-
-    Attributes:
-        token: Name in `Network.tokens` of what is said on the way; None for nothing.
-    """
+    """A way from one state to another, on which a token of `Network.tokens` is said, or nothing (None)."""
 
     start: int
     end: int

@@ -51,11 +51,7 @@ class Utterance:
 
 
 class VoiceActivity:
-    """Cuts a stream of blocks into utterances.
-
-    Attributes:
-        sensitivity: 0..1; the higher, the quieter speech may be beside the background.
-    """
+    """Cuts a stream into utterances; at a high sensitivity, 0..1, speech may be quieter beside the background."""
 
     def __init__(self, settings: RecognitionSettings, sensitivity: float = 0.5) -> None:
         self._settings = settings.voice_activity

@@ -15,11 +15,7 @@ HELP = "for OpenGL without a graphics card install the packages libegl1, libgl1 
 
 
 class Engine(Protocol):
-    """Something that draws; one thread only.
-
-    Attributes:
-        name: What it is, for people.
-    """
+    """Something that draws; one thread only. Its name is for people."""
 
     name: str
 

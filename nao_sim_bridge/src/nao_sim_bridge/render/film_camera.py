@@ -16,13 +16,10 @@ EYE_LEVEL = 0.3
 
 
 class FilmCamera:
-    """A camera that keeps the robot in view.
+    """A camera that keeps the robot in view, by the name of a view of `PRESETS`.
 
     Views of the body look from the side where the robot was ahead of them at the first frame, and move with it over
     the floor; they neither turn nor bob with it. Other views are those of pictures.
-
-    Args:
-        view: A name of a view; see `PRESETS`.
 
     Raises:
         UnknownName: There is no such view; when the first camera is asked for.

@@ -55,11 +55,7 @@ def ray_through(view: Sequence[float], projection: Sequence[float], x: float, y:
 
 
 class Pointer:
-    """Follows the left button of the mouse.
-
-    Args:
-        client: PyBullet's client with the window.
-    """
+    """Follows the left button of the mouse in the window of a PyBullet client."""
 
     def __init__(self, client: int) -> None:
         self._client = client

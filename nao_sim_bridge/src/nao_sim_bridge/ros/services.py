@@ -53,14 +53,11 @@ def success_service(
 
 
 def success_of(begin: Callable[[], Task], when_killed: str) -> tuple[bool, str]:
-    """Wait for what `begin` starts, and for what that leads to.
+    """Wait for what `begin` starts, and for what that leads to; (True, ""), or (False, what was wrong).
 
     Args:
         begin: Starts a task, whose result may be another one.
         when_killed: What to say of a task that was ended before its time.
-
-    Returns:
-        (True, ""), or (False, what was wrong).
     """
     try:
         task: Any = begin()

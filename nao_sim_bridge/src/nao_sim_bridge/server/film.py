@@ -53,13 +53,10 @@ class FilmReport:
 
 
 class Film:
-    """One film that is being taken.
+    """One film that is being taken, into the file at `path`.
 
     Threads: the simulation's puts states into a queue, a follower of the sound's clock puts sound there, a third one
     sends both to the process that draws. The lock guards the queue.
-
-    Attributes:
-        path: The file.
 
     Args:
         path: The file; one that is there is replaced.

@@ -24,11 +24,7 @@ FILE, TYPE = "film.mp4", ".mp4"
 
 
 class FilmControl:
-    """Begins and ends films, one at a time. For any thread.
-
-    Args:
-        engine: What draws; see `Renderer`.
-    """
+    """Begins and ends films, one at a time. For any thread."""
 
     def __init__(
         self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, engine: str = "auto"
@@ -104,11 +100,7 @@ class FilmControl:
         return worked_out(self._ids.make("stopFilm"), stop, "stopFilm")
 
     def close(self, limit: float = END_LIMIT) -> None:
-        """End the film that is being taken, if there is one; before the simulation ends.
-
-        Args:
-            limit: s of wall time, after which what is not drawn yet is left out.
-        """
+        """End the film that is taken, before the simulation ends; what is not drawn in `limit` s is left out."""
         with self._lock:
             film, self._film = self._film, None
         if film is not None:

@@ -26,11 +26,7 @@ WINDOW_PERIOD = 1.0 / 30.0
 
 
 class Pictures:
-    """Draws the simulated robot from outside.
-
-    Args:
-        simulation: What to draw; only its published values are read.
-    """
+    """Draws the simulated robot from outside; only its published values are read."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation

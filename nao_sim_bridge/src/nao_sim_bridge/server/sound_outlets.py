@@ -84,10 +84,7 @@ class SoundFile:
 
 
 class SoundCard:
-    """The computer's own loudspeakers.
-
-    Args:
-        simulation: Whose loudspeakers are to be heard; time must run at speed 1.
+    """The computer's own loudspeakers; time must run at speed 1.
 
     Raises:
         SoundCardError: There is no library or no card.

@@ -21,11 +21,7 @@ WHERE = "object"
 
 
 class ThingsControl:
-    """Places, moves and removes things.
-
-    Args:
-        files: Where clients may have pictures read from.
-    """
+    """Places, moves and removes things; their pictures may be files of clients."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
         self._simulation = simulation
@@ -47,10 +43,7 @@ class ThingsControl:
         return self.place(entry)
 
     def place(self, entry: Mapping[str, Any]) -> Task:
-        """Place a thing; the task ends when it is there.
-
-        Args:
-            entry: As in a world file; the file of an `image` is one of the client's.
+        """Place a thing as in a world file, its `image` a file of the client; the task ends when it is there.
 
         Raises:
             WorldError: The entry is wrong.

@@ -18,14 +18,11 @@ from nao_sim_bridge.sound.timeline import Timeline
 
 
 class Air:
-    """What robots in one world hear of it and of each other.
+    """What robots in one world hear of it and of each other; settings are those of the file by default.
 
     Attributes:
         timeline: The clock of sound.
         numbers: For the names of sounds that nobody named.
-
-    Args:
-        settings: None for those of the file.
     """
 
     def __init__(self, ids: TaskIds, tick_s: float, settings: SoundSettings | None = None) -> None:

@@ -61,11 +61,7 @@ class SoundSource:
 
 
 class Stint:
-    """A time at one place in world, m, or on one way without jumps.
-
-    Attributes:
-        presence: 0..1: 1 while the source is here.
-    """
+    """A time at one place in world, m, or on one way without jumps. Presence is 1 while the source is here."""
 
     def __init__(self, position: Position, presence: float) -> None:
         self.places = Envelope(position, GLIDE)
@@ -78,11 +74,7 @@ class Stint:
 
 
 class SourcePlaying(Playing):
-    """A source that sounds.
-
-    Attributes:
-        stints: Where it is and was, one after the other.
-    """
+    """A source that sounds; its stints follow each other, the last one is now."""
 
     def __init__(self, source: SoundSource, peak: float, timeline: Timeline, ids: TaskIds) -> None:
         self.name = source.name

@@ -107,11 +107,7 @@ def limited(prosody: Prosody) -> Prosody:
 
 @dataclass(frozen=True)
 class Pronunciations:
-    """Replacements of whole words, whatever their capitals.
-
-    Attributes:
-        entries: (word as written, word as spoken), no word twice.
-    """
+    """Replacements (word as written, as spoken) of whole words, whatever their capitals; no word twice."""
 
     entries: Tuple[Tuple[str, str], ...] = ()
 

@@ -56,11 +56,7 @@ class _Talk:
 
 
 class Speaker:
-    """Speaks texts, the first come first.
-
-    Attributes:
-        listeners: Called with every `SpeechEvent`.
-    """
+    """Speaks texts, the first come first; listeners are called with every `SpeechEvent`."""
 
     def __init__(self, simulation: Any, studio: Studio) -> None:
         self.listeners: list[Callable[[SpeechEvent], None]] = []

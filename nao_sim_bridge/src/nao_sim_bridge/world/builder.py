@@ -176,14 +176,7 @@ def _body(seen: Sequence[int], position: Sequence[float], orientation: Sequence[
 
 
 def visual_shape(mesh: Mesh, color: Sequence[float], client: int) -> int:
-    """A visual shape of PyBullet; its own spheres and cylinders are a few dozen flat triangles.
-
-    Args:
-        color: (r, g, b) in 0..1.
-
-    Returns:
-        Id of the shape, for `createMultiBody`.
-    """
+    """Id of a visual shape, of a colour in 0..1; those that PyBullet makes itself are a few dozen flat triangles."""
     return pybullet.createVisualShape(
         pybullet.GEOM_MESH,
         vertices=mesh.vertices.tolist(),
@@ -196,11 +189,7 @@ def visual_shape(mesh: Mesh, color: Sequence[float], client: int) -> int:
 
 
 def texture(picture: WorldPicture, client: int) -> int:
-    """A texture of PyBullet, which takes them from files only.
-
-    Returns:
-        Id of the texture, for `changeVisualShape`.
-    """
+    """Id of a texture for `changeVisualShape`; PyBullet takes them from files only."""
     from PIL import Image  # most worlds have no pictures
 
     content = io.BytesIO()

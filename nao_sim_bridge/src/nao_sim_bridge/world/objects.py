@@ -72,10 +72,7 @@ THINGS: Mapping[str, Kind] = {
 
 
 def read_object(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
-    """A thing from its entry.
-
-    Args:
-        files: From the name of a file that the entry has to its path.
+    """A thing from its entry; `files` gives the path of a file that it names.
 
     Raises:
         WorldError: The entry is wrong.

@@ -46,10 +46,7 @@ THROWS = 50
 
 
 def read_world(content: Any, name: str, where: str, folder: Path | None = None) -> World:
-    """A world from the content of its file.
-
-    Args:
-        folder: Where the file is: files that it names are beside it.
+    """A world from the content of its file; files that it names are in `folder`.
 
     Raises:
         WorldError: If an entry is wrong, unknown or missing.
@@ -188,10 +185,7 @@ def world_names() -> tuple[str, ...]:
 
 
 def load_world(name_or_path: str) -> World:
-    """Read a world.
-
-    Args:
-        name_or_path: Name of a world of this package (`empty`), or a path that ends in `.yaml`.
+    """Read a world of this package by its name (`empty`), or from a path that ends in `.yaml`.
 
     Raises:
         WorldError: If there is no such world, or an entry of it is wrong, unknown or missing.

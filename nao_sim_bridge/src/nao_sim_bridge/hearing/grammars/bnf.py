@@ -41,11 +41,7 @@ DEEPEST = 100
 
 
 class GrammarError(SimulationError):
-    """A grammar file that cannot be read.
-
-    Attributes:
-        line: Where, from 1; 0 for the file as a whole.
-    """
+    """A grammar file that cannot be read; lines count from 1, 0 is the file as a whole."""
 
     def __init__(self, problem: str, line: int = 0) -> None:
         self.line = line

@@ -26,11 +26,7 @@ class Words:
 
 @dataclass(frozen=True)
 class Anything:
-    """Any other speech, or none.
-
-    Attributes:
-        written: Whether it is written in the result when there was some.
-    """
+    """Any other speech, or none; whether it is written in the result when there was some."""
 
     written: bool = True
 

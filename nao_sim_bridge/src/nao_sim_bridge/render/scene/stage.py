@@ -35,10 +35,7 @@ def _place(pose: Pose | None, home: Place) -> Place:
 
 
 class Stage:
-    """The things of a world and the robots in one PyBullet world.
-
-    Attributes:
-        figures: The robots; the first is the robot itself.
+    """The things of a world and the robots, the robot itself first, in one PyBullet world.
 
     Args:
         floor: Whether the floor is one of the bodies.
