@@ -63,7 +63,7 @@ class Speaker:
         self._simulation = simulation
         self._studio = studio
         self._talks: deque[_Talk] = deque()
-        simulation.after_tick.append(self._go_on)
+        simulation.after_tick.append(self._tick)
         simulation.holds.append(self.waits_for_sound)
         simulation.after_reset.append(self.stop_all)
         studio.released = lambda: simulation.wake()
@@ -117,7 +117,7 @@ class Speaker:
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
-    def _go_on(self, _: Any = None) -> None:
+    def _tick(self, _: Any = None) -> None:
         """Do everything that is due now."""
         while self._talks:
             talk = self._talks[0]
