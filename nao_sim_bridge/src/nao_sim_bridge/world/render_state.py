@@ -140,8 +140,8 @@ def preset_camera(
     eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))
     up = frame[:3, 2] if view.follows == "head" else np.array((0.0, 0.0, 1.0))
     return Camera(
-        eye=vector3(eye),
-        target=vector3(target),
+        eye=vector3(eye[:3]),
+        target=vector3(target[:3]),
         up=vector3(up),
         fov=math.radians(view.fov_deg),
         width=width,
