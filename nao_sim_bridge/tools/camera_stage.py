@@ -9,8 +9,7 @@ import numpy as np
 
 from nao_sim_bridge.base.rotations import from_roll_pitch_yaw
 from nao_sim_bridge.cameras.optics import CameraOptics
-from nao_sim_bridge.cameras.photograph import read_photograph
-from nao_sim_bridge.cameras.shot import Shot
+from nao_sim_bridge.cameras.sensor import Shot, read_photograph
 from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model

@@ -9,7 +9,7 @@ import numpy as np
 
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.cameras.cameras import Cameras
-from nao_sim_bridge.cameras.photograph import photograph
+from nao_sim_bridge.cameras.sensor import photograph
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
 from nao_sim_bridge.world.render_state import RenderState

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from nao_sim_bridge.cameras.shot import Shot
+from nao_sim_bridge.cameras.sensor import Shot
 from nao_sim_bridge.model.kinematics import matrix_quaternion, rpy_matrix
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture

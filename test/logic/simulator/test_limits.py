@@ -19,8 +19,8 @@ from nao_library_msgs.srv import (
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.guard import Failure
 from nao_sim_bridge.core.scene import Scene
-from nao_sim_bridge.ros.diagnostics import status_of
-from nao_sim_bridge.ros.limits import checked
+from nao_sim_bridge.ros.services import checked
+from nao_sim_bridge.ros.side import status_of
 from nao_sim_bridge.world.objects import read_object
 from nao_sim_bridge.world.reader import read_world
 from nao_sim_bridge.world.world import WorldError

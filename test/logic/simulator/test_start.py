@@ -28,10 +28,9 @@ from nao_sim_bridge.base.record_dir import (
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.simulation import Scene
 from nao_sim_bridge.ros.robot import RosRobot
-from nao_sim_bridge.ros.success import success_service
+from nao_sim_bridge.ros.services import success_of, success_service
 from nao_sim_bridge.server.cli import parse, server_options
 from nao_sim_bridge.server.options import ServerOptions
-from nao_sim_bridge.server.task_success import success_of
 from nao_sim_bridge.world.places import MOST_ROBOTS
 
 LAUNCH = Path(__file__).parents[3] / "launch" / "launch"

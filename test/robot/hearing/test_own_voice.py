@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from nao_sim_bridge.base.samples import RATE, Sound, sine
-from nao_sim_bridge.hearing.own_voice import OwnVoice
+from nao_sim_bridge.hearing.localiser import OwnVoice
 
 
 def test_the_own_voice_is_foretold_as_the_microphones_hear_it(bench):
     one = bench(posture="Crouch", stiffness=0.0)
-    sound, own = one.simulation.sound, OwnVoice(one.model, one.simulation.sound)
+    sound, own = one.simulation.sound, OwnVoice(one.simulation.sound)
     one.run(0.2)
     assert own.power(0.0, 0.15) == 0.0  # nothing plays
     noise = Sound(0.1 * np.random.default_rng(3).standard_normal(RATE // 2).astype(np.float32))

@@ -10,7 +10,7 @@ from seen import AWAY, BLUE, GREEN, MODEL, RED, STATE, UNTURNED, clear, middle, 
 
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.readings import Pose
-from nao_sim_bridge.cameras.places import CameraPlaces
+from nao_sim_bridge.cameras.darkroom import CameraPlaces
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.render import RobotLook
 from nao_sim_bridge.render.engines import open_engine

@@ -11,9 +11,9 @@ from sounds import sound_of
 
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.samples import RATE, sine
-from nao_sim_bridge.render.wire import StateSender
 from nao_sim_bridge.server.sound_outlets import CARD_DELAY, SoundCard, SoundFile
-from nao_sim_bridge.sound.wav_file import WavFile
+from nao_sim_bridge.sound.files import WavFile
+from nao_sim_bridge.world.render_state import StateSender
 
 SIDE, FRAME_RATE = 64, 5.0
 

@@ -13,7 +13,7 @@ from seen_cards import OPTICS, mark, sphere
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.vision.ball import BallDetector
 from nao_sim_bridge.vision.client import VisionClosed, VisionProcess, VisionRefused
-from nao_sim_bridge.vision.detector import DETECTORS, make_detector
+from nao_sim_bridge.vision.worker import DETECTORS, make_detector
 
 BALL = sphere(0.8, 0.05, 0.1, 0.05)
 

@@ -18,7 +18,7 @@ import traceback
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import SimulationError
 
@@ -170,6 +170,28 @@ def pipe_to_parent(descriptors: str, completes: bool = False) -> Connection:
     if not completes:
         _end_with(life)
     return Connection(pipe)
+
+
+def serve(pipe: Connection, requests: Mapping[str, Callable[[Any], Any]]) -> int:
+    """Answer each request with what is made of its content, or with an error, until the pipe is closed.
+
+    Args:
+        requests: What makes the answer, by the kind of the request, which is that of the answer as well.
+
+    Returns:
+        Exit status of the process.
+    """
+    try:
+        while True:
+            kind, content = pipe.recv()
+            try:
+                answer = requests[kind](content)
+            except Exception as error:
+                pipe.send(("error", error_text(error)))
+            else:
+                pipe.send((kind, answer))
+    except (EOFError, BrokenPipeError, ConnectionResetError):
+        return 0  # the parent is gone or wants no more
 
 
 def _end_with(life: int) -> None:

@@ -161,3 +161,18 @@ class TaskIds:
 def stopped_error() -> SimulationStopped:
     """The error for everything that waits when the simulation ends."""
     return SimulationStopped("the simulation has stopped")
+
+
+def worked_out(task: Task, work: Callable[[], Any], thread: str) -> Task:
+    """`task`, which ends with what `work` returns or raises in a thread of its own: for what takes wall time."""
+
+    def run() -> None:
+        try:
+            result = work()
+        except Exception as error:
+            task.finish(error=error)
+        else:
+            task.finish(result)
+
+    threading.Thread(target=run, name=thread, daemon=True).start()
+    return task

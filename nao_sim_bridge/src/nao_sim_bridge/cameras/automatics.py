@@ -12,7 +12,7 @@ from typing import Mapping, Tuple
 import numpy as np
 
 from nao_sim_bridge.cameras.color_spaces import luminance
-from nao_sim_bridge.cameras.parameters import (
+from nao_sim_bridge.cameras.settings import (
     AUTO_EXPOSURE,
     AUTO_WHITE_BALANCE,
     BACKLIGHT,
@@ -21,8 +21,8 @@ from nao_sim_bridge.cameras.parameters import (
     EXPOSURE_ALGORITHM,
     GAIN,
     WHITE_BALANCE,
+    SensorModel,
 )
-from nao_sim_bridge.cameras.settings import SensorModel
 
 GAMMA = 2.2
 """Of the pictures: twice the light makes them 2 ** (1 / 2.2) times as bright."""
@@ -61,13 +61,7 @@ def metered(picture: np.ndarray) -> np.ndarray:
 
 
 def exposure_of(pixels: np.ndarray, values: Mapping[int, int], sensor: SensorModel) -> Exposure:
-    """What a picture is exposed with.
-
-    Args:
-        pixels: (h, w, 3) uint8, what is metered.
-        values: Parameters of the camera.
-        sensor: What they mean.
-    """
+    """What a picture is exposed with, by its metered pixels, (h, w, 3) uint8."""
     if not values[AUTO_EXPOSURE]:
         return Exposure(values[EXPOSURE], values[GAIN])
     levels = luminance(pixels)

@@ -18,25 +18,23 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.guard import Guard
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.cameras.asks import Answer, Ask, CameraClosed
 from nao_sim_bridge.cameras.automatics import NEUTRAL_KELVIN
-from nao_sim_bridge.cameras.darkroom import CapturesPictures, Darkroom
-from nao_sim_bridge.cameras.frame import Frame
-from nao_sim_bridge.cameras.moment import Moment
+from nao_sim_bridge.cameras.darkroom import CameraPlaces, CapturesPictures, Darkroom
+from nao_sim_bridge.cameras.frame import Answer, Ask, CameraClosed, Frame, Moment
 from nao_sim_bridge.cameras.optics import CameraOptics
-from nao_sim_bridge.cameras.parameters import (
+from nao_sim_bridge.cameras.rate import Shutter
+from nao_sim_bridge.cameras.sensor import Chosen
+from nao_sim_bridge.cameras.settings import (
     AUTO_EXPOSURE,
     AUTO_WHITE_BALANCE,
+    CAMERAS,
     EXPOSURE,
     GAIN,
     KEEP_ALIVE,
     LUMINANCE,
     WHITE_BALANCE,
+    load_cameras,
 )
-from nao_sim_bridge.cameras.places import CameraPlaces
-from nao_sim_bridge.cameras.rate import Shutter
-from nao_sim_bridge.cameras.sensor import Chosen
-from nao_sim_bridge.cameras.settings import CAMERAS, load_cameras
 from nao_sim_bridge.cameras.stream import CameraStream
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.world.render_state import RenderState
@@ -54,14 +52,11 @@ class Cameras:
 
     Attributes:
         tables: Resolutions, colour spaces and parameters that there are.
-        ticks_per_second: Of the simulation.
+        streams: Those who look; replaced, never changed.
         lock: Guards everything in here and in the streams.
         active: Index of the camera that NAOqi's modules take when nobody says which.
 
     Args:
-        model: The robot.
-        tick_s: Length of a tick, s.
-        renderer: What draws.
         look: What there is to see at a snapshot.
         released: Called when time that waited need not wait any more.
         guard: Calls who gets frames; None for one of its own.
@@ -84,7 +79,7 @@ class Cameras:
         self._look = look
         self._places = CameraPlaces(model)
         self._darkroom = Darkroom(renderer, self._places, model.version, guard or Guard())
-        self._streams: tuple[CameraStream, ...] = ()
+        self.streams: tuple[CameraStream, ...] = ()
         self._shutters = [Shutter(self.ticks_per_second) for _ in CAMERAS]
         self._stopped = [False for _ in CAMERAS]
         self._numbers = [0 for _ in CAMERAS]
@@ -103,7 +98,6 @@ class Cameras:
         self._snapshot, self._seed, self._began = snapshot, seed, snapshot.tick
 
     def tick(self, snapshot: Snapshot) -> None:
-        """A tick has passed."""
         self._snapshot = snapshot
         if snapshot.tick >= self._next_tick:
             with self.lock:
@@ -111,7 +105,7 @@ class Cameras:
 
     def holds(self) -> bool:
         """Whether time should wait, when it runs faster than the wall clock."""
-        return any(stream.waits for stream in self._streams)
+        return any(stream.waits for stream in self.streams)
 
     # --- looking --------------------------------------------------------------------------------------------------
 
@@ -149,7 +143,7 @@ class Cameras:
             if self._closed:
                 raise CameraClosed("the cameras are closed: the simulation has ended")
             stream.set_up(camera, resolution, color_space, fps)
-            self._streams = (*self._streams, stream)
+            self.streams = (*self.streams, stream)
             self.changed()
         return stream
 
@@ -178,13 +172,7 @@ class Cameras:
         self._darkroom.put(draw)
         return drawn.result().array()
 
-    @property
-    def streams(self) -> tuple[CameraStream, ...]:
-        """Those who look."""
-        return self._streams
-
     def optics(self, camera: int) -> CameraOptics:
-        """Field of view of a camera."""
         return self._places.optics[self.tables.camera(camera)]
 
     def rate(self, camera: int) -> float:
@@ -237,7 +225,6 @@ class Cameras:
             self._parameters[camera] = values
 
     def reset_parameters(self, camera: int) -> None:
-        """Put all parameters of a camera to their defaults."""
         with self.lock:
             self._parameters[self.tables.camera(camera)] = self.tables.defaults
             self._chosen[camera] = self._nothing_chosen()
@@ -247,7 +234,6 @@ class Cameras:
         return bool(self._parameters[self.tables.camera(camera)].get(KEEP_ALIVE, 0))
 
     def stopped(self, camera: int) -> bool:
-        """Whether a camera has been stopped."""
         return self._stopped[self.tables.camera(camera)]
 
     def set_stopped(self, camera: int, stopped: bool) -> None:
@@ -265,7 +251,7 @@ class Cameras:
         """Everybody who waits gets CameraClosed, and nobody sees anything any more."""
         with self.lock:
             self._closed = True
-            for stream in self._streams:
+            for stream in self.streams:
                 stream.close()
         self._darkroom.close()
 
@@ -275,13 +261,13 @@ class Cameras:
         """Somebody looks, or looks no more, or at another rate."""
         now = self._snapshot.tick if self._snapshot is not None else 0
         for camera, shutter in enumerate(self._shutters):
-            rates = [stream.rate for stream in self._streams if stream.camera == camera]
+            rates = [stream.rate for stream in self.streams if stream.camera == camera]
             shutter.set_rate(Fraction(0) if self._stopped[camera] else max(rates, default=Fraction(0)), now)
         self._next_tick = min(shutter.next_tick for shutter in self._shutters)
 
     def forget(self, stream: CameraStream) -> None:
         """A stream has been closed."""
-        self._streams = tuple(other for other in self._streams if other is not stream)
+        self.streams = tuple(other for other in self.streams if other is not stream)
         self.changed()
 
     def draw(self, stream: CameraStream, ask: Ask, moment: Moment) -> None:
@@ -302,7 +288,7 @@ class Cameras:
             if snapshot.tick < shutter.next_tick:
                 continue
             exact_time = shutter.advance(snapshot.tick)
-            wanted = [stream for stream in self._streams if stream.camera == camera and stream.takes(exact_time)]
+            wanted = [stream for stream in self.streams if stream.camera == camera and stream.takes(exact_time)]
             if wanted:
                 state = state or self._look(snapshot)
                 moment = self._moment(camera, snapshot, state)

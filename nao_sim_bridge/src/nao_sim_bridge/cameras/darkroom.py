@@ -1,4 +1,4 @@
-"""The thread that has pictures drawn, in the order in which they are asked for; what is asked twice is drawn once."""
+"""Where the cameras are, and the thread that has their pictures drawn in order; what is asked twice is drawn once."""
 
 from __future__ import annotations
 
@@ -7,15 +7,21 @@ from collections import OrderedDict, deque
 from typing import Any, Callable, Protocol
 
 import cv2
+import numpy as np
 
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.guard import Guard
-from nao_sim_bridge.cameras.frame import Frame
-from nao_sim_bridge.cameras.moment import Moment
-from nao_sim_bridge.cameras.photograph import Photograph, photograph, read_photograph
-from nao_sim_bridge.cameras.places import CameraPlaces
-from nao_sim_bridge.cameras.settings import ColorSpace, Resolution
-from nao_sim_bridge.cameras.shot import Shot
+from nao_sim_bridge.base.rotations import Quaternion, Vector3, vector3
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.cameras.frame import Frame, Moment, Position6D
+from nao_sim_bridge.cameras.optics import CameraOptics
+from nao_sim_bridge.cameras.sensor import Photograph, Shot, photograph, read_photograph
+from nao_sim_bridge.cameras.settings import CAMERA_NAMES, ColorSpace, Resolution
+from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
+from nao_sim_bridge.model.frames import ROBOT, Placement, frame_of, space_in_torso
+from nao_sim_bridge.model.kinematics import matrix_quaternion, matrix_rpy, quaternion_matrix, transform
+from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.world.render_state import RenderState
 
 TIMEOUT = 30.0
 """Longest time for a picture, s of wall time; a busy machine may take a thousand times as long as an idle one."""
@@ -23,6 +29,35 @@ CLOSING = 5.0
 """How long the end waits for the thread, s of wall time."""
 KEPT = 4
 """How many pictures are kept for those who ask for the same a little later."""
+
+
+class CameraPlaces:
+    """The cameras of one robot."""
+
+    def __init__(self, model: RobotModel) -> None:
+        self._model = model
+        self._body = body_kinematics(model)
+        self._frames = [frame_of(model, name) for name in CAMERA_NAMES]
+        self.optics = [CameraOptics(model.version, index) for index in range(len(CAMERA_NAMES))]
+
+    def in_world(self, state: RenderState, camera: int) -> tuple[Vector3, Quaternion]:
+        """Where a camera truly is."""
+        torso = transform(quaternion_matrix(state.base_orientation), state.base_position)
+        pose = torso @ self._body.at(state.joint_positions).pose(self._frames[camera])
+        return vector3(pose[:3, 3]), matrix_quaternion(pose[:3, :3])
+
+    def measured(self, snapshot: Snapshot, camera: int) -> tuple[Position6D, Position6D]:
+        """Where ALMotion says that a camera is, from the sensors: in the torso's frame, and in the robot's."""
+        torso = transform(quaternion_matrix(snapshot.odometry.orientation), snapshot.odometry.position)
+        poses = self._body.at(snapshot.positions).poses
+        placement = Placement({link: poses[row] for link, row in self._body.row.items()}, torso)
+        in_torso = placement.in_torso(self._frames[camera])
+        robot_in_torso = space_in_torso(self._model, ROBOT, placement)
+        return _position6d(in_torso), _position6d(np.linalg.inv(robot_in_torso) @ in_torso)
+
+
+def _position6d(pose: np.ndarray) -> Position6D:
+    return (*vector3(pose[:3, 3]), *matrix_rpy(pose[:3, :3]))
 
 
 class CapturesPictures(Protocol):
@@ -33,17 +68,7 @@ class CapturesPictures(Protocol):
 
 
 class Darkroom:
-    """Turns moments into frames.
-
-    Attributes:
-        renderer: What draws.
-
-    Args:
-        renderer: See above.
-        places: Where the cameras are.
-        version: Robot version.
-        guard: Does what is put.
-    """
+    """Turns moments into frames."""
 
     def __init__(self, renderer: CapturesPictures, places: CameraPlaces, version: str, guard: Guard) -> None:
         self._guard = guard

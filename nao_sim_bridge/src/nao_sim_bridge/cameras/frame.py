@@ -1,11 +1,15 @@
-"""A picture as a camera gives it."""
+"""Frames of a camera: as they fall due, are asked for, and are given."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Tuple
+from typing import Callable, Mapping, Tuple, Union
 
 import numpy as np
+
+from nao_sim_bridge.base.errors import SimulationError
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.world.render_state import RenderState
 
 Position6D = Tuple[float, float, float, float, float, float]
 
@@ -17,8 +21,6 @@ class Frame:
     Attributes:
         time: Simulated time at which it was taken, s.
         camera: Index, 0 top, 1 bottom.
-        width: Pixels.
-        height: Pixels.
         color_space: NAOqi's id.
         layers: Bytes a pixel.
         data: The pixels, row by row from the upper left corner.
@@ -52,3 +54,59 @@ class Frame:
         """Seconds and microseconds of `time`."""
         microseconds = round(self.time * 1e6)
         return microseconds // 1000000, microseconds % 1000000
+
+
+Answer = Union[Frame, Exception]
+
+
+class CameraClosed(SimulationError):
+    """A stream, or all cameras, were closed while somebody waited for a frame."""
+
+
+class Ask:
+    """Somebody waits for a frame: `callback` is called once, with it or with an error."""
+
+    def __init__(self, callback: Callable[[Answer], None]) -> None:
+        self.callback = callback
+        self.given_up = False
+
+    @property
+    def answered(self) -> bool:
+        """Whether the callback has been called, or is about to be."""
+        return self.callback is _answered
+
+    def take_callback(self) -> Callable[[Answer], None]:
+        """The callback, to be called; it can be had once."""
+        callback, self.callback = self.callback, _answered
+        return callback
+
+
+def _answered(_: Answer) -> None:
+    """In the place of a callback that has been called: what it belongs to need not be kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """A frame that falls due and has not been drawn: what is kept of its tick.
+
+    Attributes:
+        number: Counts the frames of the camera.
+        snapshot: What was sensed.
+        state: What there was to see.
+        parameters: Settings of the camera, by NAOqi's id; never changed, only replaced.
+        noise: Seed of the noise; equal runs have equal noise, after a reset as well.
+        replaced_by: (h, w, 3) uint8 RGB that the camera sees instead of the world; None for the world.
+    """
+
+    camera: int
+    number: int
+    snapshot: Snapshot
+    state: RenderState
+    parameters: Mapping[int, int]
+    noise: int
+    replaced_by: np.ndarray | None = None
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self.snapshot.time

@@ -47,65 +47,52 @@ class Optics:
         """Horizontal and vertical field of view, rad."""
         return self.hfov, self.vfov
 
+    @property
+    def _tangents(self) -> Pair:
+        """Of half the horizontal and half the vertical field of view."""
+        return math.tan(self.hfov / 2.0), math.tan(self.vfov / 2.0)
+
     def intrinsics(self, width: int, height: int) -> Intrinsics:
         """Focal lengths and centre for a size of picture, in pixels."""
-        fx = width / 2.0 / math.tan(self.hfov / 2.0)
-        fy = height / 2.0 / math.tan(self.vfov / 2.0)
-        return Intrinsics(fx, fy, width / 2.0, height / 2.0)
+        across, down = self._tangents
+        return Intrinsics(width / 2.0 / across, height / 2.0 / down, width / 2.0, height / 2.0)
 
     def angles(self, x: float, y: float) -> Pair:
         """(alpha, beta) of a normalised place in the picture."""
-        alpha = math.atan((1.0 - 2.0 * x) * math.tan(self.hfov / 2.0))
-        beta = math.atan((2.0 * y - 1.0) * math.tan(self.vfov / 2.0))
-        return alpha, beta
+        across, down = self._tangents
+        return math.atan((1.0 - 2.0 * x) * across), math.atan((2.0 * y - 1.0) * down)
 
     def place(self, alpha: float, beta: float) -> Pair:
         """Normalised place (x, y) in the picture of two angles, each below a right angle."""
-        x = 0.5 - math.tan(alpha) / math.tan(self.hfov / 2.0) / 2.0
-        y = 0.5 + math.tan(beta) / math.tan(self.vfov / 2.0) / 2.0
-        return x, y
+        across, down = self._tangents
+        return 0.5 - math.tan(alpha) / across / 2.0, 0.5 + math.tan(beta) / down / 2.0
 
     def angular_size(self, width: float, height: float) -> Pair:
         """Angles, rad, of something in the middle of the picture with a normalised size."""
-        return (
-            2.0 * math.atan(width * math.tan(self.hfov / 2.0)),
-            2.0 * math.atan(height * math.tan(self.vfov / 2.0)),
-        )
+        across, down = self._tangents
+        return 2.0 * math.atan(width * across), 2.0 * math.atan(height * down)
 
     def image_size(self, width: float, height: float) -> Pair:
         """Normalised size of something in the middle of the picture that fills two angles, rad."""
-        return (
-            math.tan(width / 2.0) / math.tan(self.hfov / 2.0),
-            math.tan(height / 2.0) / math.tan(self.vfov / 2.0),
-        )
+        across, down = self._tangents
+        return math.tan(width / 2.0) / across, math.tan(height / 2.0) / down
 
     def ray(self, x: float, y: float) -> np.ndarray:
         """(3,) unit vector in the camera's frame (X ahead, Y left, Z up) to a normalised place in the picture."""
-        direction = np.array(
-            (
-                1.0,
-                (1.0 - 2.0 * x) * math.tan(self.hfov / 2.0),
-                (1.0 - 2.0 * y) * math.tan(self.vfov / 2.0),
-            )
-        )
+        across, down = self._tangents
+        direction = np.array((1.0, (1.0 - 2.0 * x) * across, (1.0 - 2.0 * y) * down))
         return direction / np.linalg.norm(direction)
 
     def project(self, point: np.ndarray) -> Pair | None:
         """Normalised place of a (3,) point in the camera's frame, m; None when it is not in front of the camera."""
         if point[0] <= 0.0:
             return None
-        x = 0.5 - point[1] / point[0] / math.tan(self.hfov / 2.0) / 2.0
-        y = 0.5 - point[2] / point[0] / math.tan(self.vfov / 2.0) / 2.0
-        return float(x), float(y)
+        across, down = self._tangents
+        return float(0.5 - point[1] / point[0] / across / 2.0), float(0.5 - point[2] / point[0] / down / 2.0)
 
 
 class CameraOptics(Optics):
-    """The optics of one camera of a robot.
-
-    Args:
-        version: Robot version.
-        index: 0 top, 1 bottom.
-    """
+    """The optics of one camera of a robot, 0 top or 1 bottom."""
 
     def __init__(self, version: str = "V6", index: int = 0) -> None:
         camera = next(camera for camera in load_model(version).cameras if camera.index == index)

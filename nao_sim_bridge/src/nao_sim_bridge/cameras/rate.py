@@ -17,9 +17,6 @@ class Shutter:
     Attributes:
         rate: Frames a second; 0 while nobody wants any.
         next_tick: The tick of the next frame; a number beyond all ticks while there is none.
-
-    Args:
-        ticks_per_second: Of the simulation.
     """
 
     NEVER = 1 << 62
@@ -69,12 +66,7 @@ class Shutter:
 
 
 class Share:
-    """Which frames of a camera one stream gets: those that come when 1 / rate has passed since its beginning.
-
-    Args:
-        rate: Frames a second.
-        ticks_per_second: Of the simulation.
-    """
+    """Which frames of a camera one stream gets: those that come when 1 / rate has passed since its beginning."""
 
     def __init__(self, rate: Fraction, ticks_per_second: Fraction) -> None:
         self._ticks_per_second = ticks_per_second

@@ -1,4 +1,4 @@
-"""What the sensor makes of the light: exposure and gain, noise, colours, tone. Pure functions of arrays.
+"""What a camera is asked for, and what its sensor makes of the light: exposure and gain, noise, colours, tone. Pure.
 
 The picture that comes in is what a perfect camera shows of a well-lit room. All that works pixel by pixel is one table
 of 256 entries a channel, so that it costs next to nothing.
@@ -9,16 +9,18 @@ Focus: what is blurred is the whole picture. How far away things are is not look
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import struct
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Mapping
 
 import cv2
 import numpy as np
 
+from nao_sim_bridge.base.rotations import Quaternion, Vector3
 from nao_sim_bridge.cameras.automatics import Balance, balance_of, exposure_of, metered
-from nao_sim_bridge.cameras.color_spaces import Y_OF_RGB, luminance
-from nao_sim_bridge.cameras.parameters import (
+from nao_sim_bridge.cameras.color_spaces import Y_OF_RGB, encoded, luminance
+from nao_sim_bridge.cameras.settings import (
     AUTO_FOCUS,
     BRIGHTNESS,
     CONTRAST,
@@ -29,9 +31,9 @@ from nao_sim_bridge.cameras.parameters import (
     SATURATION,
     SHARPNESS,
     V_FLIP,
+    SensorModel,
+    load_cameras,
 )
-from nao_sim_bridge.cameras.settings import SensorModel, load_cameras
-from nao_sim_bridge.cameras.shot import Shot
 
 MIDDLE = 128.0
 """What contrast leaves as it is."""
@@ -41,6 +43,36 @@ NOISE_LENGTH = 1 << 18
 """Values of noise that are made; they are used again and again, from another place on in each picture."""
 FOCUS_BLUR = 6.0
 """Blur at the nearest focus, in pixels of a picture 640 wide."""
+# What the automatics chose goes in front of the pixels, because only here the picture is known.
+HEADER = struct.Struct("<iiif")
+
+
+@dataclass(frozen=True)
+class Shot:
+    """What a camera of the robot is asked for.
+
+    Attributes:
+        version: Robot version: what the numbers of the parameters mean.
+        camera: Index, 0 top, 1 bottom.
+        position: Of the camera in world, m.
+        orientation: Of the camera in world, quaternion (x, y, z, w); X along the optical axis, Y left, Z up.
+        hfov: Horizontal field of view, rad.
+        vfov: Vertical field of view, rad.
+        color_space: NAOqi's id.
+        parameters: Settings of the camera, by NAOqi's id; what is not there is at its default.
+    """
+
+    version: str
+    camera: int
+    position: Vector3
+    orientation: Quaternion
+    hfov: float
+    vfov: float
+    width: int
+    height: int
+    color_space: int
+    parameters: Mapping[int, int] = field(default_factory=dict)
+    seed: int = 0
 
 
 @dataclass(frozen=True)
@@ -65,7 +97,6 @@ def develop(picture: np.ndarray, shot: Shot) -> tuple[np.ndarray, Chosen]:
 
     Args:
         picture: (h, w, 3) uint8 RGB as a perfect camera would show it.
-        shot: The settings.
 
     Returns:
         (h, w, 3) uint8 RGB, and what the automatics chose.
@@ -161,3 +192,33 @@ def _sharpened(rgb: np.ndarray, amount: float) -> np.ndarray:
 def _flipped(rgb: np.ndarray, values: Mapping[int, int]) -> np.ndarray:
     code = {(1, 0): 1, (0, 1): 0, (1, 1): -1}.get((values[H_FLIP], values[V_FLIP]))
     return rgb if code is None else cv2.flip(rgb, code)
+
+
+@dataclass(frozen=True, eq=False)
+class Photograph:
+    """A picture in the colour space of its shot, with what the automatic chose for it."""
+
+    chosen: Chosen
+    data: bytes
+
+
+def photograph(picture: np.ndarray, shot: Shot) -> bytes:
+    """What a camera makes of a picture.
+
+    Args:
+        picture: (h, w, 3) uint8 RGB as a perfect camera would show it.
+
+    Returns:
+        The pixels in the shot's colour space, behind a header that `read_photograph` takes apart.
+
+    Raises:
+        BadValue: The colour space is not one of a colour camera.
+    """
+    rgb, chosen = develop(picture, shot)
+    pixels = np.ascontiguousarray(encoded(rgb, shot.color_space))
+    return HEADER.pack(chosen.exposure, chosen.gain, chosen.white_balance, chosen.luminance) + pixels.data
+
+
+def read_photograph(packed: bytes) -> Photograph:
+    """What `photograph` packed."""
+    return Photograph(Chosen(*HEADER.unpack_from(packed)), bytes(memoryview(packed)[HEADER.size :]))

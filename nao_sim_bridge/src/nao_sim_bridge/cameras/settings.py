@@ -1,4 +1,4 @@
-"""What the cameras can do: resolutions, colour spaces and parameters, from `config/cameras.json`."""
+"""What cameras can do: resolutions, colour spaces and parameters, from `config/cameras.json`, with NAOqi's numbers."""
 
 from __future__ import annotations
 
@@ -9,6 +9,27 @@ from typing import Any, Callable, Mapping, Tuple
 from nao_sim_bridge.base.config import check_keys, config_file, read_json, section
 from nao_sim_bridge.base.errors import BadValue, ConfigError
 
+BRIGHTNESS = 0
+CONTRAST = 1
+SATURATION = 2
+HUE = 3
+GAIN = 6
+H_FLIP = 7
+V_FLIP = 8
+AUTO_EXPOSURE = 11
+AUTO_WHITE_BALANCE = 12
+EXPOSURE = 17
+EXPOSURE_ALGORITHM = 22
+SHARPNESS = 24
+WHITE_BALANCE = 33
+BACKLIGHT = 34
+KEEP_ALIVE = 35
+LUMINANCE = 39
+AUTO_FOCUS = 40
+FOCUS = 43
+
+FOCUS_ONCE = 250
+"""This value of the focus makes the camera focus once; it is sharp then."""
 FILE = "cameras.json"
 CAMERAS = (0, 1)
 """Indexes of the cameras: top and bottom."""
@@ -23,8 +44,6 @@ class Resolution:
     Attributes:
         id: NAOqi's number.
         name: NAOqi's name.
-        width: Pixels.
-        height: Pixels.
         most_fps: The most frames a second, for each camera; 0 where it cannot be had.
     """
 
@@ -57,10 +76,6 @@ class CameraParameter:
     Attributes:
         id: NAOqi's number.
         name: NAOqi's name.
-        least: Smallest value.
-        most: Largest value.
-        default: What it is at the start.
-        read_only: It can be read only.
     """
 
     id: int
@@ -95,14 +110,10 @@ class CameraTables:
     """What the cameras of one robot version can do.
 
     Attributes:
-        version: Robot version.
         model_id: NAOqi's number of the camera model.
         most_fps: The most frames a second of any resolution.
         same_name: How many subscribers may have the same name.
-        resolutions: By id.
         color_spaces: By id, those included that only depth cameras have.
-        parameters: By id.
-        sensor: What the parameters do.
     """
 
     version: str
@@ -146,7 +157,9 @@ class CameraTables:
         colored = {space.id: space for space in self.color_spaces.values() if space.layers}
         if number in self.color_spaces and number not in colored:
             space = self.color_spaces[number]
-            raise BadValue("colorSpace", number, f"one of {_ids(colored)}: {space.name} needs a depth camera")
+            raise BadValue(
+                "colorSpace", number, f"one of {', '.join(map(str, colored))}: {space.name} needs a depth camera"
+            )
         _known("colorSpace", number, colored, lambda s: "")
         return colored[number]
 
@@ -177,10 +190,6 @@ def _known(field: str, number: Any, table: Mapping[int, Any], text: Callable[[An
     if isinstance(number, bool) or not isinstance(number, int) or number not in table:
         listed = ", ".join(f"{key} ({text(value)})" if text(value) else str(key) for key, value in table.items())
         raise BadValue(field, number, f"one of {listed}")
-
-
-def _ids(table: Mapping[int, Any]) -> str:
-    return ", ".join(map(str, table))
 
 
 @lru_cache(maxsize=None)

@@ -7,13 +7,11 @@ import threading
 import time
 from collections import deque
 from fractions import Fraction
-from typing import Any, Callable, Protocol
+from typing import Callable, Protocol
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.cameras.asks import Answer, Ask, CameraClosed
-from nao_sim_bridge.cameras.frame import Frame
-from nao_sim_bridge.cameras.moment import Moment
+from nao_sim_bridge.cameras.frame import Answer, Ask, CameraClosed, Frame, Moment
 from nao_sim_bridge.cameras.rate import Share, exact_rate
 from nao_sim_bridge.cameras.settings import CameraTables, ColorSpace, Resolution
 
@@ -52,12 +50,12 @@ class CameraStream:
     Attributes:
         name: For the log.
         every: Whether every due frame counts, or only the newest.
+        size: Of its pictures.
+        pixels: How its pictures are written.
         dropped: Frames that were due and that nobody took in time; only where every frame counts.
 
     Args:
         cameras: Its owner; its lock guards what is in here.
-        name: See above.
-        every: See above.
         keep: How many frames wait at most.
     """
 
@@ -71,13 +69,13 @@ class CameraStream:
         self._keep = keep if every else 1
         self._asks: deque[Ask] = deque()
         self._drawing = 0
-        self._closed = False
+        self.closed = False
         self._finished = False
         self._owes_since: float | None = time.monotonic()
         self._had_one = False
         self._camera = 0
-        self._resolution: Resolution
-        self._color_space: ColorSpace
+        self.size: Resolution
+        self.pixels: ColorSpace
         self._fps = 0.0
         self._share: Share
 
@@ -112,18 +110,15 @@ class CameraStream:
         return answers[0]
 
     def ask(self, callback: Callable[[Answer], None]) -> Ask:
-        """As `take`, without waiting.
+        """As `take`, without waiting; returns what `give_up` takes.
 
         Args:
             callback: Called in the cameras' thread, once, with the frame or the error; it must not block.
-
-        Returns:
-            What `give_up` takes.
         """
         ask = Ask(callback)
         with self._lock:
             self._owes_since = None
-            if self._closed or (self._finished and not self._pending):
+            if self.closed or (self._finished and not self._pending):
                 self._cameras.answer(ask, self._closed_error())
             elif len(self._asks) >= MOST_ASKS:
                 raise BadValue("calls that wait for a frame", len(self._asks) + 1, f"at most {MOST_ASKS}")
@@ -155,16 +150,11 @@ class CameraStream:
     def close(self) -> None:
         """Look no more; whoever waits gets CameraClosed."""
         with self._lock:
-            self._closed = True
+            self.closed = True
             self._pending.clear()
             self._cameras.forget(self)
             self._end_asks()
         self._cameras.released()
-
-    @property
-    def closed(self) -> bool:
-        """Whether it has been closed."""
-        return self._closed
 
     @property
     def camera(self) -> int:
@@ -173,7 +163,7 @@ class CameraStream:
 
     @camera.setter
     def camera(self, index: int) -> None:
-        self.look(index, self._resolution.id)
+        self.look(index, self.size.id)
 
     def look(self, camera: int, resolution: int) -> None:
         """Change camera and resolution at once.
@@ -183,16 +173,16 @@ class CameraStream:
         """
         with self._lock:
             index, size = self._cameras.tables.camera(camera), self._cameras.tables.resolution(resolution)
-            self._check(index, size, self._fps)
+            self._cameras.tables.check_rate(index, size, self._fps)
             if index != self._camera:
                 self._pending.clear()
-            self._camera, self._resolution = index, size
+            self._camera, self.size = index, size
             self._restart()
 
     @property
     def resolution(self) -> int:
         """NAOqi's id of the resolution."""
-        return self._resolution.id
+        return self.size.id
 
     @resolution.setter
     def resolution(self, number: int) -> None:
@@ -201,13 +191,13 @@ class CameraStream:
     @property
     def color_space(self) -> int:
         """NAOqi's id of the colour space."""
-        return self._color_space.id
+        return self.pixels.id
 
     @color_space.setter
     def color_space(self, number: int) -> None:
         space = self._cameras.tables.color_space(number)
         with self._lock:
-            self._color_space = space
+            self.pixels = space
 
     @property
     def fps(self) -> float:
@@ -217,7 +207,7 @@ class CameraStream:
     @fps.setter
     def fps(self, rate: float) -> None:
         with self._lock:
-            self._check(self._camera, self._resolution, rate)
+            self._cameras.tables.check_rate(self._camera, self.size, rate)
             self._fps = rate
             self._restart()
 
@@ -227,9 +217,9 @@ class CameraStream:
         """What it shows; once, before it is used."""
         tables = self._cameras.tables
         self._camera = tables.camera(camera)
-        self._resolution = tables.resolution(resolution)
-        self._color_space = tables.color_space(color_space)
-        self._check(self._camera, self._resolution, fps)
+        self.size = tables.resolution(resolution)
+        self.pixels = tables.color_space(color_space)
+        self._cameras.tables.check_rate(self._camera, self.size, fps)
         self._fps = fps
         self._share = Share(self._rate(), self._cameras.ticks_per_second)
 
@@ -237,16 +227,6 @@ class CameraStream:
     def rate(self) -> Fraction:
         """Frames a second that the camera has to take for it."""
         return Fraction(0) if self._finished else self._share.rate
-
-    @property
-    def size(self) -> Resolution:
-        """Of its pictures."""
-        return self._resolution
-
-    @property
-    def pixels(self) -> ColorSpace:
-        """How its pictures are written."""
-        return self._color_space
 
     @property
     def waits(self) -> bool:
@@ -276,7 +256,7 @@ class CameraStream:
         """A picture is drawn. Returns who gets it; None when nobody does any more, then it is kept."""
         self._drawing -= 1
         if ask.given_up:
-            if not self._closed:
+            if not self.closed:
                 self._take_back(moment)
             return None
         self._had_one = True
@@ -306,20 +286,17 @@ class CameraStream:
             log.info("%s is too slow for its camera: %d frames lost so far", self.name, self.dropped)
 
     def _rate(self) -> Fraction:
-        most = self._resolution.most_fps[self._camera]
+        most = self.size.most_fps[self._camera]
         return min(exact_rate(self._fps), Fraction(most))
 
     def _restart(self) -> None:
         self._share = Share(self._rate(), self._cameras.ticks_per_second)
         self._cameras.changed()
 
-    def _check(self, camera: int, resolution: Resolution, fps: Any) -> None:
-        self._cameras.tables.check_rate(camera, resolution, fps)
-
     def _end_asks(self) -> None:
         while self._asks:
             self._cameras.answer(self._asks.popleft(), self._closed_error())
 
     def _closed_error(self) -> CameraClosed:
-        how = "closed" if self._closed else "finished"
+        how = "closed" if self.closed else "finished"
         return CameraClosed(f"camera stream {self.name!r} is {how}")

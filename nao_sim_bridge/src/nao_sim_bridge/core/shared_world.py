@@ -20,7 +20,7 @@ from nao_sim_bridge.world.places import ORIGIN, RobotPlace
 from nao_sim_bridge.world.render_state import RobotLook
 
 if TYPE_CHECKING:
-    from nao_sim_bridge.sound.air import Air
+    from nao_sim_bridge.sound.sound_world import Air
 
 
 class WorldRobot(Protocol):
@@ -109,7 +109,7 @@ class SharedWorld:
     def air(self) -> Air:
         """What sounds, and the clock of sound; made when somebody first asks for it, and it stays at a reset."""
         if self._air is None:
-            from nao_sim_bridge.sound.air import Air  # a world without sound needs nothing of it
+            from nao_sim_bridge.sound.sound_world import Air  # a world without sound needs nothing of it
 
             self._air = Air(self.task_ids, self.settings.tick_s)
             if self.ticks:

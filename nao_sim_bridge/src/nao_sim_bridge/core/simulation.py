@@ -22,8 +22,7 @@ from nao_sim_bridge.world.render_state import RenderState, RobotLook
 
 if TYPE_CHECKING:
     from nao_sim_bridge.cameras.cameras import Cameras
-    from nao_sim_bridge.sound.air import Air
-    from nao_sim_bridge.sound.sound_world import SoundWorld
+    from nao_sim_bridge.sound.sound_world import Air, SoundWorld
 
 
 class Simulation:

@@ -10,9 +10,8 @@ from nao_sim_bridge.base.samples import Sound
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.sound.sources import SoundSource
-from nao_sim_bridge.world.sounds import WorldSound
 from nao_sim_bridge.world.sounds_made import Read, Speak, make_sound
-from nao_sim_bridge.world.world import World, WorldError
+from nao_sim_bridge.world.world import World, WorldError, WorldSound
 
 # How often a sound follows the object that it rides on, s.
 FOLLOW_PERIOD = 0.02

@@ -35,11 +35,7 @@ class MicrophoneArray:
     baselines: np.ndarray
 
     def lags(self, shadows: np.ndarray) -> np.ndarray:
-        """By how much the second microphone of each pair hears later than the first, (..., 6), s.
-
-        Args:
-            shadows: (..., 2) of the directions that the sound comes from.
-        """
+        """(..., 6) s by which the second of each pair hears a sound later, by the shadow (..., 2) of its direction."""
         return -shadows @ self.baselines.T + self._curvature(shadows)
 
     def shadow(self, directions: np.ndarray) -> np.ndarray:

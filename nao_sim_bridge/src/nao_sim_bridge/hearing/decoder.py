@@ -10,7 +10,7 @@ import numpy as np
 import pocketsphinx
 
 from nao_sim_bridge.base.whole_file import memory_file
-from nao_sim_bridge.hearing.everyday_speech import EverydaySpeech, Piece, log_score, pieces
+from nao_sim_bridge.hearing.everyday_speech import EverydaySpeech, Piece, log_score, pieces, search
 from nao_sim_bridge.hearing.evidence import Evidence, evidence
 from nao_sim_bridge.hearing.grammars.grammar import OTHER_SPEECH, Grammar
 from nao_sim_bridge.hearing.listening import Hypothesis
@@ -54,8 +54,6 @@ class Heard:
     """What an utterance may be other than a phrase.
 
     Attributes:
-        everyday: Everyday words.
-        sounds: Single sounds.
         origin: Time at which its sound begins, with the silence before it, s.
         onset: Time of its first sound, s.
         end: Time of its last sound, s.
@@ -73,9 +71,6 @@ class Decoder:
 
     Args:
         grammars: What may be said; with none, nothing is ever recognised.
-        pronouncer: Knows how words are said.
-        settings: Noise reduction, gain, confidence.
-        everyday: Knows what else may have been said.
 
     Raises:
         NoPronunciation: A word cannot be said.
@@ -106,12 +101,7 @@ class Decoder:
         return engine
 
     def recognise(self, utterance: Utterance, most: int = 1) -> list[Hypothesis]:
-        """The phrases that may have been said, best first.
-
-        Args:
-            utterance: What was heard.
-            most: How many at most.
-        """
+        """The phrases that may have been said, best first."""
         if not self._network.tokens:
             return []
         speech = self._cleaned(utterance)
@@ -177,7 +167,9 @@ class Decoder:
         # Chances count once for each word that is said; equal ones would only punish large vocabularies.
         unlikely = self._settings.other_speech.weight
         table = [
-            (a.start, a.end, 1.0) if a.token is None else (a.start, a.end, _chance(a.token, unlikely), a.token)
+            (a.start, a.end, 1.0)
+            if a.token is None
+            else (a.start, a.end, unlikely if _is_other(a.token) else 1.0, a.token)
             for a in arcs
         ]
         network = self._network
@@ -196,7 +188,7 @@ class Decoder:
         if not said:
             return None
         tokens = tuple(found[i].word for i in words)
-        return Way(tokens, self._score(), tuple(found[said[0] : said[-1] + 1]))
+        return Way(tokens, log_score(self._engine.hyp().best_score), tuple(found[said[0] : said[-1] + 1]))
 
     def _phones(self, name: str) -> Sequence[str]:
         """Of a token as the decoder names it."""
@@ -230,16 +222,9 @@ class Decoder:
         """Whether words begin with this: without it, the rest of them cannot be said."""
         return bool(self._network.tokens[token].heard) and not _is_other(token)
 
-    def _run(self, search: str, sound: bytes) -> bool:
-        engine = self._engine
-        engine.activate_search(search)
-        engine.start_utt()
-        engine.process_raw(sound, False, True)
-        engine.end_utt()
-        return engine.hyp() is not None
-
-    def _score(self) -> float:
-        return log_score(self._engine.hyp().best_score)
+    def _run(self, kind: str, sound: bytes) -> bool:
+        self._engine.activate_search(kind)
+        return search(self._engine, sound)
 
     def _evidence(self, way: Way, heard: Heard, inside: bool) -> Evidence:
         spoken = [spoken_word(piece.word) for piece in way.pieces if piece.phones]
@@ -272,10 +257,6 @@ def _phrase(parts: Iterable[str]) -> str:
 
 def _is_other(token: str | None) -> bool:
     return token is not None and token.startswith(OTHER)
-
-
-def _chance(token: str, unlikely: float) -> float:
-    return unlikely if _is_other(token) else 1.0
 
 
 def _dictionary(network: Network) -> str:

@@ -37,7 +37,6 @@ class Piece:
 
     @property
     def frames(self) -> int:
-        """How many frames it has."""
         return self.end - self.start + 1
 
 
@@ -61,10 +60,16 @@ class EverydaySpeech:
     def heard(self, sound: bytes) -> list[Piece]:
         """The words of an utterance of int16 samples, 16 kHz, and the silence between them."""
         engine = self._engine
-        engine.start_utt()
-        engine.process_raw(sound, False, True)
-        engine.end_utt()
-        return pieces(engine, lambda word: (engine.lookup_word(word) or "").split()) if engine.hyp() else []
+        heard = search(engine, sound)
+        return pieces(engine, lambda word: (engine.lookup_word(word) or "").split()) if heard else []
+
+
+def search(engine: pocketsphinx.Decoder, sound: bytes) -> bool:
+    """Have a decoder search an utterance of int16 samples, 16 kHz; whether it found something."""
+    engine.start_utt()
+    engine.process_raw(sound, False, True)
+    engine.end_utt()
+    return engine.hyp() is not None
 
 
 def pieces(engine: pocketsphinx.Decoder, phones_of: Callable[[str], Sequence[str]]) -> list[Piece]:

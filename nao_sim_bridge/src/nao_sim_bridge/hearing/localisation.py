@@ -55,12 +55,7 @@ class Bearing:
 
 
 class DirectionFinder:
-    """Finds directions with one array.
-
-    Args:
-        array: The microphones.
-        rate: Of the samples, Hz.
-    """
+    """Finds directions with one array, in samples of `rate` Hz."""
 
     def __init__(self, array: MicrophoneArray, rate: int) -> None:
         self._array = array
@@ -74,12 +69,7 @@ class DirectionFinder:
         self._chances = np.exp(-0.5 * (self._errors**2).sum(axis=1) / SHADOW_ERROR**2)
 
     def find(self, spectra: CrossSpectra, up: Sequence[float] = UPRIGHT) -> Bearing:
-        """Direction that the loudest sound of a block comes from.
-
-        Args:
-            spectra: Of the block.
-            up: Unit vector upwards in the world, in the frame of the head.
-        """
+        """Direction that the loudest sound of a block comes from; `up` is upwards in the frame of the head."""
         shadow, coherence = self.shadow(spectra)
         x, y, z = self.direction_of(shadow, up)
         return Bearing(math.atan2(y, x), math.asin(max(-1.0, min(1.0, z))), coherence)

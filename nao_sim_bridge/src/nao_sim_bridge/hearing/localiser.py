@@ -8,10 +8,12 @@ from typing import Callable, Sequence
 
 import numpy as np
 
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.hearing.array import MicrophoneArray
 from nao_sim_bridge.hearing.detection import START, SoundDetector
 from nao_sim_bridge.hearing.localisation import UPRIGHT, DirectionFinder
 from nao_sim_bridge.hearing.spectra import CrossSpectra, cross_spectra
+from nao_sim_bridge.sound.sound_world import SoundWorld
 
 # What is taken for a quiet room before anything was heard: power in samples of int16 squared, about 36 dB SPL. A sound
 # that is there from the first moment on is found then; a noise without a direction is not, however loud.
@@ -22,6 +24,7 @@ NO_COHERENCE, LEAST_CONFIDENCE = 0.3, 0.3
 ABOVE_BACKGROUND = 2.0
 # The own voice hides other sounds when it has more than this share of the power at the microphones.
 MOST_OWN = 0.1
+FULL_SCALE = 32768.0
 
 
 @dataclass(frozen=True)
@@ -44,12 +47,7 @@ class HeardSound:
 
 
 class Localiser:
-    """Locates the sounds that stand out from the background.
-
-    Args:
-        array: The microphones.
-        rate: Hz.
-    """
+    """Locates the sounds that stand out from the background, in samples of `rate` Hz."""
 
     def __init__(self, array: MicrophoneArray, rate: int) -> None:
         self._detector = SoundDetector(rate, QUIET)
@@ -96,3 +94,24 @@ class Localiser:
         return HeardSound(
             max([time, *begun[:1]]), bearing.azimuth, bearing.elevation, min(confidence, 1.0), math.sqrt(power)
         )
+
+
+class OwnVoice:
+    """Works out what the loudspeakers add to the microphones. Any thread."""
+
+    def __init__(self, sound: SoundWorld) -> None:
+        self._sound = sound
+        self._powers = ((sound.microphones.own_gains * FULL_SCALE) ** 2).mean(axis=1)
+
+    def power(self, from_s: float, to_s: float) -> float:
+        """Mean square of int16 samples that the loudspeakers make between two simulated times, s.
+
+        What is longer ago than is remembered was silent: nobody could tell any more.
+        """
+        if self._sound.microphones.replaced_by is not None:
+            return 0.0
+        try:
+            played = self._sound.loudspeakers.played(from_s, to_s).samples
+        except BadValue:
+            return 0.0
+        return float((played.astype(np.float64) ** 2).mean(axis=0) @ self._powers) if len(played) else 0.0

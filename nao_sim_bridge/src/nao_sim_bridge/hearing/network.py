@@ -15,13 +15,7 @@ OTHER = "OTHER-"
 
 @dataclass(frozen=True)
 class Arc:
-    """A way from one state to another.
-
-    Attributes:
-        start: State.
-        end: State.
-        token: Name in `Network.tokens` of what is said on the way; None for nothing.
-    """
+    """A way from one state to another, on which a token of `Network.tokens` is said, or nothing (None)."""
 
     start: int
     end: int
@@ -60,7 +54,6 @@ def build(
     """The network of several grammars, any of which may be said.
 
     Args:
-        grammars: What may be said.
         pronounce: Pronunciations of a word.
         other_phones: Sounds that other speech is made of.
 

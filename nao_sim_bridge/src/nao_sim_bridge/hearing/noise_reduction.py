@@ -7,17 +7,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from nao_sim_bridge.hearing.spectra import frames_of
+
 FRAME = 512
 STEP = 128
 WINDOW = np.sqrt(np.hanning(FRAME + 1)[:FRAME]).astype(np.float32)
 
 
 def noise_spectrum(background: np.ndarray) -> np.ndarray:
-    """Mean power of noise in each band.
-
-    Args:
-        background: (n,) samples without speech, at least one frame of them.
-    """
+    """Mean power of noise in each band, of (n,) samples without speech, at least one frame of them."""
     return np.mean(np.abs(_spectra(background)) ** 2, axis=0)
 
 
@@ -52,10 +50,7 @@ def reduce_noise(speech: np.ndarray, noise: np.ndarray, least_gain: float, smoot
 
 
 def _spectra(samples: np.ndarray) -> np.ndarray:
-    count = 1 + max(len(samples) - FRAME, 0) // STEP
-    padded = np.pad(samples, (0, max(FRAME - len(samples), 0)))
-    frames = np.lib.stride_tricks.sliding_window_view(padded, FRAME)[::STEP][:count]
-    return np.fft.rfft(frames * WINDOW, axis=1)
+    return np.fft.rfft(frames_of(samples, FRAME, STEP) * WINDOW, axis=1)
 
 
 def _overlap_added(spectra: np.ndarray, length: int) -> np.ndarray:

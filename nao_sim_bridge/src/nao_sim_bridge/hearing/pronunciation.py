@@ -34,11 +34,7 @@ ALTERNATIVE = re.compile(r"\(\d+\)$")
 
 
 class NoPronunciation(SimulationError):
-    """A word that cannot be said in English.
-
-    Attributes:
-        word: The word.
-    """
+    """A word that cannot be said in English."""
 
     def __init__(self, word: str, problem: str) -> None:
         self.word = word

@@ -74,7 +74,6 @@ class SpareProcess:
         process.stop()
 
     def close(self) -> None:
-        """End it."""
         with self._lock:
             self._closed = True
         process = self.take()
@@ -142,11 +141,7 @@ class Recogniser:
         done.result()
 
     def get_used_to(self, samples: np.ndarray) -> None:
-        """Know the background from what was heard before it listens; returns at once.
-
-        Args:
-            samples: (n,) int16, 16 kHz, before the first that `hear` gets.
-        """
+        """Know the background from (n,) int16, 16 kHz, heard before what `hear` gets; returns at once."""
         self._put(_Job("background", np.ascontiguousarray(samples)))
 
     def hear(self, time: float, samples: np.ndarray) -> None:

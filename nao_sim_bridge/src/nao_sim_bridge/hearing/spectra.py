@@ -31,6 +31,12 @@ def short_spectra(samples: np.ndarray, rate: int) -> np.ndarray:
     return spectra.transpose(0, 2, 1)
 
 
+def frames_of(samples: np.ndarray, length: int, step: int) -> np.ndarray:
+    """(frames, length) overlapping pieces of (n,) samples, one each `step`; at least one, filled up with silence."""
+    padded = np.pad(samples, (0, max(length - len(samples), 0)))
+    return np.lib.stride_tricks.sliding_window_view(padded, length)[::step]
+
+
 def band(rate: int) -> slice:
     """The bins that are looked at."""
     width = rate / FRAME

@@ -11,6 +11,7 @@ from typing import Tuple
 
 import numpy as np
 
+from nao_sim_bridge.hearing.spectra import frames_of
 from nao_sim_bridge.hearing.voice_activity import RATE, Utterance
 
 FRAME, STEP = 320, 80
@@ -55,8 +56,7 @@ def speech_edges(utterance: Utterance) -> Tuple[float, float]:
 
 def _bands(samples: np.ndarray) -> np.ndarray:
     """(frames, bands) power of (n,) samples of 16 kHz."""
-    padded = np.pad(samples, (0, max(FRAME - len(samples), 0)))
-    frames = np.lib.stride_tricks.sliding_window_view(padded, FRAME)[::STEP]
+    frames = frames_of(samples, FRAME, STEP)
     power = np.abs(np.fft.rfft(frames * np.hanning(FRAME).astype(np.float32), axis=1)) ** 2
     edges = np.array(EDGES_HZ) * FRAME // RATE
     return np.add.reduceat(power[:, : edges[-1]], edges[:-1], axis=1)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from nao_sim_bridge.hearing.spectra import frames_of
 from nao_sim_bridge.hearing.voice_activity import RATE
 
 FRAME, STEP = 512, 160
@@ -45,9 +46,7 @@ class Likeness:
 
 def likeness(samples: np.ndarray) -> Likeness:
     """Measure (n,) samples of 16 kHz, at least one frame of them that is not silent."""
-    padded = np.pad(samples, (0, max(FRAME - len(samples), 0)))
-    frames = np.lib.stride_tricks.sliding_window_view(padded, FRAME)[::STEP]
-    power = np.abs(np.fft.rfft(frames * np.hanning(FRAME), axis=1)) ** 2
+    power = np.abs(np.fft.rfft(frames_of(samples, FRAME, STEP) * np.hanning(FRAME), axis=1)) ** 2
     total = power.sum(axis=1)
     power = power[total > LOUD * max(float(total.max()), 1e-20)]
     if not len(power):
@@ -56,9 +55,7 @@ def likeness(samples: np.ndarray) -> Likeness:
 
 
 def _voice(samples: np.ndarray) -> float:
-    emphasised = np.diff(samples, prepend=0.0)
-    padded = np.pad(emphasised, (0, max(VOICE_FRAME - len(samples), 0)))
-    frames = np.lib.stride_tricks.sliding_window_view(padded, VOICE_FRAME)[::STEP]
+    frames = frames_of(np.diff(samples, prepend=0.0), VOICE_FRAME, STEP)
     power = np.abs(np.fft.rfft(frames * np.hanning(VOICE_FRAME), VOICE_BINS, axis=1)) ** 2
     low, high = (round(edge * VOICE_BINS / RATE) for edge in VOICE_BAND_HZ)
     power[:, :low] = 0.0

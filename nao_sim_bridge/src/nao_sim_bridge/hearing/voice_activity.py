@@ -51,11 +51,7 @@ class Utterance:
 
 
 class VoiceActivity:
-    """Cuts a stream of blocks into utterances.
-
-    Attributes:
-        sensitivity: 0..1; the higher, the quieter speech may be beside the background.
-    """
+    """Cuts a stream into utterances; at a high sensitivity, 0..1, speech may be quieter beside the background."""
 
     def __init__(self, settings: RecognitionSettings, sensitivity: float = 0.5) -> None:
         self._settings = settings.voice_activity
@@ -85,11 +81,7 @@ class VoiceActivity:
         self._present = False
 
     def get_used_to(self, samples: np.ndarray) -> None:
-        """Start anew, with the background of what was heard before; speech in it is left out.
-
-        Args:
-            samples: (n,) as `hear` takes them.
-        """
+        """Start anew, with the background of samples heard before; speech in it is left out. See `hear`."""
         self.reset()
         frames = _scaled(samples)
         frames = frames[: len(frames) // self._frame * self._frame].reshape(-1, self._frame)

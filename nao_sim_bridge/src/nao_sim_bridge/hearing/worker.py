@@ -9,13 +9,12 @@ closed.
 from __future__ import annotations
 
 import sys
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Iterable
 
 import pocketsphinx
 
-from nao_sim_bridge.base.child_process import error_text, pipe_to_parent
+from nao_sim_bridge.base.child_process import error_text, pipe_to_parent, serve
 from nao_sim_bridge.hearing.decoder import Decoder
 from nao_sim_bridge.hearing.everyday_speech import EverydaySpeech
 from nao_sim_bridge.hearing.listening import Listening, Recognised
@@ -43,7 +42,6 @@ class Ear:
         self._activity.sensitivity = listening.sensitivity
 
     def background(self, samples: Any) -> None:
-        """Get used to what was heard before it listens."""
         self._activity.get_used_to(samples)
 
     def hear(self, content: Any) -> list[SpeechChange | Recognised]:
@@ -76,23 +74,7 @@ def main(arguments: Iterable[str]) -> int:
         pipe.send(("error", error_text(error)))
         return 1
     pipe.send(("ready", None))
-    try:
-        _serve(pipe, ear)
-    except (EOFError, BrokenPipeError, ConnectionResetError):
-        pass  # the parent is gone or wants no more
-    return 0
-
-
-def _serve(pipe: Connection, ear: Ear) -> None:
-    requests = {"listen": ear.listen, "background": ear.background, "hear": ear.hear, "finish": ear.finish}
-    while True:
-        kind, content = pipe.recv()
-        try:
-            answer = requests[kind](content)
-        except Exception as error:
-            pipe.send(("error", error_text(error)))
-            continue
-        pipe.send((kind, answer))
+    return serve(pipe, {"listen": ear.listen, "background": ear.background, "hear": ear.hear, "finish": ear.finish})
 
 
 if __name__ == "__main__":

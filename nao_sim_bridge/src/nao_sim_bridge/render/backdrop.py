@@ -25,12 +25,7 @@ def covers(rug: Rug, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 class Backdrop:
-    """A world without robot and objects; drawn once for a camera that stays where it is.
-
-    Args:
-        world: Floor and background colours.
-        still: Shadow of what never moves, on the floor; None for a floor without.
-    """
+    """A world with the shadow of what never moves; drawn once for a camera that stays where it is."""
 
     def __init__(self, world: World, still: Shadow | None = None) -> None:
         self._world = world

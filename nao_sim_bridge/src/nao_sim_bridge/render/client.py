@@ -11,12 +11,11 @@ import numpy as np
 
 from nao_sim_bridge.base.child_process import ChildProcess
 from nao_sim_bridge.base.errors import SimulationError, UnknownName
-from nao_sim_bridge.render.wire import StateSender
-from nao_sim_bridge.world.render_state import Camera, RenderState
+from nao_sim_bridge.world.render_state import Camera, RenderState, StateSender
 
 if TYPE_CHECKING:
-    from nao_sim_bridge.cameras.shot import Shot
-    from nao_sim_bridge.render.pointer import Ray
+    from nao_sim_bridge.cameras.sensor import Shot
+    from nao_sim_bridge.render.window import Ray
 
 START_TIMEOUT = 60.0
 """s; building the robot takes well below one, but a busy machine may need long to start an interpreter."""
@@ -35,10 +34,16 @@ ENGINES = ("auto", "opengl", "builtin")
 log = logging.getLogger("nao_sim.pictures")
 
 
-def _process(mode: str, world_name: str, version: str) -> ChildProcess:
-    """A new picture process; a window talks about its threads on the standard output, which nobody wants to read."""
-    arguments = (mode, world_name, version)
-    return ChildProcess(MODULE, arguments, "picture process", RenderError, PictureRefused, silent=mode == "window")
+def _started(mode: str, world_name: str, version: str, what: str) -> tuple[ChildProcess, Any]:
+    """A new picture process that is ready, and what it says of itself."""
+    arguments, window = (mode, world_name, version), mode == "window"
+    # A window talks about its threads on the standard output, which nobody wants to read.
+    worker = ChildProcess(MODULE, arguments, "picture process", RenderError, PictureRefused, silent=window)
+    try:
+        return worker, worker.receive(START_TIMEOUT, what)
+    except RenderError:
+        worker.stop()
+        raise
 
 
 class Renderer:
@@ -49,7 +54,6 @@ class Renderer:
 
     Args:
         world_name: Name or path of the world.
-        version: Robot version.
         engine: What draws: "opengl"; "builtin", which is slower and needs nothing of the computer; or "auto" for
             OpenGL where it can be had.
 
@@ -95,8 +99,6 @@ class Renderer:
         """Make a picture.
 
         Args:
-            state: What is to be seen.
-            camera: From where.
             timeout: Longest time to wait for the picture, s; starting the process does not count.
 
         Returns:
@@ -112,7 +114,6 @@ class Renderer:
         """Make what a camera in the robot's head gives.
 
         Args:
-            state: What is to be seen.
             shot: From where, in which colour space, and with which settings of the camera.
             timeout: Longest time to wait, s; starting the process does not count.
 
@@ -187,12 +188,8 @@ class Renderer:
             return worker, engine, f"pictures are drawn slowly, for with OpenGL there is an error: {error}"
 
     def _start_with(self, engine: str) -> tuple[ChildProcess, str, str | None]:
-        worker = _process(f"pictures:{engine}", self._world_name, self._version)
-        try:
-            return (worker, *worker.receive(START_TIMEOUT, "starting"))
-        except RenderError:
-            worker.stop()
-            raise
+        worker, told = _started(f"pictures:{engine}", self._world_name, self._version, "starting")
+        return (worker, *told)
 
 
 class Viewer:
@@ -201,10 +198,6 @@ class Viewer:
     Attributes:
         on_pointer: Called in `show` with the line of sight through the mouse while its button is pressed, and with None
             when it is released.
-
-    Args:
-        world_name: Name or path of the world.
-        version: Robot version.
     """
 
     def __init__(self, world_name: str = "empty", version: str = "V6") -> None:
@@ -223,13 +216,8 @@ class Viewer:
         """
         if not os.environ.get("DISPLAY"):
             raise RenderError("window: there is no display (DISPLAY is not set); leave the window out, or set it")
-        worker = _process("window", self._world_name, self._version)
-        try:
-            worker.receive(START_TIMEOUT, "window")
-        except RenderError:
-            worker.stop()
-            raise
-        self._worker, self._drawing, self._sender = worker, False, StateSender()
+        self._worker, _ = _started("window", self._world_name, self._version, "window")
+        self._drawing, self._sender = False, StateSender()
         return self
 
     def show(self, state: RenderState) -> None:
@@ -255,7 +243,6 @@ class Viewer:
             raise RenderError(f"window: {self._worker.last_words()}") from error
 
     def close(self) -> None:
-        """Close the window."""
         if self._worker is not None:
             self._worker.stop()
             self._worker = None

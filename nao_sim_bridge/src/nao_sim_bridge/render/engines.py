@@ -15,11 +15,7 @@ HELP = "for OpenGL without a graphics card install the packages libegl1, libgl1 
 
 
 class Engine(Protocol):
-    """Something that draws; one thread only.
-
-    Attributes:
-        name: What it is, for people.
-    """
+    """Something that draws; one thread only. Its name is for people."""
 
     name: str
 
@@ -35,8 +31,6 @@ def open_engine(wanted: str, world: World, version: str) -> tuple[Engine, str | 
 
     Args:
         wanted: "opengl", "builtin", or "auto" for OpenGL where it can be had.
-        world: What it is to draw.
-        version: Robot version.
 
     Returns:
         It, and why it is not the better one; None if it is what was wanted.
@@ -47,7 +41,7 @@ def open_engine(wanted: str, world: World, version: str) -> tuple[Engine, str | 
     complaint = None
     if wanted != "builtin":
         try:
-            from nao_sim_bridge.render.opengl import OpenGLEngine
+            from nao_sim_bridge.render.opengl.engine import OpenGLEngine
 
             return OpenGLEngine(world, version), None
         except (ImportError, SimulationError) as error:

@@ -16,17 +16,10 @@ EYE_LEVEL = 0.3
 
 
 class FilmCamera:
-    """A camera that keeps the robot in view.
+    """A camera that keeps the robot in view, by the name of a view of `PRESETS`.
 
     Views of the body look from the side where the robot was ahead of them at the first frame, and move with it over
     the floor; they neither turn nor bob with it. Other views are those of pictures.
-
-    Args:
-        view: A name of a view; see `PRESETS`.
-        model: The robot.
-        width: Of the picture, pixels.
-        height: Of the picture, pixels.
-        supersampling: See `Camera`.
 
     Raises:
         UnknownName: There is no such view; when the first camera is asked for.
@@ -41,12 +34,7 @@ class FilmCamera:
         self._time = 0.0
 
     def at(self, time: float, state: RenderState) -> Camera:
-        """The camera of a frame.
-
-        Args:
-            time: Of the frame, s; rises from call to call.
-            state: What is to be seen.
-        """
+        """The camera of a frame at a time in s, which rises from call to call."""
         if self._view not in PRESETS or PRESETS[self._view].follows != "body":
             return preset_camera(self._view, self._model, state, *self._size)
         x, y, _ = state.base_position

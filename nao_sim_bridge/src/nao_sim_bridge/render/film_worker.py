@@ -3,8 +3,8 @@
 It draws states and writes them with sound to a film. Over the inherited pipe FD it gets tuples (kind, content) and
 first sends ("ready", engine) or ("error", text). Then it takes ("frame", (time, state)), ("sound", (first, bytes)) and
 ("caption", text) without an answer; ("end", None) is answered with ("ended", (frames, seconds)), or with
-("error", text) of the first thing that went wrong. States are packed by `wire.py`. A pipe that is closed ends it, and
-the film is complete until then.
+("error", text) of the first thing that went wrong. States are packed by `StateSender`. A pipe that is closed ends it,
+and the film is complete until then.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class _Film:
     """What is drawn goes into the file."""
 
     def __init__(self, drawing: Any, camera: Any, file: Any) -> None:
-        from nao_sim_bridge.render.wire import StateReceiver
+        from nao_sim_bridge.world.render_state import StateReceiver
 
         self.file = file
         self._drawing = drawing
@@ -54,7 +54,6 @@ class _Film:
         self._states = StateReceiver()
 
     def frame(self, content: Any) -> None:
-        """Draw a state."""
         from nao_sim_bridge.render.scene.view import View
 
         time, packed = content
@@ -62,14 +61,12 @@ class _Film:
         self.file.picture(self._drawing.draw(state, View.of_camera(self._camera.at(time, state))), time)
 
     def sound(self, content: Any) -> None:
-        """Add sound."""
         import numpy as np
 
         first, samples = content
         self.file.sound(np.frombuffer(samples, np.int16).reshape(-1, 2), first)
 
     def caption(self, text: str) -> None:
-        """Change the caption."""
         self.file.caption = text
 
 

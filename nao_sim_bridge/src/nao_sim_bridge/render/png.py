@@ -11,11 +11,7 @@ from nao_sim_bridge.base.whole_file import WholeFile
 
 
 def write_png(path: str | Path, picture: np.ndarray) -> Path:
-    """Write an (h, w, 3) uint8 RGB picture; folders on the way are made.
-
-    Returns:
-        The path written.
-    """
+    """Write an (h, w, 3) uint8 RGB picture; folders on the way are made. Returns the path written."""
     path = Path(path)
     with WholeFile(path) as file:
         Image.fromarray(picture, "RGB").save(file, "PNG")

@@ -10,6 +10,7 @@ import numpy as np
 import pybullet
 
 from nao_sim_bridge.render.backdrop import Backdrop, Shadow, blur
+from nao_sim_bridge.render.scene.figure import CORE_WHITE
 from nao_sim_bridge.render.scene.stage import Stage
 from nao_sim_bridge.render.scene.view import NEAR, View
 from nao_sim_bridge.world.builder import build_world
@@ -28,21 +29,11 @@ MOST_SHADOW_PIXELS = 384
 STILL_REACH, STILL_PIXELS = 5.0, 1024
 """As both above, for the shadow of what never moves, around the origin of the world."""
 DIFFUSE, SPECULAR = 0.62, 0.12
-CORE_WHITE = 0.12
-"""Share of white in the light of a lamp: a saturated colour alone looks like paint, not like light."""
 GLOW = 0.9
 
 
 class Studio:
-    """Where pictures are taken; one thread only.
-
-    Attributes:
-        name: Of the engine, for people.
-
-    Args:
-        world: Floor, light, background and objects.
-        version: Robot version.
-    """
+    """Where pictures are taken; one thread only."""
 
     name = "the built-in renderer (PyBullet's TinyRenderer)"
 
@@ -57,7 +48,6 @@ class Studio:
         self._shadow_of: tuple = ()
 
     def close(self) -> None:
-        """Free the engine."""
         pybullet.disconnect(physicsClientId=self._client)
 
     def draw(self, state: RenderState, view: View) -> np.ndarray:

@@ -4,16 +4,87 @@ from __future__ import annotations
 
 import time
 from multiprocessing.connection import Connection
+from typing import NamedTuple, Sequence
 
+import numpy as np
 import pybullet
 
 from nao_sim_bridge.base.errors import SimulationError
-from nao_sim_bridge.render.pointer import Pointer
+from nao_sim_bridge.base.rotations import Vector3, vector3
 from nao_sim_bridge.render.scene.stage import Stage
-from nao_sim_bridge.render.wire import StateReceiver
+from nao_sim_bridge.world.render_state import StateReceiver
 from nao_sim_bridge.world.world import World
 
+# PyBullet's mouse events: kind and columns.
+BUTTON_EVENT, KIND, X, Y, BUTTON, STATE = 2, 0, 1, 2, 3, 4
+MOVE_EVENT, LEFT_BUTTON = 1, 0
+# With these keys the mouse turns the camera.
+CAMERA_KEYS = (pybullet.B3G_CONTROL, pybullet.B3G_ALT)
+# Columns of PyBullet's debug camera.
+WIDTH, HEIGHT, VIEW, PROJECTION = 0, 1, 2, 3
 PERIOD = 1.0 / 30.0
+
+
+class Ray(NamedTuple):
+    """A line of sight.
+
+    Attributes:
+        eye: Where it begins, m, in world.
+        direction: Unit vector, in world.
+    """
+
+    eye: Vector3
+    direction: Vector3
+
+
+def ray_through(view: Sequence[float], projection: Sequence[float], x: float, y: float) -> Ray:
+    """The line of sight through a point of a picture.
+
+    Args:
+        view: (16,) OpenGL's matrix from world to camera, column by column.
+        projection: (16,) OpenGL's matrix from camera to clip space, column by column.
+        x: 0 at the left edge, 1 at the right one.
+        y: 0 at the upper edge, 1 at the lower one.
+    """
+    to_camera, to_clip = (np.asarray(matrix, dtype=float).reshape(4, 4).T for matrix in (view, projection))
+    to_world = np.linalg.inv(to_clip @ to_camera)
+    near, far = (to_world @ (2.0 * x - 1.0, 1.0 - 2.0 * y, depth, 1.0) for depth in (-1.0, 1.0))
+    eye = np.linalg.inv(to_camera)[:3, 3]
+    direction = far[:3] / far[3] - near[:3] / near[3]
+    return Ray(vector3(eye), vector3(direction / np.linalg.norm(direction)))
+
+
+class Pointer:
+    """Follows the left button of the mouse in the window of a PyBullet client."""
+
+    def __init__(self, client: int) -> None:
+        self._client = client
+        self._down = False
+        # Else a click on a body pulls it about.
+        pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_MOUSE_PICKING, 0, physicsClientId=client)
+
+    def news(self) -> list[Ray | None]:
+        """Where the mouse has pointed with its button down since the last call; None when the button went up."""
+        told: list[Ray | None] = []
+        for event in pybullet.getMouseEvents(physicsClientId=self._client):
+            if event[KIND] == BUTTON_EVENT and event[BUTTON] == LEFT_BUTTON:
+                if event[STATE] & pybullet.KEY_WAS_TRIGGERED and not self._turns_camera():
+                    self._down = True
+                    told.append(self._ray(event[X], event[Y]))
+                elif event[STATE] & pybullet.KEY_WAS_RELEASED and self._down:
+                    self._down = False
+                    told.append(None)
+            elif event[KIND] == MOVE_EVENT and self._down:
+                told.append(self._ray(event[X], event[Y]))
+        return told
+
+    def _turns_camera(self) -> bool:
+        keys = pybullet.getKeyboardEvents(physicsClientId=self._client)
+        return any(keys.get(key, 0) & pybullet.KEY_IS_DOWN for key in CAMERA_KEYS)
+
+    def _ray(self, x: float, y: float) -> Ray:
+        camera = pybullet.getDebugVisualizerCamera(physicsClientId=self._client)
+        return ray_through(camera[VIEW], camera[PROJECTION], x / camera[WIDTH], y / camera[HEIGHT])
 
 
 class Window:
@@ -21,8 +92,6 @@ class Window:
 
     Args:
         pipe: Where ("show", state) comes from; ("shown", None) and ("pointer", ray or None) go back.
-        world: Floor and objects.
-        version: Robot version.
 
     Raises:
         SimulationError: If the window does not open.

@@ -3,8 +3,8 @@
 It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", (engine, complaint or None)),
 of a window ("ready", None), or ("error", text). Then it answers ("render", (state, camera)) with ("picture", shape)
 and the raw pixels, ("capture", (state, shot)) with ("picture", None) and the bytes of the camera, or with
-("error", text); ("show", state) is answered with ("shown", None). States are packed by `wire.py`. It ends when the pipe
-is closed.
+("error", text); ("show", state) is answered with ("shown", None). States are packed by `StateSender`. It ends when
+the pipe is closed.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ def _open_pictures(pipe: Connection, engine: str, world_name: str, version: str)
     import cv2
 
     from nao_sim_bridge.render.engines import open_engine
-    from nao_sim_bridge.render.wire import StateReceiver
     from nao_sim_bridge.world.reader import load_world
+    from nao_sim_bridge.world.render_state import StateReceiver
 
     cv2.setNumThreads(1)  # the other cores are for physics
     drawing, complaint = open_engine(engine, load_world(world_name), version)
@@ -90,7 +90,7 @@ def _render(drawing: Any, state: Any, camera: Any) -> tuple[tuple, Any]:
 
 def _capture(drawing: Any, state: Any, shot: Any) -> tuple[None, Any]:
     """What a camera of the robot makes of what it sees."""
-    from nao_sim_bridge.cameras.photograph import photograph
+    from nao_sim_bridge.cameras.sensor import photograph
     from nao_sim_bridge.render.scene.view import View
 
     return None, photograph(drawing.draw(state, View.of_shot(shot)), shot)

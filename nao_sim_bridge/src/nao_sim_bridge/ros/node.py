@@ -23,24 +23,9 @@ from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 # Parameters of the node that stand for options of the command line; the command line wins.
 VALUES = (
-    "port",
-    "listen",
-    "speed",
-    "world",
-    "seed",
-    "robot",
-    "posture",
-    "friction",
-    "payload",
-    "sensor_noise",
-    "sensor_delay",
-    "renderer",
-    "record_dir",
-    "sound_file",
-    "publish_clock",
-    "robots",
-    "places",
-)
+    "port listen speed world seed robot posture friction payload sensor_noise sensor_delay renderer record_dir "
+    "sound_file publish_clock robots places"
+).split()
 SWITCHES = ("gui", "paused", "verbose", "sound_card", "charger", "allow_private_streams")
 NAME = "nao_sim"
 ANSWER_LIMIT = 2.0

@@ -1,4 +1,4 @@
-"""One simulated robot in ROS: its true pose, pushes, touches and pictures. Thin over its server."""
+"""One simulated robot in ROS: its true pose, pushes, touches, pictures and health. Thin over its server."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Callable
 import rospy
 from geometry_msgs.msg import Point, Quaternion, Twist, Vector3
 from nav_msgs.msg import Odometry
+from std_srvs.srv import SetBool, SetBoolRequest, SetBoolResponse
 
 from nao_library_msgs.srv import (
     GetTruepose,
@@ -19,21 +20,31 @@ from nao_library_msgs.srv import (
     PushRobot,
     PushRobotRequest,
     PushRobotResponse,
+    ReleaseSensors,
+    ReleaseSensorsRequest,
+    ReleaseSensorsResponse,
+    SetFloat,
+    SetFloatRequest,
+    SetFloatResponse,
     TakePicture,
     TakePictureRequest,
     TakePictureResponse,
+    TouchSensors,
+    TouchSensorsRequest,
+    TouchSensorsResponse,
 )
 from nao_sim_bridge.base.record_dir import unused
+from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.whole_file import write_whole
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.ros.hand import RosHand
-from nao_sim_bridge.ros.health import RosHealth
-from nao_sim_bridge.ros.limits import checked
+from nao_sim_bridge.ros.services import checked, success, success_of, success_service
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 TRUTH_PERIOD = 0.02
 PICTURE = "picture.png"
 WORLD_FRAME, TORSO_FRAME = "world", "torso"
+SENT_AWAY = "the hand was sent away"
+STOPPED = "it was stopped"
 
 
 class RosRobot:
@@ -93,8 +104,8 @@ class RosRobot:
             path = path if request.file else unused(path)
             write_whole(path, picture)
 
-        success, message = _success(take)
-        return TakePictureResponse(success, message, str(path) if success else "")
+        taken, message = success(take)
+        return TakePictureResponse(taken, message, str(path) if taken else "")
 
     def _odometry(self, snapshot: Snapshot, now: float) -> Odometry:
         message = Odometry()
@@ -118,10 +129,10 @@ class RosRobot:
             checked(request)
             self._server.push(force, request.time.to_sec(), request.link or TORSO_FRAME)
 
-        return PushRobotResponse(*_success(push))
+        return PushRobotResponse(*success(push))
 
     def _on_press(self, request: PressSensorsRequest) -> PressSensorsResponse:
-        return PressSensorsResponse(*_success(lambda: self._server.press(checked(request).sensors)))
+        return PressSensorsResponse(*success(lambda: self._server.press(checked(request).sensors)))
 
     def _on_true_pose(self, _request: GetTrueposeRequest) -> GetTrueposeResponse:
         snapshot, now = self._server.now
@@ -133,10 +144,58 @@ class RosRobot:
         return answer
 
 
-def _success(action: Callable[[], object]) -> tuple[bool, str]:
-    """Run `action`; (True, "") or (False, what was wrong)."""
-    try:
-        action()
-    except (RuntimeError, ValueError, OSError) as error:
-        return False, str(error)
-    return True, ""
+class RosHand:
+    """Lets hands touch the robot.
+
+    ROS API: services `~touch`, `~release` (nao_library_msgs).
+
+    Args:
+        private: What the names of its services begin with.
+        stamp: ROS time of a time of the server's `now`, s.
+    """
+
+    def __init__(self, server: SimulatorServer, private: str, stamp: Callable[[float], rospy.Time]) -> None:
+        self._server = server
+        self._stamp = stamp
+        self._services = [
+            rospy.Service(f"{private}touch", TouchSensors, self._on_touch),
+            success_service(f"{private}release", ReleaseSensors, ReleaseSensorsResponse, self._release, SENT_AWAY),
+        ]
+
+    def _on_touch(self, request: TouchSensorsRequest) -> TouchSensorsResponse:
+        contacts: list[float | None] = []
+
+        def begin() -> Task:
+            checked(request)
+            called = self._server.hands.touch(request.sensors, request.time.to_sec(), request.wait)
+            return called.then(lambda hand: hand and hand.then(contacts.append))
+
+        began = self._server.began
+        touched, message = success_of(begin, SENT_AWAY)
+        response = TouchSensorsResponse(success=touched, message=message)
+        if contacts and contacts[0] is not None:
+            response.contact = self._stamp(began + contacts[0])
+        return response
+
+    def _release(self, request: ReleaseSensorsRequest) -> Task:
+        return self._server.hands.release(request.sensors)
+
+
+class RosHealth:
+    """Plugs the charger and sets the charge.
+
+    ROS API: services `~plug_charger` (std_srvs/SetBool), `~set_battery` (nao_library_msgs/SetFloat; 0..1).
+    """
+
+    def __init__(self, server: SimulatorServer, private: str = "~") -> None:
+        self._server = server
+        self._services = [
+            success_service(f"{private}plug_charger", SetBool, SetBoolResponse, self._plug, STOPPED),
+            success_service(f"{private}set_battery", SetFloat, SetFloatResponse, self._set, STOPPED),
+        ]
+
+    def _plug(self, request: SetBoolRequest) -> Task:
+        return self._server.health.plug_charger(request.data)
+
+    def _set(self, request: SetFloatRequest) -> Task:
+        return self._server.health.set_battery_charge(request.data)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import threading
-from typing import Callable, Mapping
+import time
+from typing import Callable, Mapping, Sequence
 
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
@@ -13,24 +15,33 @@ from nao_library_msgs.srv import (
     AdvanceTime,
     AdvanceTimeRequest,
     AdvanceTimeResponse,
+    CaptionFilm,
+    CaptionFilmRequest,
+    CaptionFilmResponse,
     ResetWorld,
     ResetWorldRequest,
     ResetWorldResponse,
+    StartFilm,
+    StartFilmRequest,
+    StartFilmResponse,
+    StopFilm,
+    StopFilmRequest,
+    StopFilmResponse,
     TakePicture,
 )
+from nao_sim_bridge.base.guard import Failure
 from nao_sim_bridge.base.record_dir import world_of_client
-from nao_sim_bridge.ros.diagnostics import RosDiagnostics
-from nao_sim_bridge.ros.film import RosFilm
-from nao_sim_bridge.ros.limits import checked
 from nao_sim_bridge.ros.robot import RosRobot
-from nao_sim_bridge.ros.sounds import RosSounds
-from nao_sim_bridge.ros.things import RosThings
+from nao_sim_bridge.ros.services import ERRORS, checked, success
+from nao_sim_bridge.ros.things import RosSounds, RosThings
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 # The clock is published at most this often, in s of wall time: every message wakes every node.
 CLOCK_WALL_PERIOD = 0.002
 LOOK_PERIOD = 0.1
 """s of wall time between two looks whether somebody listens, while nobody does."""
+STATUS_PERIOD = 1.0
+STATUS_NAME = "nao_sim: Simulation"
 
 
 class RosSide:
@@ -47,7 +58,6 @@ class RosSide:
 
     Args:
         server: The running simulator; of several robots that of the first.
-        publish_clock: Whether to publish `/clock`.
         several: Several robots by name; empty for one that is alone.
     """
 
@@ -77,7 +87,6 @@ class RosSide:
         rospy.on_shutdown(self.close)  # topics close next
 
     def close(self) -> None:
-        """Stop publishing."""
         self._closing.set()
         self._thread.join(1.0)
 
@@ -108,12 +117,11 @@ class RosSide:
         return AdvanceTimeResponse(rospy.Time.from_sec(self._server.began + snapshot.time))
 
     def _on_reset_world(self, request: ResetWorldRequest) -> ResetWorldResponse:
-        try:
+        def reset() -> None:
             server = self._server
             server.factory_reset(world_of_client(checked(request).world, server.files, server.options.scene.world))
-        except (RuntimeError, ValueError, OSError) as error:
-            return ResetWorldResponse(False, str(error))
-        return ResetWorldResponse(True, "")
+
+        return ResetWorldResponse(*success(reset))
 
     @staticmethod
     def _empty(action: Callable[[], object]) -> Callable[[EmptyRequest], EmptyResponse]:
@@ -122,3 +130,81 @@ class RosSide:
             return EmptyResponse()
 
         return call
+
+
+class RosDiagnostics:
+    """Tells once a second what of the simulation has failed.
+
+    ROS API:
+        Publishes `/diagnostics` (diagnostic_msgs/DiagnosticArray): `nao_sim: Simulation`, a warning while something has
+        failed since the start of the robot, with who it was, how often, and the last error of each.
+
+    Args:
+        server: The running simulator; of several robots that of the first.
+    """
+
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
+        self._next = 0.0
+        self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=5)
+
+    def tick(self) -> None:
+        """Publish when it is time, which is that of the wall: simulated time may stand still."""
+        now = time.monotonic()
+        if now < self._next:
+            return
+        self._next = now + STATUS_PERIOD
+        status = status_of(self._server.simulation.shared.guard.failures())
+        status.hardware_id = f"{self._server.options.address}:{self._server.broker.port}"
+        message = DiagnosticArray(status=[status])
+        message.header.stamp = rospy.Time.now()
+        self._publisher.publish(message)
+
+
+def status_of(failures: Sequence[Failure]) -> DiagnosticStatus:
+    """What there is to say of failures."""
+    status = DiagnosticStatus(level=DiagnosticStatus.OK, name=STATUS_NAME, message="runs")
+    if failures:
+        status.level = DiagnosticStatus.WARN
+        culprits = dict.fromkeys(failure.culprit for failure in failures)
+        status.message = f"runs, but these have failed: {', '.join(culprits)}"
+    for failure in failures:
+        times = "once" if failure.count == 1 else f"{failure.count} times"
+        status.values.append(KeyValue(failure.culprit, f"{times}: {failure.error}"))
+    return status
+
+
+class RosFilm:
+    """Begins and ends films.
+
+    ROS API: services `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs).
+    """
+
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
+        self._services = [
+            rospy.Service("~film/start", StartFilm, self._on_start),
+            rospy.Service("~film/caption", CaptionFilm, self._on_caption),
+            rospy.Service("~film/stop", StopFilm, self._on_stop),
+        ]
+
+    def _on_start(self, request: StartFilmRequest) -> StartFilmResponse:
+        try:
+            checked(request)
+            film = self._server.film.start(
+                request.file, request.view, request.width, request.height, request.frame_rate
+            )
+            path = film.result()
+        except ERRORS as error:
+            return StartFilmResponse(success=False, message=str(error))
+        return StartFilmResponse(True, "", path)
+
+    def _on_caption(self, request: CaptionFilmRequest) -> CaptionFilmResponse:
+        return CaptionFilmResponse(*success(lambda: self._server.film.caption(checked(request).text)))
+
+    def _on_stop(self, _request: StopFilmRequest) -> StopFilmResponse:
+        try:
+            film = self._server.film.stop().result()
+        except ERRORS as error:
+            return StopFilmResponse(success=False, message=str(error))
+        return StopFilmResponse(True, "", str(film.path), film.frames, rospy.Duration.from_sec(film.duration))

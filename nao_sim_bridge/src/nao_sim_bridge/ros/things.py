@@ -1,26 +1,38 @@
-"""Things of the simulated world as ROS services. Thin over `things_control.py`."""
+"""Things and sounds of the simulated world as ROS services. Thin over the server."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from geometry_msgs.msg import Pose
+from geometry_msgs.msg import Point, Pose
 
 from nao_library_msgs.srv import (
     MoveObject,
     MoveObjectRequest,
     MoveObjectResponse,
+    MoveSound,
+    MoveSoundRequest,
+    MoveSoundResponse,
+    PersonSays,
+    PersonSaysRequest,
+    PersonSaysResponse,
     PlaceObject,
     PlaceObjectRequest,
     PlaceObjectResponse,
+    PlaceSound,
+    PlaceSoundRequest,
+    PlaceSoundResponse,
     RemoveObject,
     RemoveObjectRequest,
     RemoveObjectResponse,
+    RemoveSound,
+    RemoveSoundRequest,
+    RemoveSoundResponse,
 )
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.rotations import roll_pitch_yaw
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.ros.success import success_service
+from nao_sim_bridge.ros.services import success_service
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 from nao_sim_bridge.world.objects import THINGS
 
@@ -32,15 +44,13 @@ BALL_RADIUS = 0.03
 SIZE_KEY = {"person": "height"}
 COLOR_KEY = {"person": "clothes"}
 KILLED = "it was stopped on its way"
+SILENCED = "it was silenced before its end"
 
 
 class RosThings:
     """Places, moves and removes things.
 
     ROS API: services `~place_object`, `~move_object`, `~remove_object` (nao_library_msgs).
-
-    Args:
-        server: The running simulator.
     """
 
     def __init__(self, server: SimulatorServer) -> None:
@@ -59,11 +69,41 @@ class RosThings:
         return self._server.things.place_described(request.description)
 
     def _move(self, request: MoveObjectRequest) -> Task:
-        position, turn = _position(request.pose), _turn(request.pose)
+        position, turn = _listed(request.pose.position), _turn(request.pose)
         return self._server.things.move(request.name, position, turn, request.time.to_sec(), request.wait)
 
     def _remove(self, request: RemoveObjectRequest) -> Task:
         return self._server.things.remove(request.name)
+
+
+class RosSounds:
+    """Places sounds and lets persons speak.
+
+    ROS API: services `~place_sound`, `~move_sound`, `~remove_sound`, `~person_says` (nao_library_msgs).
+    """
+
+    def __init__(self, server: SimulatorServer) -> None:
+        self._server = server
+        self._services = [
+            success_service("~place_sound", PlaceSound, PlaceSoundResponse, self._place, SILENCED),
+            success_service("~move_sound", MoveSound, MoveSoundResponse, self._move, SILENCED),
+            success_service("~remove_sound", RemoveSound, RemoveSoundResponse, self._remove, SILENCED),
+            success_service("~person_says", PersonSays, PersonSaysResponse, self._person_says, SILENCED),
+        ]
+
+    def _place(self, request: PlaceSoundRequest) -> Task:
+        position, level = _listed(request.position), float(request.level_db)
+        return self._server.sounds.add(request.name, request.sound, position, level, request.loop)
+
+    def _move(self, request: MoveSoundRequest) -> Task:
+        return self._server.sounds.move(request.name, _listed(request.position))
+
+    def _remove(self, request: RemoveSoundRequest) -> Task:
+        return self._server.sounds.remove(request.name)
+
+    def _person_says(self, request: PersonSaysRequest) -> Task:
+        position, level = _listed(request.position), float(request.level_db)
+        return self._server.sounds.person_says(request.text, position, request.voice, level)
 
 
 def entry_of(request: PlaceObjectRequest) -> dict[str, Any]:
@@ -71,7 +111,7 @@ def entry_of(request: PlaceObjectRequest) -> dict[str, Any]:
     kinds = [*SHAPES, *(kind for kind in THINGS if kind not in (*SHAPES, "parts"))]  # parts have no content in a text
     if request.kind not in kinds:
         raise BadValue("kind", request.kind, f"one of {', '.join(kinds)}", kinds)
-    entry: dict[str, Any] = {"name": request.name, "position": _position(request.pose)}
+    entry: dict[str, Any] = {"name": request.name, "position": _listed(request.pose.position)}
     turn = _turn(request.pose)
     if turn:
         entry["rpy"] = turn
@@ -95,8 +135,8 @@ def entry_of(request: PlaceObjectRequest) -> dict[str, Any]:
     return entry
 
 
-def _position(pose: Pose) -> list[float]:
-    return [pose.position.x, pose.position.y, pose.position.z]
+def _listed(point: Point) -> list[float]:
+    return [point.x, point.y, point.z]
 
 
 def _turn(pose: Pose) -> list[float]:

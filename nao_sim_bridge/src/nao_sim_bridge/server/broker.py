@@ -36,9 +36,6 @@ class Broker:
     Attributes:
         name: Name that modules report as their broker.
         port: Port it listens on, known after `listen`.
-
-    Args:
-        name: See above.
     """
 
     def __init__(self, name: str = "nao_sim") -> None:
@@ -82,12 +79,10 @@ class Broker:
         self._watch = StuckClients(self.port)
 
     def register(self, module: str, service: Any) -> None:
-        """Serve an object under a name."""
         with self._lock:
             self._services[module] = (self._session.registerService(module, service), service)
 
     def serves(self, module: str) -> bool:
-        """Whether an object is served under a name."""
         with self._lock:
             return module in self._services
 
@@ -206,7 +201,6 @@ class _Caller:
 
     @property
     def waits(self) -> bool:
-        """Whether calls wait for their turn."""
         return bool(self._calls)
 
     def add(self, method: str, arguments: list) -> None:

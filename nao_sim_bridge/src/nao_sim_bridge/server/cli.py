@@ -18,6 +18,12 @@ from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.world.places import MOST_ROBOTS, RobotPlace, parse_places
 from nao_sim_bridge.world.reader import world_names
 
+# Options that have the names of attributes of the scene, and of the server.
+OF_SCENE = "world posture seed friction payload sensor_noise sensor_delay charger".split()
+OF_SERVER = (
+    "port speed paused gui record_dir sound_file sound_card renderer robots places allow_private_streams"
+).split()
+
 
 def parser(prog: str) -> argparse.ArgumentParser:
     """The options of `nao_sim` and of `python -m nao_sim_bridge`."""
@@ -97,32 +103,9 @@ def parser(prog: str) -> argparse.ArgumentParser:
 
 def server_options(arguments: argparse.Namespace) -> ServerOptions:
     """Options of the server from parsed arguments."""
-    scene = Scene(
-        world=arguments.world,
-        version=arguments.robot,
-        posture=arguments.posture,
-        seed=arguments.seed,
-        friction=arguments.friction,
-        payload=arguments.payload,
-        sensor_noise=arguments.sensor_noise,
-        sensor_delay=arguments.sensor_delay,
-        charger=arguments.charger,
-    )
-    return ServerOptions(
-        scene,
-        arguments.listen,
-        arguments.port,
-        arguments.speed,
-        arguments.paused,
-        arguments.gui,
-        arguments.record_dir,
-        arguments.sound_file,
-        arguments.sound_card,
-        arguments.renderer,
-        robots=arguments.robots,
-        places=arguments.places,
-        allow_private_streams=arguments.allow_private_streams,
-    )
+    given = vars(arguments)
+    scene = Scene(version=arguments.robot, **{name: given[name] for name in OF_SCENE})
+    return ServerOptions(scene, arguments.listen, **{name: given[name] for name in OF_SERVER})
 
 
 def parse(prog: str, arguments: Sequence[str] | None = None) -> argparse.Namespace:

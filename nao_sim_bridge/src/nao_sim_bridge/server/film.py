@@ -10,15 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from nao_sim_bridge.base.child_process import ChildProcess
-from nao_sim_bridge.base.samples import RATE, pcm16
+from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import START_TIMEOUT, PictureRefused, RenderError
-from nao_sim_bridge.render.wire import StateSender
 from nao_sim_bridge.sound.follower import Follower
+from nao_sim_bridge.world.render_state import StateSender
 
 log = logging.getLogger("nao_sim.film")
 
@@ -39,7 +37,6 @@ class FilmReport:
     """A film that is complete.
 
     Attributes:
-        path: The file.
         frames: How many pictures it has.
         duration: s.
         left_out: Frames that the computer was too slow for.
@@ -56,17 +53,13 @@ class FilmReport:
 
 
 class Film:
-    """One film that is being taken.
+    """One film that is being taken, into the file at `path`.
 
     Threads: the simulation's puts states into a queue, a follower of the sound's clock puts sound there, a third one
     sends both to the process that draws. The lock guards the queue.
 
-    Attributes:
-        path: The file.
-
     Args:
-        simulation: What is filmed.
-        path: See above; one that is there is replaced.
+        path: The file; one that is there is replaced.
         view: A name of a view.
         size: Width and height, pixels.
         frame_rate: Pictures a second of simulated time.
@@ -172,8 +165,7 @@ class Film:
 
     def _hear(self, first: int, last: int) -> None:
         """Take sound; in the thread of the follower."""
-        mixed = self._simulation.sound.loudspeakers.mixed(first, last)
-        samples = np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
+        samples = self._simulation.sound.loudspeakers.pcm(first, last)
         self._put("sound", (first - self._first_sample, samples.tobytes()))
 
     def _behind(self) -> bool:

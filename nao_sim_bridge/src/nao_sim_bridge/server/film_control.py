@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import logging
 import threading
-from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue, NotAllowed, UnknownName
 from nao_sim_bridge.base.record_dir import ClientFiles, unused
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.base.tasks import Task, TaskIds
+from nao_sim_bridge.base.tasks import Task, TaskIds, worked_out
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import RenderError
@@ -25,14 +24,7 @@ FILE, TYPE = "film.mp4", ".mp4"
 
 
 class FilmControl:
-    """Begins and ends films, one at a time. For any thread.
-
-    Args:
-        simulation: What is filmed.
-        runner: Its thread.
-        files: Where clients may have files written to.
-        engine: What draws; see `Renderer`.
-    """
+    """Begins and ends films, one at a time. For any thread."""
 
     def __init__(
         self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, engine: str = "auto"
@@ -81,7 +73,7 @@ class FilmControl:
                 self._film = film
             return str(path)
 
-        return self._in_background(start, "startFilm")
+        return worked_out(self._ids.make("startFilm"), start, "startFilm")
 
     def caption(self, text: str) -> None:
         """Write a text into the film from now on; empty for none.
@@ -105,14 +97,10 @@ class FilmControl:
                 self._film = None
             return film.end()
 
-        return self._in_background(stop, "stopFilm")
+        return worked_out(self._ids.make("stopFilm"), stop, "stopFilm")
 
     def close(self, limit: float = END_LIMIT) -> None:
-        """End the film that is being taken, if there is one; before the simulation ends.
-
-        Args:
-            limit: s of wall time, after which what is not drawn yet is left out.
-        """
+        """End the film that is taken, before the simulation ends; what is not drawn in `limit` s is left out."""
         with self._lock:
             film, self._film = self._film, None
         if film is not None:
@@ -126,16 +114,3 @@ class FilmControl:
         if self._film is None:
             raise NotAllowed("nothing is being filmed: start a film first")
         return self._film
-
-    def _in_background(self, work: Any, name: str) -> Task:
-        """A task for what takes wall time, which must hold up neither the simulation nor a thread of libqi."""
-        task = self._ids.make(name)
-
-        def run() -> None:
-            try:
-                task.finish(work())
-            except Exception as error:
-                task.finish(error=error)
-
-        threading.Thread(target=run, name=name, daemon=True).start()
-        return task

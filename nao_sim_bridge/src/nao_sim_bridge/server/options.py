@@ -16,16 +16,13 @@ class ServerOptions:
 
     Attributes:
         scene: World, robot version, posture, seed.
-        address: Network address to listen on.
         port: Port; 0 takes a free one.
         speed: Simulated seconds per wall second, infinity for as fast as possible.
-        paused: Start without time passing.
         gui: Show the robot in a window.
         record_dir: Folder for files of clients; "~" stands for the home of the user.
         sound_file: Name in `record_dir` of a WAV for everything that the loudspeakers play; empty for none.
         sound_card: Let it be heard on this computer, too; only at speed 1.
         renderer: What draws: "auto", "opengl" or "builtin"; see `Renderer`.
-        name: What the robot is called.
         robots: How many there are in the world; with more than one the port is that of the first.
         places: Where they stand; empty for where the world says, or else the usual places.
         allow_private_streams: Whether playWebStream may fetch from this computer and from private networks.

@@ -58,11 +58,7 @@ def has_clients(port: int) -> bool:
 
 
 class StuckClients:
-    """Cuts off the clients of a port that take nothing any more, in a thread of its own: those that are stopped.
-
-    Args:
-        port: That libqi listens on.
-    """
+    """Cuts off the clients of a port that take nothing any more, in a thread of its own: those that are stopped."""
 
     def __init__(self, port: int) -> None:
         self._port = port

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import logging
 import threading
+from typing import TYPE_CHECKING
 
 from PIL import Image
 
@@ -12,8 +13,10 @@ from nao_sim_bridge.base.errors import BadValue, SimulationStopped
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import RenderError, Viewer
-from nao_sim_bridge.render.pointer import Ray
 from nao_sim_bridge.world.render_state import RenderState, preset_camera
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.render.window import Ray
 
 log = logging.getLogger("nao_sim.pictures")
 
@@ -23,12 +26,7 @@ WINDOW_PERIOD = 1.0 / 30.0
 
 
 class Pictures:
-    """Draws the simulated robot from outside.
-
-    Args:
-        simulation: What to draw; only its published values are read.
-        runner: Its thread.
-    """
+    """Draws the simulated robot from outside; only its published values are read."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation
@@ -88,7 +86,6 @@ class Pictures:
         threading.Thread(target=self._mirror, args=(self._viewer,), name="window", daemon=True).start()
 
     def close(self) -> None:
-        """Close the window."""
         self._closing.set()
         if self._viewer is not None:
             self._viewer.close()

@@ -34,8 +34,7 @@ from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
 from nao_sim_bridge.server.film import END_LIMIT
 from nao_sim_bridge.server.film_control import FilmControl
-from nao_sim_bridge.server.hands_control import HandsControl
-from nao_sim_bridge.server.health_control import HealthControl
+from nao_sim_bridge.server.robot_control import HandsControl, HealthControl
 from nao_sim_bridge.server.things_control import ThingsControl
 from nao_sim_bridge.server.world_sounds_control import WorldSoundsControl
 from nao_sim_bridge.sound.reader import SoundReader
@@ -56,8 +55,6 @@ class Workers:
         voice: Makes the robot's speech.
         persons: Makes the speech of persons: they may speak while the robot does.
         vision: Where detectors look at pictures.
-        recogniser: Recognises speech.
-        sounds: Reads sound files.
     """
 
     def __init__(self) -> None:
@@ -80,19 +77,21 @@ class RobotModules:
     """The modules of one robot, and what only a simulator can do to it.
 
     Attributes:
-        simulation: Touched in the simulation thread only.
+        simulation: Touched in the simulation thread only; replaced by a factory reset, with everything else in here.
         runner: That thread, for this simulation.
         began: What `SimulatorServer.now` says at time 0 of the simulation, s.
         memory: What ALMemory keeps.
         files: Where clients may have files written to and read from.
-        speech, vision, video, film, sounds, things, hands, health: See `SimulatorServer`.
+        speech: The robot's voice.
+        vision: What it recognises in its pictures.
+        sounds, things: Of the world.
+        hands: What touches the robot.
+        health: Charger, temperatures, broken devices.
 
     Args:
-        options: How the robot is started.
         simulation: The robot and its world, at time 0.
         runner: The thread that it runs in, or will.
         broker: Finds modules of clients.
-        workers: See `Workers`.
         system: What ALSystem makes of the memory and the time zone.
     """
 
@@ -173,11 +172,7 @@ class RobotModules:
                         log.exception("%s does not let go of %s", name, module)
 
     def leaving(self, film_limit: float = END_LIMIT) -> list[Step]:
-        """First steps of the end, while the simulation runs or has been left behind: complete what is under way.
-
-        Args:
-            film_limit: See `FilmControl.close`.
-        """
+        """First steps of the end, while the simulation runs or has been left behind: complete what is under way."""
         return [
             self._life.close,
             *self._audio.closing(),

@@ -16,7 +16,7 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.server.simulator_server import SimulatorServer, renderer_for, scene_in
-from nao_sim_bridge.world.places import RobotPlace, checked_places, on_circle
+from nao_sim_bridge.world.places import checked_places, on_circle
 
 SEED_STEP = 7919
 """Between the seeds of two robots, so that no two of them have the same noise."""
@@ -60,7 +60,6 @@ class RobotsServer:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the robots."""
         return tuple(server.options.name for server in self.servers)
 
     def start(self) -> None:
@@ -149,17 +148,13 @@ def open_server(options: ServerOptions) -> SimulatorServer | RobotsServer:
 def _simulations(options: ServerOptions, renderer: str | Renderer) -> list[Simulation]:
     """All robots, in a new world."""
     shared = SharedWorld(options.scene, renderer=renderer)
-    places = _places(options, shared.world.robots)
+    places = checked_places(options.places or shared.world.robots or on_circle(options.robots), options.robots)
     simulations = [
         Simulation(replace(options.scene, seed=options.scene.seed + SEED_STEP * number), shared=shared, place=place)
         for number, place in enumerate(places)
     ]
     _refuse_overlaps(shared, keep_renderer=isinstance(renderer, Renderer))
     return simulations
-
-
-def _places(options: ServerOptions, of_world: tuple[RobotPlace, ...]) -> tuple[RobotPlace, ...]:
-    return checked_places(options.places or of_world or on_circle(options.robots), options.robots)
 
 
 def _refuse_overlaps(shared: SharedWorld, keep_renderer: bool) -> None:

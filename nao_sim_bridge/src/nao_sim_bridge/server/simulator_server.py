@@ -7,12 +7,13 @@ import logging
 import sys
 import threading
 from dataclasses import replace
+from operator import attrgetter
 from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.base.closing import Step, close_all
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.record_dir import ClientFiles, unused
-from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.record_dir import unused
+from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.core.runner import SimulationRunner
@@ -20,24 +21,16 @@ from nao_sim_bridge.core.simulation import Scene, Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, numbers
 from nao_sim_bridge.naoqi.binding.binding import Service
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
 from nao_sim_bridge.naoqi.system.nao_simulation import NAME as NAO_SIMULATION
 from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
-from nao_sim_bridge.naoqi.vision.wiring import VisionModules
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.server.broker import Broker
-from nao_sim_bridge.server.film_control import FilmControl
-from nao_sim_bridge.server.hands_control import HandsControl
-from nao_sim_bridge.server.health_control import HealthControl
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.server.pictures import Pictures
 from nao_sim_bridge.server.robot_modules import RobotModules, Workers
 from nao_sim_bridge.server.sound_outlets import SoundCard, SoundFile
-from nao_sim_bridge.server.things_control import ThingsControl
-from nao_sim_bridge.server.world_sounds_control import WorldSoundsControl
-from nao_sim_bridge.sound.reader import SoundReader
 from nao_sim_bridge.world.reader import world_names
 
 MAX_PUSH = 60.0
@@ -66,7 +59,6 @@ class SimulatorServer:
         ended: Set when a client shut the robot down or the simulation failed.
 
     Args:
-        options: How it is started.
         simulation: A robot in a world that is there already; None for one of its own.
         runner: The thread of that world.
         factory_reset: Makes that world, the one of this name, and all its robots anew.
@@ -101,65 +93,18 @@ class SimulatorServer:
         """The thread of the simulation; of several robots in a world each has its own view of it."""
         return self._robot.runner if self._shares_thread else self._thread
 
-    @property
-    def simulation(self) -> Simulation:
-        """Touched in the simulation thread only; replaced by a factory reset."""
-        return self._robot.simulation
-
-    @property
-    def memory(self) -> MemoryStore:
-        """What ALMemory keeps."""
-        return self._robot.memory
-
-    @property
-    def files(self) -> ClientFiles:
-        """Where clients may have files written to and read from."""
-        return self._robot.files
-
-    @property
-    def sound_reader(self) -> SoundReader:
-        """What reads sound files."""
-        return self._workers.sounds
-
-    @property
-    def speech(self) -> SpeechModules:
-        """The robot's voice."""
-        return self._robot.speech
-
-    @property
-    def vision(self) -> VisionModules:
-        """What it recognises in its pictures."""
-        return self._robot.vision
-
-    @property
-    def sounds(self) -> WorldSoundsControl:
-        """Sounds of the world."""
-        return self._robot.sounds
-
-    @property
-    def things(self) -> ThingsControl:
-        """Things of the world."""
-        return self._robot.things
-
-    @property
-    def hands(self) -> HandsControl:
-        """What touches the robot."""
-        return self._robot.hands
-
-    @property
-    def health(self) -> HealthControl:
-        """Charger, temperatures, broken devices."""
-        return self._robot.health
-
-    @property
-    def film(self) -> FilmControl:
-        """Films of the robot."""
-        return self._robot.film
-
-    @property
-    def began(self) -> float:
-        """What `now` says at time 0 of the robot, s."""
-        return self._robot.began
+    simulation = property(attrgetter("_robot.simulation"), doc="See `RobotModules`, as the next.")
+    memory = property(attrgetter("_robot.memory"))
+    files = property(attrgetter("_robot.files"))
+    speech = property(attrgetter("_robot.speech"))
+    vision = property(attrgetter("_robot.vision"))
+    sounds = property(attrgetter("_robot.sounds"))
+    things = property(attrgetter("_robot.things"))
+    hands = property(attrgetter("_robot.hands"))
+    health = property(attrgetter("_robot.health"))
+    film = property(attrgetter("_robot.film"))
+    began = property(attrgetter("_robot.began"))
+    sound_reader = property(attrgetter("_workers.sounds"), doc="What reads sound files.")
 
     @property
     def now(self) -> tuple[Snapshot, float]:
@@ -267,18 +212,7 @@ class SimulatorServer:
 
     def factory_reset_task(self, world: str = "") -> Task:
         """As `factory_reset`, without waiting."""
-        task = Task("factoryReset", 0)
-
-        def run() -> None:
-            try:
-                self.factory_reset(world)
-            except Exception as error:
-                task.finish(error=error)
-            else:
-                task.finish()
-
-        threading.Thread(target=run, name="factory reset", daemon=True).start()
-        return task
+        return worked_out(Task("factoryReset", 0), lambda: self.factory_reset(world), "factory reset")
 
     def modules_for(self, simulation: Simulation) -> RobotModules:
         """Modules for a robot at its start, which do nothing yet."""
@@ -286,10 +220,6 @@ class SimulatorServer:
 
     def take(self, robot: RobotModules, began: float) -> Callable[[], None]:
         """Be another robot from now on; simulation thread, which has just taken its simulation.
-
-        Args:
-            robot: Its modules.
-            began: Its `began`.
 
         Returns:
             To be called outside the thread: closes what was left behind, but for what draws.

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from nao_sim_bridge.base.errors import SimulationError
-from nao_sim_bridge.base.samples import RATE, pcm16
+from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.sound.files import WavFile
 from nao_sim_bridge.sound.follower import Follower
-from nao_sim_bridge.sound.wav_file import WavFile
 
 log = logging.getLogger("nao_sim.sound")
 
@@ -37,7 +37,6 @@ class SoundFile:
     While the disk is full, it is silent.
 
     Args:
-        simulation: Whose loudspeakers.
         path: The file; one that is there is replaced in the end.
 
     Raises:
@@ -45,13 +44,10 @@ class SoundFile:
     """
 
     def __init__(self, simulation: Simulation, path: Path) -> None:
-        self._loudspeakers = simulation.sound.loudspeakers
-        self._wake = simulation.wake
         self._path = path
         self._file = WavFile(path, RATE, 2)
         self._lost = 0  # frames that the disk had no room for
-        self._follower = Follower("sound file", simulation.sound.timeline, self._write, FILE_STEP)
-        simulation.holds.append(self.behind)
+        self._listen_to(simulation)
 
     def behind(self) -> bool:
         """Whether fast time should wait for the file."""
@@ -60,18 +56,20 @@ class SoundFile:
     def follow(self, simulation: Simulation) -> None:
         """Write what another simulation plays from now on, behind what there is; in its thread."""
         self._follower.close()
-        self._loudspeakers, self._wake = simulation.sound.loudspeakers, simulation.wake
-        self._follower = Follower("sound file", simulation.sound.timeline, self._write, FILE_STEP)
-        simulation.holds.append(self.behind)
+        self._listen_to(simulation)
 
     def close(self) -> None:
         """Write what has been played, and end."""
         self._follower.close()
         self._file.close()
 
+    def _listen_to(self, simulation: Simulation) -> None:
+        self._loudspeakers = simulation.sound.loudspeakers
+        self._follower = Follower("sound file", simulation.sound.timeline, self._write, FILE_STEP)
+        simulation.holds.append(self.behind)
+
     def _write(self, first: int, last: int) -> None:
-        mixed = self._loudspeakers.mixed(first, last)
-        samples = np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
+        samples = self._loudspeakers.pcm(first, last)
         try:
             self._file.write(samples, self._lost)
         except FileTrouble as error:
@@ -86,10 +84,7 @@ class SoundFile:
 
 
 class SoundCard:
-    """The computer's own loudspeakers.
-
-    Args:
-        simulation: Whose loudspeakers are to be heard; time must run at speed 1.
+    """The computer's own loudspeakers; time must run at speed 1.
 
     Raises:
         SoundCardError: There is no library or no card.
@@ -117,9 +112,7 @@ class SoundCard:
     def _send(self, first: int, last: int) -> None:
         if self._timeline.now - last > CARD_LATEST * RATE:
             return  # time went faster than the card plays
-        mixed = self._loudspeakers.mixed(first, last)
-        samples = np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
-        if self._stream.write(samples):  # it had run dry: time went slower for a moment
+        if self._stream.write(self._loudspeakers.pcm(first, last)):  # it had run dry: time went slower for a moment
             self._stream.write(np.zeros((round(CARD_DELAY * RATE), 2), np.int16))
 
 

@@ -21,13 +21,7 @@ WHERE = "object"
 
 
 class ThingsControl:
-    """Places, moves and removes things.
-
-    Args:
-        simulation: Whose world it is.
-        runner: Its thread.
-        files: Where clients may have pictures read from.
-    """
+    """Places, moves and removes things; their pictures may be files of clients."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
         self._simulation = simulation
@@ -49,10 +43,7 @@ class ThingsControl:
         return self.place(entry)
 
     def place(self, entry: Mapping[str, Any]) -> Task:
-        """Place a thing; the task ends when it is there.
-
-        Args:
-            entry: As in a world file; the file of an `image` is one of the client's.
+        """Place a thing as in a world file, its `image` a file of the client; the task ends when it is there.
 
         Raises:
             WorldError: The entry is wrong.
@@ -68,7 +59,6 @@ class ThingsControl:
         """Put a thing to another place.
 
         Args:
-            name: Of the thing.
             position: [x, y, z] in m over the floor; see `Things.move`.
             rpy: [roll, pitch, yaw] in rad; [] to keep it.
             duration: How long it is on its way, s of simulated time.

@@ -28,9 +28,6 @@ class WorldSoundsControl:
     """Places sounds in the world, and lets persons speak there.
 
     Args:
-        simulation: Whose world it is.
-        runner: Its thread.
-        sounds: Reads sound files.
         studio: Makes the voices of persons: not that of the robot, for both may speak at the same time.
     """
 
@@ -57,7 +54,6 @@ class WorldSoundsControl:
         """Place a sound; the task ends when it has begun.
 
         Args:
-            name: Of its own.
             sound: A file's name, "noise:white", "noise:pink", or "tone:" and a frequency in Hz.
             position: [x, y, z] in world, m.
             level_db: At 1 m, dB SPL.
@@ -68,12 +64,10 @@ class WorldSoundsControl:
         return self._runner.execute(lambda: self._simulation.sound.sources.add(source), "addSound").then(lambda _: None)
 
     def move(self, name: str, position: Sequence[float]) -> Task:
-        """Put a sound to another place."""
         place = _position(position)
         return self._runner.execute(lambda: self._simulation.sound.sources.move(name, place), "moveSound")
 
     def remove(self, name: str) -> Task:
-        """Silence a sound."""
         return self._runner.execute(lambda: self._simulation.sound.sources.remove(name), "removeSound")
 
     def places(self) -> Task:
@@ -85,7 +79,6 @@ class WorldSoundsControl:
         """Let a person say something; the task ends when it has been said, and its kill silences.
 
         Args:
-            text: What.
             position: Of the mouth, in world, m.
             voice: Name of a voice, empty for the robot's first.
             level_db: At 1 m, dB SPL; 0 for that of a talking person.

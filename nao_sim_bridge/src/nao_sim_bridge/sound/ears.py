@@ -49,12 +49,6 @@ class MicrophoneBlock:
 
 
 class Listener:
-    """Somebody who hears.
-
-    Attributes:
-        name: For the log.
-    """
-
     def __init__(
         self,
         ears: Ears,
@@ -93,8 +87,6 @@ class Ears:
     """Listeners and their thread, which runs as long as there are any.
 
     Args:
-        timeline: The clock.
-        microphones: What is heard.
         released: Called when time that waited need not wait any more.
         guard: Told of listeners that fail.
     """
@@ -123,7 +115,6 @@ class Ears:
 
     @property
     def listening(self) -> bool:
-        """Whether anybody listens."""
         return bool(self._listeners)
 
     def holds(self) -> bool:
@@ -219,7 +210,6 @@ class Ears:
                 raise TimeoutError(f"ears have not caught up within {timeout} s; they are {self.lag:.1f} s behind")
 
     def close(self) -> None:
-        """End of all listeners."""
         with self._news:
             for listener in self._listeners:
                 listener.closed = True

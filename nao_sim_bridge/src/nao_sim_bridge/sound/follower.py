@@ -20,7 +20,6 @@ class Follower:
 
     Args:
         name: Of the thread.
-        timeline: What to follow.
         handle: Called in the thread with (first, last): the frames `first` to `last`, without it, have passed. The
             stretches follow each other without gaps. When it raises, that is logged and nothing more is handled.
         step: How many frames pass between two calls, as long as the thread keeps up.

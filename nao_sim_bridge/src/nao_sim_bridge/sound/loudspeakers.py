@@ -1,4 +1,4 @@
-"""The two loudspeakers in the robot's head: what they play, mixed."""
+"""The two loudspeakers in the robot's head: what they play, mixed, and what other robots hear of it."""
 
 from __future__ import annotations
 
@@ -7,18 +7,19 @@ from typing import Iterable
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.samples import RATE, Sound, frame_at
+from nao_sim_bridge.base.samples import RATE, Sound, frame_at, pcm16
 from nao_sim_bridge.base.tasks import TaskIds
+from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.sound.envelope import Envelope
 from nao_sim_bridge.sound.playing import Mark, Playing
+from nao_sim_bridge.sound.poses import PoseTrack
+from nao_sim_bridge.sound.settings import SoundSettings
 from nao_sim_bridge.sound.sources import LONGEST_WAY
 from nao_sim_bridge.sound.timeline import Timeline
 from nao_sim_bridge.sound.track import RAMP
 
 
 class SpeakerPlaying(Playing):
-    """A sound that plays in the loudspeakers."""
-
     def __init__(self, volume: float, pan: float, *args, **options) -> None:
         self.volume, self.pan = _volume(volume), _pan(pan)
         super().__init__(*args, gains=self._sides(), **options)
@@ -38,13 +39,7 @@ class SpeakerPlaying(Playing):
 
 
 class Loudspeakers:
-    """Both loudspeakers. Simulation thread, but for reading properties and `played`.
-
-    Args:
-        timeline: The clock.
-        ids: Source of the tasks' numbers.
-        volume: Of the start, 0..100.
-    """
+    """Both loudspeakers. Simulation thread, but for reading properties and `played`. Volumes: 0..100."""
 
     def __init__(self, timeline: Timeline, ids: TaskIds, volume: float = 100.0) -> None:
         self._timeline = timeline
@@ -109,11 +104,9 @@ class Loudspeakers:
         Args:
             sound: One channel for both loudspeakers, or two for left and right; of more the first two count. A long
                 one should have RATE already: else it is converted here.
-            name: Name of the task.
             volume: Its own volume, 0..1.
             pan: -1 left, 0 both, 1 right.
             start: Where in the sound to begin, s.
-            loop: Again and again, until it is stopped.
             marks: (seconds, callback), called in the simulation thread when playing passes that place.
             after: Begin at the very frame at which this one will end as things are, so that they follow without a gap;
                 now when that is over, paused or a loop.
@@ -137,7 +130,6 @@ class Loudspeakers:
         return player
 
     def stop_all(self) -> None:
-        """Silence at once."""
         for player in self.playing:
             player.stop()
 
@@ -170,6 +162,11 @@ class Loudspeakers:
             return None
         out *= np.reshape(np.float32(self._master.between(first, last)[0]), (-1, 1))
         return np.clip(out, -1.0, 1.0, out=out)
+
+    def pcm(self, first: int, last: int) -> np.ndarray:
+        """(last - first, 2) int16 from frame `first` to `last`, silence included."""
+        mixed = self.mixed(first, last)
+        return np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
 
     def _set_master(self) -> None:
         on = not (self._muted or self._closed)
@@ -210,3 +207,43 @@ def _pan(pan: float) -> float:
     if not -1.0 <= pan <= 1.0:
         raise BadValue("pan", pan, "-1 (left) to 1 (right)")
     return float(pan)
+
+
+class RobotVoice:
+    """The loudspeakers of a robot, heard from outside: half-way between the two. Any thread."""
+
+    def __init__(
+        self,
+        model: RobotModel,
+        settings: SoundSettings,
+        timeline: Timeline,
+        loudspeakers: Loudspeakers,
+        poses: PoseTrack,
+        frames_per_tick: int,
+    ) -> None:
+        self.loudspeakers = loudspeakers
+        self._timeline = timeline
+        self._poses = poses
+        self._tick = frames_per_tick
+        self._mouth = np.mean([place.position for place in model.loudspeakers], axis=0)[None]
+        self._peak = np.float32(settings.loudspeaker_peak)
+
+    def silent(self, first: int, last: int) -> bool:
+        """Whether nothing has been played from frame `first` to `last`."""
+        return not self.loudspeakers.sounds(first, last)
+
+    def at(self, frames: np.ndarray) -> np.ndarray:
+        """(..., 3) where it is at `frames` of any shape, none after now, in world, m; straight between two ticks."""
+        newest = self._timeline.now // self._tick
+        flat = np.minimum(frames.ravel() / self._tick, newest)
+        first = int(np.floor(flat.min()))
+        last = min(int(np.ceil(flat.max())), newest)
+        places = self._poses.at(first, max(first, last)).place(self._mouth)[:, 0]
+        knots = np.arange(first, first + len(places))
+        lines = [np.interp(flat, knots, places[:, axis]) for axis in range(3)]
+        return np.stack(lines, axis=-1).reshape((*frames.shape, 3))
+
+    def dry(self, first: int, last: int) -> np.ndarray | None:
+        """(last - first,) what it gives off, as a microphone at 1 m has it; None when that is nothing."""
+        mixed = self.loudspeakers.mixed(first, last)
+        return None if mixed is None else (mixed[:, 0] + mixed[:, 1]) * self._peak

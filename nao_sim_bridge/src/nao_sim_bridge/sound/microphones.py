@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import partial
+from functools import lru_cache, partial
 from typing import Callable, Sequence
 
 import numpy as np
@@ -11,31 +11,22 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue, ConfigError
 from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.sound.loudspeakers import Loudspeakers, checked_past
-from nao_sim_bridge.sound.noise import Background
+from nao_sim_bridge.sound.loudspeakers import Loudspeakers, RobotVoice, checked_past
 from nao_sim_bridge.sound.poses import PoseTrack
 from nao_sim_bridge.sound.propagation import FixedWays, arrivals, at_places, between_knots
-from nao_sim_bridge.sound.robot_voice import RobotVoice
 from nao_sim_bridge.sound.settings import SoundSettings
 from nao_sim_bridge.sound.sources import LONGEST_WAY, Sources
 from nao_sim_bridge.sound.timeline import Timeline
 
 GUARD = 96
 """Frames (2 ms) that the filters look ahead: what is heard at a frame is settled when so much more time has passed."""
+CHUNK = 16384
+SUPPLY = 2**18
+"""Frames that noise is cut from: drawing new ones all the time would be most of the work of hearing."""
 
 
 class Microphones:
     """What the microphones hear. `heard` and `render` are for any thread, the rest for the simulation thread.
-
-    Args:
-        model: The robot.
-        settings: Levels and channels.
-        timeline: The clock.
-        loudspeakers: In the same head.
-        sources: In the world.
-        frames_per_tick: Length of a tick.
-        seed: Of the background noise.
-        others: Voices of the other robots.
 
     Raises:
         ConfigError: The settings name a microphone that the robot does not have.
@@ -71,9 +62,9 @@ class Microphones:
         self._per_meter = RATE / settings.speed_of_sound
         speakers = np.array([place.position for place in model.loudspeakers])
         distances = np.linalg.norm(self.places[None] - speakers[:, None], axis=-1)
-        # Each of the two gives half of what both give together at 1 m.
-        own = settings.peak_of(settings.loudspeaker_full_scale_db) / 2.0
-        self._own_ways = FixedWays.of(distances * self._per_meter, own / np.maximum(distances, settings.near_field_m))
+        self.own_gains = settings.loudspeaker_peak / np.maximum(distances, settings.near_field_m)
+        """(2, 4) of each loudspeaker in the same head, as each microphone hears it."""
+        self._own_ways = FixedWays.of(distances * self._per_meter, self.own_gains)
         self._replacements: tuple[tuple[int, Sound | None], ...] = ((-(2**62), None),)
         timeline.forget.append(self._forget)
 
@@ -120,7 +111,7 @@ class Microphones:
             low, high = max(first, begin), min(last, end)
             if low >= high:
                 continue
-            part = self._air(low, high) if sound is None else _from_file(sound, low - begin, high - begin)
+            part = self._air(low, high) if sound is None else sound.samples[low - begin : high - begin].T
             out[:, low - first : high - first] = part
         np.minimum(out, 1.0, out=out)
         return np.maximum(out, -1.0, out=out)
@@ -184,6 +175,36 @@ class Microphones:
             self._replacements = self._replacements[kept[-1] :]
 
 
-def _from_file(sound: Sound, first: int, last: int) -> np.ndarray:
-    """A part of a sound of one or four channels as (4, last - first)."""
-    return np.broadcast_to(sound.samples[first:last].T, (4, last - first))
+class Background:
+    """Noise of several channels, independent of each other.
+
+    Each chunk is cut from the supply at a place of its own, so that nothing comes again at regular times.
+    """
+
+    def __init__(self, seed: int, rms: float, channels: int = 4) -> None:
+        self._seed = abs(seed)
+        self._rms = np.float32(rms)
+        self._channels = channels
+        self._supply: np.ndarray | None = None
+        self._cut = lru_cache(maxsize=64)(self._draw_cut)
+
+    def between(self, first: int, last: int) -> np.ndarray:
+        """(channels, last - first) float32 from frame `first` to `last`."""
+        if self._supply is None:
+            chance = np.random.Generator(np.random.SFC64([self._seed]))
+            self._supply = self._rms * chance.standard_normal((self._channels, SUPPLY), np.float32)
+        out = np.empty((self._channels, last - first), np.float32)
+        at = first
+        while at < last:
+            number, offset = divmod(at, CHUNK)
+            count = min(CHUNK - offset, last - at)
+            cut = self._cut(number) + offset
+            out[:, at - first : at - first + count] = self._supply[:, cut : cut + count]
+            at += count
+        return out
+
+    def _draw_cut(self, number: int) -> int:
+        """Where in the supply a chunk is cut out."""
+        # A generator of its own, so that no chunk depends on which others were asked for before.
+        chance = np.random.Generator(np.random.SFC64([self._seed, abs(number), int(number < 0)]))
+        return int(chance.integers(SUPPLY - CHUNK))

@@ -24,10 +24,6 @@ class Playing:
         sound: What plays, at RATE.
 
     Args:
-        timeline: The clock.
-        ids: Source of the task.
-        name: Name of the task.
-        sound: What to play.
         start: Where in the sound to begin, s.
         loop: Begin again at its end, until it is stopped.
         marks: (seconds, callback): called in the simulation thread when playing passes that place of the sound; in a
@@ -72,7 +68,6 @@ class Playing:
 
     @property
     def paused(self) -> bool:
-        """Whether it is paused."""
         return self._resting is not None and not self.task.finished
 
     @property

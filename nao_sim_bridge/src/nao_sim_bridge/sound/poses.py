@@ -31,7 +31,6 @@ class PoseTrack:
     """Remembers torso and head of each tick. Written in the simulation thread, read in any.
 
     Args:
-        model: The robot.
         link: Link of the head, from which the neck is followed down to the torso.
         keep: Number of ticks that are remembered.
     """
@@ -44,7 +43,6 @@ class PoseTrack:
         self._first = self._began = 0
 
     def record(self, tick: int, snapshot: Snapshot) -> None:
-        """Remember where the head is at a tick."""
         torso, angles = snapshot.torso, snapshot.positions
         if not self._poses:
             self._first = self._began = tick
@@ -54,7 +52,6 @@ class PoseTrack:
             self._first += 1
 
     def knows(self, tick: int) -> bool:
-        """Whether it remembers that tick."""
         return tick in self._poses
 
     def at(self, first: int, last: int) -> HeadPoses:

@@ -134,7 +134,6 @@ def between_knots(values: np.ndarray, step: int, skip: int, count: int, kind: ty
         step: Frames from one to the next.
         skip: How many frames after the first value the result begins.
         count: Frames of the result.
-        kind: Type of the result.
 
     Returns:
         (k, count).

@@ -23,11 +23,7 @@ class _Failed(SoundFileError):
 
 
 class SoundReader:
-    """Its process starts with the first file. Any thread may ask; one file is read at a time.
-
-    Attributes:
-        sizes: What is allowed.
-    """
+    """Its process starts with the first file. Any thread may ask; one file is read at a time."""
 
     def __init__(self) -> None:
         self.sizes: Sizes = load_sizes()
@@ -44,7 +40,6 @@ class SoundReader:
         """The sound in a file, at its own rate and with its own channels; blocks until it is there.
 
         Args:
-            path: The file.
             longest: Longest sound allowed, s; that of a sound of a world when None.
 
         Raises:

@@ -54,6 +54,11 @@ class SoundSettings:
         """Peak of a sine of that level as a microphone's samples have it, 1 is full scale."""
         return 10.0 ** ((level_db - self.microphone_full_scale_db) / 20.0)
 
+    @property
+    def loudspeaker_peak(self) -> float:
+        """Peak of one loudspeaker's full scale sine at 1 m: each of the two gives half of what both give together."""
+        return self.peak_of(self.loudspeaker_full_scale_db) / 2.0
+
 
 @lru_cache(maxsize=None)
 def load_sound_settings() -> SoundSettings:

@@ -1,34 +1,62 @@
-"""All sound of one robot: what it plays and what it hears."""
+"""The sound of a world, and of each robot in it: what it plays and what it hears."""
 
 from __future__ import annotations
 
+import itertools
 from typing import Callable
 
 from nao_sim_bridge.base.samples import RATE
+from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.sound.air import Air
 from nao_sim_bridge.sound.ears import Ears
-from nao_sim_bridge.sound.loudspeakers import Loudspeakers
+from nao_sim_bridge.sound.loudspeakers import Loudspeakers, RobotVoice
 from nao_sim_bridge.sound.microphones import Microphones
-from nao_sim_bridge.sound.robot_voice import RobotVoice
+from nao_sim_bridge.sound.settings import SoundSettings, load_sound_settings
+from nao_sim_bridge.sound.sources import Sources
+from nao_sim_bridge.sound.timeline import Timeline
+
+
+class Air:
+    """What robots in one world hear of it and of each other; settings are those of the file by default.
+
+    Attributes:
+        timeline: The clock of sound.
+        numbers: For the names of sounds that nobody named.
+    """
+
+    def __init__(self, ids: TaskIds, tick_s: float, settings: SoundSettings | None = None) -> None:
+        self.settings = settings or load_sound_settings()
+        self.ids = ids
+        self.tick_s = tick_s
+        self.timeline = Timeline(self.settings.keep_s, ids.guard)
+        self.sources = Sources(self.timeline, ids, self.settings)
+        self.numbers = itertools.count(1)
+        self.voices: tuple[RobotVoice, ...] = ()
+
+    @property
+    def frames_per_tick(self) -> int:
+        """Length of a tick in frames."""
+        return round(self.tick_s * RATE)
+
+    def tick(self, tick: int) -> None:
+        """A tick has passed, and all robots know where their heads are at its end."""
+        self.timeline.tick(round(tick * self.tick_s * RATE))
+
+    def stop_all(self) -> None:
+        for voice in self.voices:
+            voice.loudspeakers.stop_all()
+        self.sources.clear()
 
 
 class SoundWorld:
     """What sounds and what is heard. It stays at a reset of the simulation, which ends everything that plays.
 
     Attributes:
-        settings: Levels.
-        loudspeakers: Of the robot.
         sources: Sounds in the world, which other robots may hear, too.
-        microphones: Of the robot.
-        ears: Listeners.
-        timeline: The clock of sound.
         numbers: For the names of sounds of the world that nobody named.
 
     Args:
-        model: The robot.
-        air: Around it.
         seed: Of the background noise.
         released: Called when time that waited for ears need not wait any more.
     """

@@ -39,11 +39,9 @@ class SoundSource:
     """A sound at a place in the world. Best made outside the simulation thread: a long sound takes a moment.
 
     Attributes:
-        name: Its name.
         position: In world, m.
         sound: What sounds; becomes one channel at RATE.
         level_db: Level at 1 m, dB SPL, of its loud parts (root mean square).
-        loop: Begin again at the end.
         start: Where in the sound to begin, s.
         loudness: Root mean square of the sound's loud parts.
     """
@@ -63,16 +61,7 @@ class SoundSource:
 
 
 class Stint:
-    """A time at one place, or on one way without jumps.
-
-    Attributes:
-        places: Where it is.
-        presence: 0..1: 1 while the source is here.
-
-    Args:
-        position: First place in world, m.
-        presence: At first.
-    """
+    """A time at one place in world, m, or on one way without jumps. Presence is 1 while the source is here."""
 
     def __init__(self, position: Position, presence: float) -> None:
         self.places = Envelope(position, GLIDE)
@@ -85,12 +74,7 @@ class Stint:
 
 
 class SourcePlaying(Playing):
-    """A source that sounds.
-
-    Attributes:
-        name: Its name.
-        stints: Where it is and was, one after the other.
-    """
+    """A source that sounds; its stints follow each other, the last one is now."""
 
     def __init__(self, source: SoundSource, peak: float, timeline: Timeline, ids: TaskIds) -> None:
         self.name = source.name
@@ -147,13 +131,7 @@ class SourcePlaying(Playing):
 
 
 class Sources:
-    """All sounds of the world. Simulation thread, but for `names` and `sounding`.
-
-    Args:
-        timeline: The clock.
-        ids: Source of the tasks' numbers.
-        settings: Levels.
-    """
+    """All sounds of the world. Simulation thread, but for `names` and `sounding`."""
 
     def __init__(self, timeline: Timeline, ids: TaskIds, settings: SoundSettings) -> None:
         self._timeline = timeline
@@ -169,7 +147,6 @@ class Sources:
         return self._all
 
     def names(self) -> list[str]:
-        """Names of those that there are."""
         return [name for name, source in list(self._by_name.items()) if not source.ended]
 
     def get(self, name: str) -> SourcePlaying:
@@ -211,7 +188,6 @@ class Sources:
         self.get(name).stop()
 
     def clear(self) -> None:
-        """Remove all."""
         for name in self.names():
             self.remove(name)
 
@@ -244,11 +220,7 @@ def position_of(position: Position) -> Position:
 
 
 def loud_rms(samples: np.ndarray) -> float:
-    """Root mean square of a sound without its pauses; 0 for silence.
-
-    Args:
-        samples: (frames, 1) at RATE.
-    """
+    """Root mean square of a sound, (frames, 1) at RATE, without its pauses; 0 for silence."""
     step = RATE // 50
     padded = np.zeros(-(-len(samples) // step) * step)
     padded[: len(samples)] = samples[:, 0]

@@ -34,22 +34,17 @@ class Alarm:
         return self._frame if self._call is not None else None
 
     def work(self, frame: int) -> None:
-        """Call, if it is time."""
         if self._call is not None and frame >= self._frame:
             call, self._call = self._call, None
             call()
 
 
 class Timeline:
-    """Simulated time in frames. A tick without work costs one comparison.
+    """Simulated time in frames; `keep` s of it are remembered. A tick without work costs one comparison.
 
     Attributes:
         now: The frame of now: what is before it is past and never changes; any thread may read it.
         forget: Called with a frame now and then: what was over before it may be forgotten.
-
-    Args:
-        keep: How long the past is kept, s.
-        guard: Does what is due.
     """
 
     def __init__(self, keep: float, guard: Guard) -> None:

@@ -25,13 +25,9 @@ class Segment(NamedTuple):
 
 
 class Track:
-    """A sound on the timeline: pieces of it that begin and end at certain frames.
+    """A sound, (frames, channels), on the timeline: pieces of it that begin and end at certain frames.
 
     Written in the simulation thread, and only for frames that are still to come; read in any thread.
-
-    Args:
-        samples: (frames, channels) of the sound.
-        loop: Whether it begins again at its end.
     """
 
     def __init__(self, samples: np.ndarray, loop: bool) -> None:

@@ -103,12 +103,7 @@ def _libsndfile(file: BinaryIO) -> Iterator[Any]:
 
 
 class _From:
-    """A file from a byte on: in the tags before it FFmpeg would look for pictures, and decode them.
-
-    Args:
-        file: The file.
-        begin: The byte.
-    """
+    """A file from a byte on: in the tags before it FFmpeg would look for pictures, and decode them."""
 
     def __init__(self, file: BinaryIO, begin: int) -> None:
         self.read = file.read
@@ -116,12 +111,10 @@ class _From:
         self._begin = begin
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """As files have it."""
         self._file.seek(offset + self._begin if whence == os.SEEK_SET else offset, whence)
         return self.tell()
 
     def tell(self) -> int:
-        """As files have it."""
         return self._file.tell() - self._begin
 
 

@@ -37,7 +37,6 @@ class Animation:
     Attributes:
         name: NAOqi's path, for example "animations/Stand/Gestures/Hey_1".
         length: s.
-        tags: What it is for.
         joints: Key frames by name of the joint; arms, hands and head only.
     """
 
@@ -50,7 +49,6 @@ class Animation:
         """The way of a joint.
 
         Args:
-            joint: Its name.
             start: Where it is, rad.
             home: Where it began and ends, rad.
             stretch: Factor of all times.
@@ -66,7 +64,6 @@ class AnimationLibrary:
     """The animations that a robot knows, their tags, and the words that call for a tag. Any thread.
 
     Attributes:
-        animations: By name.
         body_language: Tag of those that go with any text.
         words: Word or words in lower case -> tags.
     """
@@ -93,22 +90,18 @@ class AnimationLibrary:
         )
 
     def tagged(self, tag: str) -> list[Animation]:
-        """Animations of a tag."""
         return [self.animations[name] for name in self._tags.get(tag.strip().lower(), ()) if name in self.animations]
 
     def of_word(self, word: str) -> list[Animation]:
-        """Animations that go with a word."""
         return [animation for tag in self.words.get(word.lower(), ()) for animation in self.tagged(tag)]
 
     def add(self, animations: Iterable[Animation]) -> None:
-        """Know more animations."""
         for animation in animations:
             self.animations[animation.name] = animation
             for tag in animation.tags:
                 self.add_tag(tag, [animation.name])
 
     def add_tag(self, tag: str, names: Sequence[str]) -> None:
-        """Give animations a tag."""
         known = self._tags.setdefault(tag.strip().lower(), [])
         known.extend(name for name in names if name not in known)
 

@@ -29,9 +29,6 @@ class Animator:
 
     Where a joint was before it was first moved is its home; a gesture that begins while another one is under way, or
     on its way back, ends there, too.
-
-    Args:
-        simulation: Whose robot it is.
     """
 
     def __init__(self, simulation: Any) -> None:
@@ -50,24 +47,18 @@ class Animator:
 
     @property
     def busy(self) -> bool:
-        """Whether an animation runs."""
         return any(move.animation is not None for move in self._moves.values())
 
     def running(self, animation: Animation) -> Task | None:
-        """The task of an animation that runs."""
         return next((task for task, move in self._moves.items() if move.animation is animation), None)
 
     # --- moving ---------------------------------------------------------------------------------------------------
 
     def start(self, animation: Animation, length: float | None = None) -> Task | None:
-        """Begin with an animation, at once or as soon as its joints are free.
+        """Begin with an animation, at once or as soon as its joints are free. None when the robot cannot.
 
         Args:
-            animation: What.
             length: How long it takes, s; as it is made when None.
-
-        Returns:
-            Its task; None when the robot cannot.
         """
         indices = self._usable_joints(animation)
         if indices is None:

@@ -23,7 +23,6 @@ class PlannedGesture:
 
     Attributes:
         start: s from the beginning of the sentence.
-        animation: What.
         length: How long it is to take, s.
     """
 
@@ -50,7 +49,6 @@ def plan(
         duration: Of the sentence, s.
         words: (s from the beginning, word) in their order.
         mode: One of `MODES`; contextual looks at the words, and fills what is left at random.
-        library: The animations there are.
         chance: Chooses among those that fit equally.
     """
     if mode == DISABLED:

@@ -1,4 +1,4 @@
-"""Makes the sound of a sentence, and says when in it each word and each mark comes."""
+"""Makes the sound of a sentence with the effects of its voice, and says when each word and each mark comes in it."""
 
 from __future__ import annotations
 
@@ -10,9 +10,8 @@ from typing import Any, Iterable, Tuple, Union
 import numpy as np
 
 from nao_sim_bridge.base.samples import RATE, Sound
-from nao_sim_bridge.speech import effects
-from nao_sim_bridge.speech.dictionary import Pronunciations
-from nao_sim_bridge.speech.parameters import DoubleVoice, Prosody
+from nao_sim_bridge.sound.pitch import shifted
+from nao_sim_bridge.speech.parameters import DoubleVoice, Pronunciations, Prosody
 from nao_sim_bridge.speech.sentences import Sentence
 from nao_sim_bridge.speech.speech import Engine, Speech, Utterance, Word, silence
 from nao_sim_bridge.speech.tags import Bookmark, Cue, Pause, Spoken
@@ -26,6 +25,15 @@ JOINT = 0.03
 SOUND, LEAST_SOUND = 0.02, 1e-4
 # Shortest sound of a sentence: marks need a moment to stand at, s.
 SHORTEST = 0.01
+# Loudness of all voices while they speak, and the highest peak, as parts of full scale. The peak leaves room for the
+# volume of 100 %, which is 2 dB more than that of the start.
+LOUDNESS = 0.16
+HIGHEST_PEAK = 0.8
+# What is less than this part of the loudest is no speech, in blocks of so many s.
+SPEAKING = 0.1
+BLOCK = 0.02
+# Length of the pieces that the pitch is changed in, s: four periods of a low voice.
+PITCH_WINDOW = 0.04
 
 
 @dataclass(frozen=True)
@@ -33,9 +41,7 @@ class Style:
     """How everything of one text is spoken.
 
     Attributes:
-        voice: Who speaks.
         prosody: How, where no tag says otherwise.
-        double: The second voice.
         pronunciations: What is spoken instead of what is written.
         volume: 0 to 1, of the loudspeakers.
     """
@@ -68,7 +74,6 @@ class Clip:
     """A sentence as sound.
 
     Attributes:
-        text: The sentence.
         sound: One channel.
         marks: (s from its beginning, what comes there), in rising order.
     """
@@ -85,11 +90,7 @@ class Clip:
 
 
 class ClipMaker:
-    """Makes clips. Any thread may ask.
-
-    Args:
-        engine: Who makes the sound of the words.
-    """
+    """Makes clips. Any thread may ask."""
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
@@ -131,10 +132,10 @@ class ClipMaker:
 
     def _with_effects(self, speech: Speech, pitch: float, double: DoubleVoice) -> Speech:
         rate = speech.rate
-        plain = effects.levelled(speech.samples, rate)
-        samples = effects.higher(plain, pitch, rate)
+        plain = levelled(speech.samples, rate)
+        samples = higher(plain, pitch, rate)
         if double.sounds:
-            samples = effects.doubled(samples, effects.higher(plain, double.pitch, rate), double, rate)
+            samples = doubled(samples, higher(plain, double.pitch, rate), double, rate)
         resampled = Sound(samples[:, None], rate).at_rate(RATE).samples[:, 0]
         return Speech(resampled, RATE, speech.words)
 
@@ -230,3 +231,37 @@ def _as_written(words: Iterable[Word], origins: list[tuple[int, int]]) -> Tuple[
         else:
             placed.append(Word(first, end - first, word.start, word.end))
     return tuple(placed)
+
+
+def levelled(samples: np.ndarray, rate: int) -> np.ndarray:
+    """(frames,) samples as loud as every voice is."""
+    size = max(round(BLOCK * rate), 1)
+    blocks = samples[: len(samples) // size * size].reshape(-1, size)
+    if not len(blocks):
+        return samples
+    levels = np.sqrt(np.mean(np.square(blocks, dtype=np.float64), axis=1))
+    speaking = levels[levels > SPEAKING * levels.max()]
+    if not len(speaking):
+        return samples
+    gain = min(LOUDNESS / float(np.sqrt(np.mean(np.square(speaking)))), HIGHEST_PEAK / float(np.abs(samples).max()))
+    return (samples * gain).astype(np.float32)
+
+
+def higher(samples: np.ndarray, factor: float, rate: int) -> np.ndarray:
+    """(frames,) samples with all frequencies times `factor`, as long as before."""
+    if factor == 1.0 or not len(samples):
+        return samples
+    window = 4 * round(PITCH_WINDOW * rate / 4)
+    return shifted(samples[:, None], factor, rate, window)[:, 0]
+
+
+def doubled(samples: np.ndarray, second: np.ndarray, voice: DoubleVoice, rate: int) -> np.ndarray:
+    """Samples of a voice and of its second one together, longer by the delay of the second.
+
+    The level is that of the second against the first, so it leaves the loudness of both together as it is.
+    """
+    delay = round(voice.delay * rate)
+    both = np.zeros(len(samples) + delay, dtype=np.float32)
+    both[: len(samples)] = samples
+    both[delay : delay + len(second)] += voice.level * second
+    return both / np.float32(np.sqrt(1.0 + voice.level**2))

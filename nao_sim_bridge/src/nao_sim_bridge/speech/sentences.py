@@ -22,11 +22,7 @@ CUT = re.compile(r"[,;:、，]\s*|\s+")
 
 @dataclass(frozen=True)
 class Sentence:
-    """What is spoken in one breath.
-
-    Attributes:
-        parts: Text, pauses and marks in their order; at least one.
-    """
+    """What is spoken in one breath: text, pauses and marks in their order, at least one."""
 
     parts: Tuple[Union[Spoken, Pause, Bookmark, Cue], ...]
 

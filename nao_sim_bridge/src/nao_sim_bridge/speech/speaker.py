@@ -21,16 +21,8 @@ log = logging.getLogger("nao_sim.speech")
 AHEAD = 2
 # How long before a sentence ends the next one has to be there when time runs faster than the wall clock, s.
 LOOK_AHEAD = 0.1
-ENQUEUED, STARTED, SENTENCE, WORD, BOOKMARK, DONE, STOPPED, THROWN = (
-    "enqueued",
-    "started",
-    "sentence",
-    "word",
-    "bookmark",
-    "done",
-    "stopped",
-    "thrown",
-)
+KINDS = ("enqueued", "started", "sentence", "word", "bookmark", "done", "stopped", "thrown")
+ENQUEUED, STARTED, SENTENCE, WORD, BOOKMARK, DONE, STOPPED, THROWN = KINDS
 
 
 @dataclass(frozen=True)
@@ -38,9 +30,8 @@ class SpeechEvent:
     """Something that happens while the robot speaks, told at the simulated time it happens.
 
     Attributes:
-        kind: One of the words above. A text is enqueued and started, has sentences, words and bookmarks, and is at
+        kind: One of `KINDS`. A text is enqueued and started, has sentences, words and bookmarks, and is at
             last done, stopped, or thrown because it cannot be said.
-        task_id: Number of the text.
         value: The `Clip` of the sentence, the `SpokenWord`, the number of the bookmark; None for the others.
     """
 
@@ -65,15 +56,7 @@ class _Talk:
 
 
 class Speaker:
-    """Speaks texts, the first come first.
-
-    Attributes:
-        listeners: Called with every `SpeechEvent`.
-
-    Args:
-        simulation: In whose loudspeakers and time it speaks.
-        studio: Who makes the sound.
-    """
+    """Speaks texts, the first come first; listeners are called with every `SpeechEvent`."""
 
     def __init__(self, simulation: Any, studio: Studio) -> None:
         self.listeners: list[Callable[[SpeechEvent], None]] = []
@@ -90,7 +73,6 @@ class Speaker:
 
         Args:
             items: See `Studio.read`.
-            style: How.
             name: NAOqi name of the call.
 
         Returns:
@@ -136,10 +118,6 @@ class Speaker:
     # --- inside ---------------------------------------------------------------------------------------------------
 
     def _tick(self, _: Any = None) -> None:
-        if self._talks:
-            self._go_on()
-
-    def _go_on(self) -> None:
         """Do everything that is due now."""
         while self._talks:
             talk = self._talks[0]

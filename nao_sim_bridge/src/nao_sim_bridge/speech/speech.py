@@ -19,7 +19,6 @@ class Utterance:
     """A piece of text that is spoken in one go.
 
     Attributes:
-        engine: Name of the engine.
         voice: The engine's name of the voice.
         text: What is said; no tags.
         speed: 1 is as fast as the voice speaks by itself.

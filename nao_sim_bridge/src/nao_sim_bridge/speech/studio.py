@@ -12,7 +12,7 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue, SimulationError
 from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.speech.clips import Clip, ClipMaker, Style
 from nao_sim_bridge.speech.engines import Engines
 from nao_sim_bridge.speech.sentences import Item, Sentence, sentences
@@ -44,7 +44,6 @@ class Studio:
 
     Attributes:
         engines: Who speaks.
-        tags: Reads texts.
         released: Called when a sentence is there that may have been waited for.
 
     Args:
@@ -128,18 +127,7 @@ class Studio:
 
     def in_background(self, work: Callable[[], Any], name: str) -> Task:
         """Do something that may take a while in a thread of its own; the task ends with what it returns or raises."""
-        task = Task(name, 0)
-
-        def run() -> None:
-            try:
-                result = work()
-            except Exception as error:
-                task.finish(error=error)
-            else:
-                task.finish(result)
-
-        threading.Thread(target=run, name=f"speech: {name}", daemon=True).start()
-        return task
+        return worked_out(Task(name, 0), work, f"speech: {name}")
 
     def close(self) -> None:
         """End the threads and the engines."""

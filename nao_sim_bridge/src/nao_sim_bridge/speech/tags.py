@@ -36,8 +36,6 @@ BREAK, NO_BREAK = "\ue000", "\ue001"
 
 @dataclass(frozen=True)
 class Spoken:
-    """Text to speak."""
-
     text: str
     prosody: Prosody
 
@@ -74,23 +72,14 @@ Piece = Union[Spoken, Pause, Bookmark, Cue, Gate]
 
 
 class TagReader:
-    """Reads texts; says once of each tag that it is left out.
-
-    Args:
-        warn: Where it says that.
-    """
+    """Reads texts; says once of each tag that it is left out."""
 
     def __init__(self, warn: Callable[[str], None] = log.warning) -> None:
         self._warn = warn
         self._left_out: set[str] = set()
 
     def read(self, text: str, prosody: Prosody = PLAIN) -> list[Piece]:
-        """Pieces of a text in their order.
-
-        Args:
-            text: With tags.
-            prosody: How it is spoken where no tag says otherwise.
-        """
+        """Pieces of a text in their order; `prosody` is for where no tag says otherwise."""
         return list(_Reading(self, prosody).pieces(text))
 
     def leave_out(self, tag: str, why: str) -> None:
@@ -122,7 +111,7 @@ class _Reading:
                 self._reader.leave_out(name, "the engines here cannot follow it")
                 continue
             try:
-                yield from act(self, value)
+                yield from act(self, value) or ()
             except ValueError:
                 self._reader.leave_out(f"{name}={value}", "no such value")
         yield from self._speak(text[place:])
@@ -147,17 +136,14 @@ class _Reading:
 
     # --- tags -----------------------------------------------------------------------------------------------------
 
-    def speed(self, value: str | None) -> Iterator[Piece]:
+    def speed(self, value: str | None) -> None:
         self._changes["rspd"] = _within(value, 50.0, 400.0) / 100.0
-        return iter(())
 
-    def pitch(self, value: str | None) -> Iterator[Piece]:
+    def pitch(self, value: str | None) -> None:
         self._changes["vct"] = _within(value, 50.0, 200.0) / 100.0
-        return iter(())
 
-    def volume(self, value: str | None) -> Iterator[Piece]:
+    def volume(self, value: str | None) -> None:
         self._changes["vol"] = _within(value, 0.0, 100.0) / 80.0
-        return iter(())
 
     def pause(self, value: str | None) -> Iterator[Piece]:
         return iter((Pause(min(_within(value, 0.0) / 1000.0, LONGEST_PAUSE)),))
@@ -168,14 +154,12 @@ class _Reading:
     def bookmark(self, value: str | None) -> Iterator[Piece]:
         return iter((Bookmark(int(_within(value, 0, LAST_BOOKMARK))),))
 
-    def reset(self, _: str | None) -> Iterator[Piece]:
+    def reset(self, _: str | None) -> None:
         self._changes.clear()
         self._style, self._spelling, self._phonetic = "neutral", False, False
-        return iter(())
 
-    def style(self, value: str | None) -> Iterator[Piece]:
+    def style(self, value: str | None) -> None:
         self._style = _one_of(value, STYLES)
-        return iter(())
 
     def boundary(self, value: str | None) -> Iterator[Piece]:
         length = {"S": STRONG_BOUNDARY, "W": WEAK_BOUNDARY, "N": 0.0}[_one_of(value, ("S", "W", "N"))]
@@ -185,28 +169,25 @@ class _Reading:
         mark = BREAK if _one_of(value, ("0", "1")) == "1" else NO_BREAK
         return iter((Spoken(mark, self._prosody()),))
 
-    def normalisation(self, value: str | None) -> Iterator[Piece]:
+    def normalisation(self, value: str | None) -> None:
         kind = _one_of(value, ("spell", "normal", "address", "sms"))
         self._spelling = kind == "spell"
         if kind in ("address", "sms"):
             self._reader.leave_out(f"tn={kind}", "the engines read every text as they read any")
-        return iter(())
 
-    def read_mode(self, value: str | None) -> Iterator[Piece]:
+    def read_mode(self, value: str | None) -> None:
         kind = _one_of(value, ("sent", "char", "word"))
         self._spelling = kind == "char"
         if kind == "word":
             self._reader.leave_out("readmode=word", "the engines read sentences")
-        return iter(())
 
-    def text_kind(self, value: str | None) -> Iterator[Piece]:
+    def text_kind(self, value: str | None) -> None:
         self._phonetic = _one_of(value, ("orth", "lhp", "pinyin", "hcm")) != "orth"
         if self._phonetic:
             self._reader.leave_out(f"toi={value}", "no engine here reads phonetic text; it is not spoken")
-        return iter(())
 
 
-Act = Callable[[_Reading, Union[str, None]], Iterator[Piece]]
+Act = Callable[[_Reading, Optional[str]], Optional[Iterator[Piece]]]
 ACTIONS: Mapping[str, Act] = {
     "rspd": _Reading.speed,
     "vct": _Reading.pitch,

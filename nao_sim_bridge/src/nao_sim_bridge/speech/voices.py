@@ -50,13 +50,7 @@ class Language:
 
 @dataclass(frozen=True, eq=False)
 class Voices:
-    """All languages and voices that the robot knows, installed or not.
-
-    Attributes:
-        languages: By name.
-        voices: By name.
-        default_language: What the robot speaks at the start.
-    """
+    """All languages and voices that the robot knows, installed or not, and what it speaks at the start."""
 
     languages: Mapping[str, Language]
     voices: Mapping[str, Voice]

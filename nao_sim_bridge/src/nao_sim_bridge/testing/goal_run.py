@@ -22,6 +22,10 @@ class _End(NamedTuple):
     text: str
 
 
+def _of_end(name: str, text: str) -> Any:
+    return property(lambda run: getattr(run._ended(), name), doc=text)
+
+
 class GoalRun:
     """A goal that was sent, and what came back so far.
 
@@ -35,7 +39,6 @@ class GoalRun:
 
     Args:
         client: Client of a server that is there.
-        goal: The goal message.
     """
 
     def __init__(self, client: actionlib.SimpleActionClient, goal: Any) -> None:
@@ -52,30 +55,11 @@ class GoalRun:
         """Whether it has not ended yet; until then `state`, `text`, `result` and `ended` raise StackNotReady."""
         return self._end is None
 
-    @property
-    def state(self) -> int:
-        """Terminal state (actionlib_msgs/GoalStatus); only after `wait`."""
-        return self._ended().state
-
-    @property
-    def text(self) -> str:
-        """Text of the end state; only after `wait`."""
-        return self._ended().text
-
-    @property
-    def result(self) -> Any:
-        """Result message; only after `wait`."""
-        return self._ended().result
-
-    @property
-    def ended(self) -> float:
-        """Simulated time at which the result came, s; only after `wait`."""
-        return self._ended().time
-
-    @property
-    def server_time(self) -> float:
-        """Simulated time at the end as the server knew it, s; only after `wait`."""
-        return self._ended().server_time
+    state: int = _of_end("state", "Terminal state (actionlib_msgs/GoalStatus); only after `wait`, as the next.")
+    text: str = _of_end("text", "Text of the end state.")
+    result: Any = _of_end("result", "Result message.")
+    ended: float = _of_end("time", "Simulated time at which the result came, s.")
+    server_time: float = _of_end("server_time", "Simulated time at the end as the server knew it, s.")
 
     def cancel(self) -> None:
         """Ask the server to end the goal, unless it is over: actionlib's client would forget that.

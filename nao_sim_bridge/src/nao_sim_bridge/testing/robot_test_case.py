@@ -21,7 +21,6 @@ class RobotTestCase(unittest.TestCase):
     Attributes:
         server: Name and type of the action server, None for a suite that sends no goals.
         robot: The simulated robot.
-        client: Client of the server.
     """
 
     server: ClassVar[tuple[str, type] | None] = None

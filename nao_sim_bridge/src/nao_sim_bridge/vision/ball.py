@@ -72,7 +72,7 @@ class BallDetector:
     def _ball(self, component: np.ndarray, excess: np.ndarray, redness: np.ndarray, optics: Optics) -> Ball | None:
         """The ball that a component of red is, if it is one."""
         lens = _Lens(optics, redness.shape[1], redness.shape[0])
-        cone = _first_guess(component, lens)
+        cone = fit_cone(lens.directions(component[lens.inside(component, BORDER)]))
         edges = None
         for _ in range(ROUNDS):
             if cone is None or not self._possible(cone):
@@ -173,11 +173,6 @@ def _components(redness: np.ndarray, level: float, settings: BallSettings) -> li
     sized = [(cv2.contourArea(contour) + len(contour) / 2.0, contour) for contour in contours]
     large = sorted((item for item in sized if item[0] >= settings.least_pixels), key=lambda item: -item[0])
     return [contour[:, 0, :] + 0.5 for _, contour in large[: settings.most_candidates]]
-
-
-def _first_guess(outline: np.ndarray, lens: _Lens) -> Cone | None:
-    free = lens.inside(outline, BORDER)
-    return fit_cone(lens.directions(outline[free]))
 
 
 def _edges(cone: Cone, excess: np.ndarray, lens: _Lens, settings: BallSettings) -> _Edges:

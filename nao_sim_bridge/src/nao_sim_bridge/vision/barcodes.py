@@ -43,7 +43,6 @@ class Barcode:
     """A code in a picture.
 
     Attributes:
-        text: What it says.
         kind: Its format, for example "QRCode".
         corners: In pixels of the picture: upper left, upper right, lower right and lower left one, as the code is
             read. Of stripes, the ends of the line along which they were read, each twice.

@@ -107,13 +107,12 @@ class VisionProcess:
         raise AssertionError("the second round returns or raises")
 
     def forget(self, detector: RemoteDetector) -> None:
-        """Drop a detector."""
         with self._lock:
             process = self._process
             if process is None or process is not detector.home:
                 return
             try:
-                process.ask("close", (detector.key,), ANSWER_TIMEOUT, detector.name)
+                process.ask("close", detector.key, ANSWER_TIMEOUT, detector.name)
             except VisionError as error:
                 log.warning("%s", error)
                 self._process = None
@@ -140,7 +139,6 @@ class RemoteDetector:
     When the process dies at work, the detector is made again in a new one and the same work is asked for again, once.
 
     Attributes:
-        name: Which detector.
         arguments: Gives the arguments of its constructor.
         key: What the process knows it by.
         home: The process in which it is; belongs to VisionProcess, as the next.

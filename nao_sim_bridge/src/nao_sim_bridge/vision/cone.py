@@ -37,14 +37,7 @@ class Cone:
 
 
 def fit_cone(directions: np.ndarray) -> Cone | None:
-    """The cone closest to directions, which need not go all the way round.
-
-    Args:
-        directions: (n, 3) unit vectors in the frame of the camera.
-
-    Returns:
-        None when they do not make a cone.
-    """
+    """The cone closest to (n, 3) unit vectors, which need not go all the way round; None when they make none."""
     if len(directions) < LEAST_POINTS:
         return None
     middle = directions.mean(axis=0)

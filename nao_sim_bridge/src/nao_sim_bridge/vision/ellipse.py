@@ -1,4 +1,4 @@
-"""Round things seen at a slant: ellipses in pictures, found from outlines and fitted to their edges."""
+"""Round things seen at a slant: ellipses found from outlines and fitted to edges; and brightness between pixels."""
 
 from __future__ import annotations
 
@@ -56,9 +56,6 @@ class Ellipse:
         """(2,) each: where in the unit circle the middle of a circle is seen that looks like this.
 
         There are two circles in space that do, slanted to opposite sides, and the edge does not tell which it is.
-
-        Args:
-            lens: Of the picture.
         """
         # The directions to the edge are a cone; the circles are cuts through it. Source: the eigenvectors of a cone
         # give the two planes that cut it in circles, and the middle is the pole of their line at infinity.
@@ -118,3 +115,18 @@ def distance_from(ellipse: Ellipse, outline: np.ndarray) -> np.ndarray:
     lengths = np.linalg.norm(unit, axis=0)
     nearest = ellipse.shape @ (unit / np.maximum(lengths, 1e-9))
     return np.linalg.norm(nearest, axis=0) * (lengths - 1.0)
+
+
+def sample(grey: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Brightness at places in a picture, as at its edge for those outside.
+
+    Args:
+        grey: (h, w) uint8 or float32.
+        places: (n, m, 2) in pixels, (0.5, 0.5) is the middle of the first one.
+
+    Returns:
+        (n, m) float32.
+    """
+    where = (places - 0.5).astype(np.float32)
+    values = cv2.remap(grey, where[..., 0], where[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return values.astype(np.float32)

@@ -37,7 +37,6 @@ class FaceMemory:
         return list(self._pictures)
 
     def pictures_of(self, name: str) -> int:
-        """How many pictures there are of somebody."""
         return len(self._pictures.get(name, ()))
 
     def learn(self, name: str, description: np.ndarray) -> bool:
@@ -53,7 +52,6 @@ class FaceMemory:
         return self._pictures.pop(name, None) is not None
 
     def clear(self) -> None:
-        """Forget everybody."""
         self._pictures.clear()
 
     def recognise(self, description: np.ndarray) -> tuple[str, float]:
@@ -69,7 +67,6 @@ class FaceMemory:
         """Take people of another memory in.
 
         Args:
-            other: The other one.
             policy: What happens to somebody who is known already: "overwrite" takes the pictures of the other memory
                 instead, "merge" has both, "keep" changes nothing.
         """
@@ -80,7 +77,6 @@ class FaceMemory:
                 self._pictures[name] = np.vstack((self._pictures[name], pictures))[:MOST_PICTURES]
 
     def copy(self) -> FaceMemory:
-        """An independent copy."""
         other = FaceMemory()
         other._pictures = dict(self._pictures)
         return other

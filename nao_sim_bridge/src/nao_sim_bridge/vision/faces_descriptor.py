@@ -28,24 +28,14 @@ SHARE_OF_EDGES = 0.5
 
 
 def describe(picture: np.ndarray, eyes: Tuple[Point, Point]) -> np.ndarray:
-    """(n,) float32 description of a face, of length 1.
-
-    Args:
-        picture: (h, w, 3) uint8, BGR.
-        eyes: Centres of the eyes in it, px.
-    """
+    """(n,) float32 description, of length 1, of a face in a BGR picture with these centres of eyes, px."""
     face, _ = upright(picture, eyes)
     face = cv2.resize(face, SMALL, interpolation=cv2.INTER_AREA)
     return np.concatenate((np.sqrt(SHARE_OF_EDGES) * _edges(face), np.sqrt(1.0 - SHARE_OF_EDGES) * _tones(face)))
 
 
 def likeness(one: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """How alike a description is to each of others, at most 1.
-
-    Args:
-        one: (n,).
-        others: (m, n).
-    """
+    """How alike a description (n,) is to each of others (m, n), at most 1."""
     return others @ one
 
 

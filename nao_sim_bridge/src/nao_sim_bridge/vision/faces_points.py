@@ -152,7 +152,6 @@ def _dark_row(face: np.ndarray, depths: Tuple[float, float], reach: float) -> tu
     """The row of a dark feature on the middle line of the face, and its limits to the left and right of the picture.
 
     Args:
-        face: The upright face.
         depths: Where to look, in distances of the eyes below them.
         reach: How far to both sides it may extend, in distances of the eyes.
     """

@@ -9,8 +9,7 @@ from typing import Iterator
 import numpy as np
 
 from nao_sim_bridge.cameras.optics import Intrinsics
-from nao_sim_bridge.vision.ellipse import Ellipse
-from nao_sim_bridge.vision.sampling import sample
+from nao_sim_bridge.vision.ellipse import Ellipse, sample
 from nao_sim_bridge.vision.settings import LandmarkSettings
 from nao_sim_bridge.world.painting.known_landmarks import Landmarks
 
@@ -38,12 +37,7 @@ class Reading:
 
 
 class LandmarkCode:
-    """Compares the fans of a disc with those of all marks in all rotations.
-
-    Args:
-        marks: Which there are.
-        settings: How alike they have to be.
-    """
+    """Compares the fans of a disc with those of all marks in all rotations."""
 
     def __init__(self, marks: Landmarks, settings: LandmarkSettings) -> None:
         self._settings = settings
@@ -60,13 +54,7 @@ class LandmarkCode:
         self._spectra = np.conj(np.fft.rfft(_normalised(blurred), axis=1))
 
     def read(self, grey: np.ndarray, ellipse: Ellipse, lens: Intrinsics) -> Reading | None:
-        """The mark that a disc is, None when it is none.
-
-        Args:
-            grey: (h, w) uint8.
-            ellipse: Edge of the disc.
-            lens: Of the picture.
-        """
+        """The mark that a disc with this edge is in a (h, w) uint8 picture, None when it is none."""
         # Which end of a slanted disc is nearer cannot be told from its edge.
         both = [slant if np.linalg.norm(slant) >= LEAST_SLANT else None for slant in ellipse.slants(lens)]
         readings = [reading for side in both for reading in self._read(grey, ellipse, side)]

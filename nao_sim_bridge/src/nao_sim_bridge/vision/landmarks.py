@@ -10,9 +10,8 @@ import cv2
 import numpy as np
 
 from nao_sim_bridge.cameras.optics import Optics
-from nao_sim_bridge.vision.ellipse import Ellipse, distance_from, ellipse_of
+from nao_sim_bridge.vision.ellipse import Ellipse, distance_from, ellipse_of, sample
 from nao_sim_bridge.vision.landmark_code import LandmarkCode, Reading
-from nao_sim_bridge.vision.sampling import sample
 from nao_sim_bridge.vision.settings import LandmarkSettings, load_vision
 from nao_sim_bridge.world.painting.known_landmarks import Landmarks, load_landmarks
 
@@ -33,7 +32,6 @@ class Landmark:
     """A landmark in a picture.
 
     Attributes:
-        number: Of the mark.
         alpha: Direction of its middle seen from above, rad, positive to the left.
         beta: Direction of its middle seen from the side, rad, positive downwards.
         width: Angle from its left to its right end, rad.
@@ -110,12 +108,10 @@ class LandmarkDetector:
                 return None
             off = distance_from(better, edges)
             ellipse = better
-            if np.sqrt(np.mean(off**2)) > self._allowed(better):
+            allowed = self._settings.roundness[0] + self._settings.roundness[1] * better.radii[0]
+            if np.sqrt(np.mean(off**2)) > allowed:
                 return None
         return ellipse
-
-    def _allowed(self, ellipse: Ellipse) -> float:
-        return self._settings.roundness[0] + self._settings.roundness[1] * ellipse.radii[0]
 
 
 # --- inside ---------------------------------------------------------------------------------------------------------

@@ -88,7 +88,8 @@ class MovementDetector:
         """What has moved, the largest first; None where there was no picture from the same place to compare with."""
         picture = _prepared(image)
         seen_from = (settings.camera, settings.pose)
-        if not _same_place(self._seen_from, seen_from) or self._of_another_size(picture):
+        another_size = bool(self._earlier) and self._earlier[0][1].shape != picture.shape
+        if another_size or not _same_place(self._seen_from, seen_from):
             self._earlier.clear()
             self._seen_from = seen_from
         before = self._reference(settings.time - MOMENT)
@@ -109,9 +110,6 @@ class MovementDetector:
         if self._earlier and self._earlier[0][0] <= time + TOLERANCE:
             return self._earlier[0][1]
         return None
-
-    def _of_another_size(self, picture: np.ndarray) -> bool:
-        return bool(self._earlier) and self._earlier[0][1].shape != picture.shape
 
 
 def _prepared(image: np.ndarray) -> np.ndarray:

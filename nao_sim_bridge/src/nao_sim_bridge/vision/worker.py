@@ -1,5 +1,7 @@
 """The vision process: `python -m nao_sim_bridge.vision.worker FD`.
 
+Its detectors get pixels and optics, and nothing of what the simulation knows.
+
 It talks over the inherited pipe FD in tuples (kind, content). First it sends ("ready", None). Then it answers
 ("open", (key, name, arguments)), which makes a detector, and ("close", key), which drops it, with None, and
 ("call", (key, method, arguments)) with what the method returns; or ("error", text). It ends when the pipe is closed.
@@ -8,13 +10,52 @@ It talks over the inherited pipe FD in tuples (kind, content). First it sends ("
 from __future__ import annotations
 
 import sys
-from multiprocessing.connection import Connection
-from typing import Any, Iterable
+from importlib import import_module
+from typing import Any, Iterable, Protocol
 
 import cv2
+import numpy as np
 
-from nao_sim_bridge.base.child_process import error_text, pipe_to_parent
-from nao_sim_bridge.vision.detector import Detector, make_detector
+from nao_sim_bridge.base.child_process import pipe_to_parent, serve
+from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.cameras.optics import Optics
+
+# Full names of the classes, imported when they are wanted: not every robot looks for faces.
+DETECTORS = {
+    "ball": "nao_sim_bridge.vision.ball.BallDetector",
+    "landmarks": "nao_sim_bridge.vision.landmarks.LandmarkDetector",
+    "barcodes": "nao_sim_bridge.vision.barcodes.BarcodeDetector",
+    "faces": "nao_sim_bridge.vision.faces.FaceDetector",
+    "movement": "nao_sim_bridge.vision.movement.MovementDetector",
+}
+
+
+class Detector(Protocol):
+    """Finds one kind of thing in pictures; each user has an instance of its own, which may remember earlier pictures.
+
+    It runs in the vision process: settings, results and the arguments and results of further methods are pickled.
+    """
+
+    def detect(self, image: np.ndarray, optics: Optics, settings: Any) -> Any:
+        """What is in a picture.
+
+        Args:
+            image: (height, width, 3) uint8, blue, green, red; read-only.
+            optics: How it was projected; its places are normalised.
+            settings: Whatever its user gives with the picture.
+        """
+
+
+def make_detector(name: str, arguments: tuple = ()) -> Detector:
+    """A new detector.
+
+    Raises:
+        UnknownName: There is none of this name.
+    """
+    if name not in DETECTORS:
+        raise UnknownName("detector", name, DETECTORS)
+    module, _, kind = DETECTORS[name].rpartition(".")
+    return getattr(import_module(module), kind)(*arguments)
 
 
 class Detectors:
@@ -23,16 +64,15 @@ class Detectors:
     def __init__(self) -> None:
         self._detectors: dict[int, Detector] = {}
 
-    def open(self, key: int, name: str, arguments: tuple) -> None:
-        """Make a detector."""
+    def open(self, content: tuple[int, str, tuple]) -> None:
+        key, name, arguments = content
         self._detectors[key] = make_detector(name, arguments)
 
     def close(self, key: int) -> None:
-        """Drop one, if there is one."""
         self._detectors.pop(key, None)
 
-    def call(self, key: int, method: str, arguments: tuple) -> Any:
-        """Have one work."""
+    def call(self, content: tuple[int, str, tuple]) -> Any:
+        key, method, arguments = content
         return getattr(self._detectors[key], method)(*arguments)
 
 
@@ -42,23 +82,8 @@ def main(arguments: Iterable[str]) -> int:
     pipe = pipe_to_parent(descriptor)
     cv2.setNumThreads(1)  # the other cores are for physics and drawing
     pipe.send(("ready", None))
-    try:
-        _serve(pipe, Detectors())
-    except (EOFError, BrokenPipeError, ConnectionResetError):
-        pass  # the parent is gone or wants no more
-    return 0
-
-
-def _serve(pipe: Connection, detectors: Detectors) -> None:
-    requests = {"open": detectors.open, "close": detectors.close, "call": detectors.call}
-    while True:
-        kind, content = pipe.recv()
-        try:
-            answer = requests[kind](*content)
-        except Exception as error:
-            pipe.send(("error", error_text(error)))
-            continue
-        pipe.send((kind, answer))
+    detectors = Detectors()
+    return serve(pipe, {"open": detectors.open, "close": detectors.close, "call": detectors.call})
 
 
 if __name__ == "__main__":

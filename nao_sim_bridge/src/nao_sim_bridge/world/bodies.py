@@ -26,10 +26,6 @@ class WorldBodies:
         ids: PyBullet's body ids by name; `floor` is among them.
         placed: Things that were added to those of the world.
         gone: Names of things of the world that were taken away.
-
-    Args:
-        world: What is there to begin with.
-        client: PyBullet's physics client.
     """
 
     def __init__(self, world: World, client: int) -> None:
@@ -64,7 +60,6 @@ class WorldBodies:
 
     @property
     def things(self) -> Mapping[str, WorldObject]:
-        """Everything that is there now, by name."""
         return self._things
 
     def read(self) -> Mapping[str, Pose]:
@@ -81,7 +76,6 @@ class WorldBodies:
         return poses
 
     def pose(self, name: str) -> Pose:
-        """Where a thing is now."""
         return Pose(*pybullet.getBasePositionAndOrientation(self.ids[name], physicsClientId=self._client))
 
     def add(self, thing: WorldObject) -> None:
@@ -96,7 +90,6 @@ class WorldBodies:
         self._wake(self._around(self.ids[thing.name]))
 
     def remove(self, name: str) -> None:
-        """Take a thing away."""
         around = self._around(self.ids[name])
         pybullet.removeBody(self.ids.pop(name), physicsClientId=self._client)
         removed = self._things.pop(name)

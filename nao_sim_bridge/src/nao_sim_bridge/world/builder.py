@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import io
 from typing import Sequence
 
 import pybullet
 
 from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw
+from nao_sim_bridge.base.whole_file import memory_file
 from nao_sim_bridge.model.meshes import Mesh, front_and_rest, merged, tessellate
 from nao_sim_bridge.model.shapes import Shape
-from nao_sim_bridge.world.pictures import WorldPicture
-from nao_sim_bridge.world.visuals import texture, visual_shape
+from nao_sim_bridge.world.pictures import WorldPicture, paint
 from nao_sim_bridge.world.world import FLOOR, MOST_PARTS, Color, Floor, Part, Rug, World, WorldObject
 
 FLOOR_EXTENT = 10.0
@@ -25,8 +26,6 @@ def build_world(world: World, client: int, visual: bool) -> dict[str, int]:
     """Put the floor and all objects into a PyBullet world.
 
     Args:
-        world: What to build.
-        client: PyBullet's physics client.
         visual: Make something to look at and nothing to touch (pictures), or the other way round (physics).
 
     Returns:
@@ -174,3 +173,26 @@ def _body(seen: Sequence[int], position: Sequence[float], orientation: Sequence[
         linkJointAxis=[(0.0, 0.0, 1.0)] * count,
         physicsClientId=client,
     )
+
+
+def visual_shape(mesh: Mesh, color: Sequence[float], client: int) -> int:
+    """Id of a visual shape, of a colour in 0..1; those that PyBullet makes itself are a few dozen flat triangles."""
+    return pybullet.createVisualShape(
+        pybullet.GEOM_MESH,
+        vertices=mesh.vertices.tolist(),
+        normals=mesh.normals.tolist(),
+        uvs=[(0.0, 0.0)] * len(mesh.vertices) if mesh.uvs is None else mesh.uvs.tolist(),
+        indices=mesh.faces.ravel().tolist(),
+        rgbaColor=(*color, 1.0),
+        physicsClientId=client,
+    )
+
+
+def texture(picture: WorldPicture, client: int) -> int:
+    """Id of a texture for `changeVisualShape`; PyBullet takes them from files only."""
+    from PIL import Image  # most worlds have no pictures
+
+    content = io.BytesIO()
+    Image.fromarray(paint(picture)).save(content, "PNG")
+    with memory_file(content.getvalue()) as path:
+        return pybullet.loadTexture(path, physicsClientId=client)

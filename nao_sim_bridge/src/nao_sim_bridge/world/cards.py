@@ -14,8 +14,7 @@ from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.model.shapes import Shape
-from nao_sim_bridge.world.entries import color, number, picture, truth
-from nao_sim_bridge.world.kinds import Kind, Made
+from nao_sim_bridge.world.entries import Kind, Made, color, number, picture, truth
 from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
 from nao_sim_bridge.world.pictures import WorldPicture, aspect
 from nao_sim_bridge.world.world import Part, WorldError

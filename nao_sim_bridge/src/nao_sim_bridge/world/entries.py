@@ -1,16 +1,19 @@
-"""What all readers of world files share: lists, numbers and colours, with errors that tell the place."""
+"""What all readers of world files share: kinds of things, and values with errors that tell the place."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Callable
 
 from nao_sim_bridge.base.config import vector
 from nao_sim_bridge.base.errors import BadValue, UnknownName, shortened
 from nao_sim_bridge.base.limits import check_world
+from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.pictures import WorldPicture
-from nao_sim_bridge.world.world import Color, WorldError
+from nao_sim_bridge.world.world import Color, Part, WorldError
 
 GREY = (0.6, 0.6, 0.6)
 
@@ -39,14 +42,6 @@ def number(
     entry: Mapping, key: str, where: str, default: float, lowest: float = 0.0, highest: float = math.inf
 ) -> float:
     """A number of an entry.
-
-    Args:
-        entry: What the file holds.
-        key: Where the number is in it.
-        where: Place of the entry, for error texts.
-        default: The number where there is no such key.
-        lowest: The least it may be.
-        highest: The most it may be.
 
     Raises:
         WorldError: It is no number, or out of these limits.
@@ -83,3 +78,31 @@ def truth(entry: Mapping, key: str, where: str) -> bool:
     if not isinstance(value, bool):
         raise WorldError(f"{where}.{key}", f"is {value!r}, not true or false")
     return value
+
+
+@dataclass(frozen=True)
+class Made:
+    """What an entry makes, in the frame at its `position`.
+
+    Attributes:
+        parts: What is to be seen.
+        body: What is to be felt; None for the shapes of the parts.
+        defaults: Mass, friction... when the entry does not say.
+    """
+
+    parts: tuple[Part, ...]
+    body: tuple[Shape, ...] | None = None
+    defaults: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of thing.
+
+    Attributes:
+        options: Keys that an entry may have besides those of all things.
+        make: From an entry, its place for error texts and a way to find files to what it makes.
+    """
+
+    options: tuple[str, ...]
+    make: Callable[[Mapping[str, Any], str, Callable[[str], Path]], Made]

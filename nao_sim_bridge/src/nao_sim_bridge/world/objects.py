@@ -21,11 +21,11 @@ import numpy as np
 
 from nao_sim_bridge.base.config import check_keys, vector
 from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.base.rotations import vector3
 from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.shapes import KINDS, Shape, read_shape
 from nao_sim_bridge.world.cards import CARDS
-from nao_sim_bridge.world.entries import GREY, check_bounds, color, entries, number, picture
-from nao_sim_bridge.world.kinds import Kind, Made
+from nao_sim_bridge.world.entries import GREY, Kind, Made, check_bounds, color, entries, number, picture
 from nao_sim_bridge.world.people import PERSON
 from nao_sim_bridge.world.robots import NAO
 from nao_sim_bridge.world.world import MOST_PARTS, Part, WorldError, WorldObject
@@ -72,12 +72,7 @@ THINGS: Mapping[str, Kind] = {
 
 
 def read_object(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
-    """A thing from its entry.
-
-    Args:
-        entry: What the file holds.
-        where: Place for error texts.
-        files: From the name of a file that the entry has to its path.
+    """A thing from its entry; `files` gives the path of a file that it names.
 
     Raises:
         WorldError: The entry is wrong.
@@ -109,8 +104,8 @@ def _read(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
     parts, body, middle = _centred(made)
     return WorldObject(
         name=entry["name"],
-        position=_floats(position + rpy_matrix(rpy) @ middle),
-        rpy=_floats(rpy),
+        position=vector3(position + rpy_matrix(rpy) @ middle),
+        rpy=vector3(rpy),
         parts=parts,
         mass=number(entry, "mass", where, values["mass"]),
         friction=number(entry, "friction", where, values["friction"]),
@@ -118,7 +113,7 @@ def _read(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
         restitution=number(entry, "restitution", where, values["restitution"], highest=1.0),
         body=body,
         kind=name if name != "parts" else "thing",
-        origin=_floats(-middle),
+        origin=vector3(-middle),
     )
 
 
@@ -151,7 +146,7 @@ def _centred(made: Made) -> tuple[tuple[Part, ...], tuple[Shape, ...] | None, np
 
 
 def _moved(shape: Shape, middle: np.ndarray) -> Shape:
-    return replace(shape, xyz=_floats(np.array(shape.xyz) - middle))
+    return replace(shape, xyz=vector3(np.array(shape.xyz) - middle))
 
 
 def _volume(shape: Shape) -> float:
@@ -164,8 +159,3 @@ def _volume(shape: Shape) -> float:
         return ball
     rod = math.pi * radius**2 * shape.size[1]
     return rod + ball if shape.kind == "capsule" else rod
-
-
-def _floats(values: Any) -> tuple[float, float, float]:
-    x, y, z = (float(value) for value in values)
-    return x, y, z

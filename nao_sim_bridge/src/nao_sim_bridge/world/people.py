@@ -16,10 +16,8 @@ import numpy as np
 
 from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.shapes import Shape, rod
-from nao_sim_bridge.world.entries import color, number, picture
-from nao_sim_bridge.world.kinds import Kind, Made
-from nao_sim_bridge.world.painting.face_size import HEAD_HALF_HEIGHT
-from nao_sim_bridge.world.painting.known_faces import FaceLook, load_faces
+from nao_sim_bridge.world.entries import Kind, Made, color, number, picture
+from nao_sim_bridge.world.painting.known_faces import HEAD_HALF_HEIGHT, FaceLook, load_faces
 from nao_sim_bridge.world.pictures import WorldPicture
 from nao_sim_bridge.world.world import Color, Part
 
@@ -70,7 +68,10 @@ def _trunk(scale: float, clothes: Color, trousers: Color, skin: Color) -> tuple[
         parts += [
             Part(_rod(0.052 * scale, shoulder, elbow), clothes),
             Part(_rod(0.042 * scale, elbow, wrist), clothes),
-            Part(Shape("ellipsoid", _scaled((0.035, 0.022, 0.065), scale), _scaled(_hand(side), scale)), skin),
+            Part(
+                Shape("ellipsoid", _scaled((0.035, 0.022, 0.065), scale), _scaled((0.045, side * 0.232, 0.76), scale)),
+                skin,
+            ),
         ]
         body.append(_rod(0.045 * scale, shoulder, wrist))
     parts += [
@@ -84,10 +85,6 @@ def _trunk(scale: float, clothes: Color, trousers: Color, skin: Color) -> tuple[
 
 _LEG = ((0.0, 0.095, 0.86), (0.01, 0.10, 0.47), (-0.005, 0.10, 0.09))
 _ARM = ((0.0, 0.188, 1.32), (-0.02, 0.222, 1.06), (0.03, 0.232, 0.83))
-
-
-def _hand(side: float) -> tuple[float, float, float]:
-    return (0.045, side * 0.232, 0.76)
 
 
 def _head(look: FaceLook, face: WorldPicture, half_axes: tuple[float, float, float], middle: float) -> list[Part]:

@@ -22,6 +22,8 @@ log = logging.getLogger("nao_sim.pictures")
 DECODED = ("JPEG", "PNG", "WEBP")
 """Kinds of picture files."""
 KINDS = ("landmark", "qr", "barcode", "face", "head", "poster", "pattern", "file")
+POSTERS = ("hills", "circles", "leaves", "waves", "city", "planets")
+PATTERNS = ("oak", "walnut", "pine", "checks", "stripes", "weave", "books", "window", "bricks")
 CODE128 = "code128:"
 """Begins the content of a barcode that is not an article number."""
 LONGEST_QR, LONGEST_BARCODE = 300, 40
@@ -121,9 +123,7 @@ def _check(kind: str, content: str) -> None:
 
         _one_of(kind, content, load_faces())
     elif kind in ("poster", "pattern"):
-        from nao_sim_bridge.world.painting import names
-
-        _one_of(kind, content, names.POSTERS if kind == "poster" else names.PATTERNS)
+        _one_of(kind, content, POSTERS if kind == "poster" else PATTERNS)
     elif not Path(content).is_file():
         raise BadValue("picture file", content, "a file that is there")
 
@@ -135,7 +135,7 @@ def _one_of(kind: str, content: str, known) -> None:
 
 def _paint(kind: str, content: str) -> np.ndarray:
     if kind == "landmark":
-        from nao_sim_bridge.world.painting.landmark import paint_landmark
+        from nao_sim_bridge.world.painting.known_landmarks import paint_landmark
 
         return paint_landmark(int(content))
     if kind in ("qr", "barcode"):

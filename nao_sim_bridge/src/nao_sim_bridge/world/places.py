@@ -73,10 +73,7 @@ def places_around(place: RobotPlace) -> list[tuple[float, float]]:
 
 
 def parse_places(text: str) -> tuple[RobotPlace, ...]:
-    """Places from a command line.
-
-    Args:
-        text: "x,y,heading; x,y,heading; ..." in m and deg; no heading is 0.
+    """Places from a command line: "x,y,heading; x,y,heading; ..." in m and deg; no heading is 0.
 
     Raises:
         BadValue: The text is something else.

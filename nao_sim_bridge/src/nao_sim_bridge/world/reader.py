@@ -2,8 +2,10 @@
 
 `floor` has `friction` (the engine multiplies the coefficients of the two that touch) and may have `color`,
 `tile_color`, `tile_size`, `slope_deg: [along x, along y]` (rising), `rugs` (a list of `center`, `size`, `color` and
-maybe `yaw`) and `bumps` (see `bumps.py`). `light` may have `direction`, `color` and `ambient`; `background` may
-have `top`, `horizon` and `haze`.
+maybe `yaw`) and `bumps`: plates that lie about as chance will have it, the same at each run. These have `count`,
+`size: [smallest, largest]` and `height: [lowest, highest]` in m, `area: [[x, y], [x, y]]` (two corners), and may have
+`seed`, `color` and `keep_free: radius` around the origin, where the robot starts. `light` may have `direction`, `color`
+and `ambient`; `background` may have `top`, `horizon` and `haze`.
 
 Objects are read by `objects.py`; on a slope all places count from the floor: z is along its normal.
 `sounds` are read by `sounds.py`. `robots` says where the first, the second... robot starts: a list of `position`,
@@ -13,16 +15,17 @@ Objects are read by `objects.py`; on a slope all places count from the floor: z 
 from __future__ import annotations
 
 import math
+import random
 from pathlib import Path
-from typing import Any
+from typing import Any, Mapping
 
 import numpy as np
 import yaml
 
-from nao_sim_bridge.base.config import LARGEST_FILE, check_keys, read_bounded, vector, world_directory
+from nao_sim_bridge.base.config import LARGEST_FILE, array, check_keys, read_bounded, vector, world_directory
 from nao_sim_bridge.base.errors import BadValue, ConfigError, did_you_mean
 from nao_sim_bridge.base.yaml_values import load_yaml
-from nao_sim_bridge.world.bumps import read_bumps
+from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.entries import GREY, check_bounds, color, entries, number
 from nao_sim_bridge.world.objects import read_object
 from nao_sim_bridge.world.places import RobotPlace
@@ -33,16 +36,15 @@ SECTIONS = ("description", "light", "background", "objects", "sounds", "robots")
 FLOOR_OPTIONS = ("color", "tile_color", "tile_size", "slope_deg", "rugs", "bumps")
 # Steeper than this no sole holds, deg.
 MAX_SLOPE = 30.0
+BUMP_KEYS = ("count", "size", "height", "area")
+BUMP_OPTIONS = ("seed", "color", "keep_free")
+MOST_BUMPS = 500
+# So often a plate is thrown before its area is held for too small, for each plate asked for.
+THROWS = 50
 
 
 def read_world(content: Any, name: str, where: str, folder: Path | None = None) -> World:
-    """A world from the content of its file.
-
-    Args:
-        content: What the file holds.
-        name: Of the world.
-        where: File name for error texts.
-        folder: Where the file is: files that it names are beside it.
+    """A world from the content of its file; files that it names are in `folder`.
 
     Raises:
         WorldError: If an entry is wrong, unknown or missing.
@@ -61,7 +63,7 @@ def read_world(content: Any, name: str, where: str, folder: Path | None = None) 
     for index, thing in enumerate(objects):
         if thing.name in names[: index + 1]:
             raise WorldError(f"{where}: objects[{index}].name", f"{thing.name!r} is taken")
-    sounds = read_sounds(entries(content, "sounds", where), names[1:], folder, WorldError)
+    sounds = read_sounds(entries(content, "sounds", where), names[1:], folder)
     return World(
         name=name,
         description=str(content.get("description", "")),
@@ -91,7 +93,7 @@ def _read_floor(entry: Any, where: str) -> Floor:
         raise WorldError(f"{where}.slope_deg", f"is {slope.tolist()}, allowed is -{MAX_SLOPE:g}..{MAX_SLOPE:g} each")
     bumps, bump_color = (), GREY
     if "bumps" in entry:
-        bumps = read_bumps(entry["bumps"], f"{where}.bumps")
+        bumps = _read_bumps(entry["bumps"], f"{where}.bumps")
         bump_color = color(entry["bumps"], "color", f"{where}.bumps", GREY)
     return Floor(
         friction=number(entry, "friction", where, 1.0),
@@ -113,6 +115,45 @@ def _read_rug(entry: Any, where: str) -> Rug:
         raise WorldError(f"{where}.size", f"is {size.tolist()}, sizes must be above 0")
     yaw = number(entry, "yaw", where, 0.0, lowest=-math.inf)
     return Rug(tuple(center.tolist()), tuple(size.tolist()), yaw, color(entry, "color", where, GREY))
+
+
+def _read_bumps(entry: Any, where: str) -> tuple[Shape, ...]:
+    """Boxes that lie on the floor, in its frame; they may overlap.
+
+    Raises:
+        WorldError: If a key is wrong, unknown or missing, or the area leaves no room.
+    """
+    check_keys(entry, where, BUMP_KEYS, BUMP_OPTIONS, WorldError)
+    count, seed = _whole(entry, "count", where), _whole(entry, "seed", where)
+    if not 1 <= count <= MOST_BUMPS:
+        raise WorldError(f"{where}.count", f"is {count}, allowed is 1..{MOST_BUMPS}")
+    size, height = _range(entry, "size", where), _range(entry, "height", where)
+    (x0, y0), (x1, y1) = array(entry["area"], f"{where}.area", (2, 2), WorldError).tolist()
+    free = float(vector([entry.get("keep_free", 0.0)], f"{where}.keep_free", 1, WorldError)[0])
+    chance = random.Random(seed)
+    plates: list[Shape] = []
+    for _ in range(THROWS * count):
+        edges = (chance.uniform(*size), chance.uniform(*size), chance.uniform(*height))
+        x, y, yaw = chance.uniform(x0, x1), chance.uniform(y0, y1), chance.uniform(0.0, math.pi)
+        if math.hypot(x, y) - math.hypot(edges[0], edges[1]) / 2.0 >= free or free == 0.0:
+            plates.append(Shape("box", edges, (x, y, edges[2] / 2.0), (0.0, 0.0, yaw)))
+        if len(plates) == count:
+            return tuple(plates)
+    raise WorldError(f"{where}.keep_free", f"is {free:g} m, which leaves no room for {count} plates in the area")
+
+
+def _range(entry: Mapping, key: str, where: str) -> tuple[float, float]:
+    low, high = vector(entry[key], f"{where}.{key}", 2, WorldError).tolist()
+    if not 0.0 < low <= high:
+        raise WorldError(f"{where}.{key}", f"is {entry[key]!r}, not two numbers above 0, the smaller one first")
+    return low, high
+
+
+def _whole(entry: Mapping, key: str, where: str) -> int:
+    value = entry.get(key, 0)
+    if not isinstance(value, int) or isinstance(value, bool):
+        raise WorldError(f"{where}.{key}", f"is {value!r}, not a whole number")
+    return value
 
 
 def _read_light(entry: Any, where: str) -> Light:
@@ -142,10 +183,7 @@ def world_names() -> tuple[str, ...]:
 
 
 def load_world(name_or_path: str) -> World:
-    """Read a world.
-
-    Args:
-        name_or_path: Name of a world of this package (`empty`), or a path that ends in `.yaml`.
+    """Read a world of this package by its name (`empty`), or from a path that ends in `.yaml`.
 
     Raises:
         WorldError: If there is no such world, or an entry of it is wrong, unknown or missing.

@@ -1,19 +1,22 @@
-"""What a picture shows, and where the camera is: small values that can be sent to another process."""
+"""What a picture shows, and where the camera is: small values, and how they go to another process."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Optional, Tuple
 
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.readings import Pose
-from nao_sim_bridge.base.rotations import Quaternion, Vector3
-from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, transform
+from nao_sim_bridge.base.rotations import Quaternion, Vector3, vector3
+from nao_sim_bridge.model.kinematics import finger_transforms, link_transforms, quaternion_matrix, transform
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.world.world import WorldObject
+
+Placed = Tuple[WorldObject, ...]
 
 
 @dataclass(frozen=True)
@@ -59,8 +62,6 @@ class Camera:
         target: What it looks at, m.
         up: Direction that is up in the picture.
         fov: Vertical field of view, rad.
-        width: Of the picture, in pixels.
-        height: Of the picture, in pixels.
         supersampling: 1 is fastest; 2 draws four pixels for each and has smooth edges.
         shadows: Whether things throw shadows; a third faster without.
     """
@@ -120,15 +121,7 @@ def preset_camera(
     height: int = 480,
     supersampling: int = 2,
 ) -> Camera:
-    """A camera that shows the robot where it is.
-
-    Args:
-        name: One of `PRESETS`.
-        model: The robot.
-        state: Where it is.
-        width: Of the picture, in pixels.
-        height: Of the picture, in pixels.
-        supersampling: See `Camera`.
+    """A camera that shows the robot where it is, from a view of `PRESETS`.
 
     Raises:
         UnknownName: If there is no such view.
@@ -147,9 +140,9 @@ def preset_camera(
     eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))
     up = frame[:3, 2] if view.follows == "head" else np.array((0.0, 0.0, 1.0))
     return Camera(
-        eye=_vector3(eye),
-        target=_vector3(target),
-        up=_vector3(up),
+        eye=vector3(eye[:3]),
+        target=vector3(target[:3]),
+        up=vector3(up),
         fov=math.radians(view.fov_deg),
         width=width,
         height=height,
@@ -175,5 +168,43 @@ def _upright(base: np.ndarray) -> np.ndarray:
     return transform(np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]), base[:3, 3])
 
 
-def _vector3(values: np.ndarray) -> Vector3:
-    return float(values[0]), float(values[1]), float(values[2])
+def frames_in_world(model: RobotModel, look: RobotLook) -> dict[str, np.ndarray]:
+    """(4, 4) pose of each link by name, and of each phalanx by side and name, as `LFinger11`."""
+    base = transform(quaternion_matrix(look.base_orientation), look.base_position)
+    poses = {name: base @ pose for name, pose in link_transforms(model, look.joint_positions).items()}
+    for joint, position in zip(model.joints, look.joint_positions):
+        if joint.is_hand:
+            for phalanx, pose in finger_transforms(model, position).items():
+                poses[joint.name[0] + phalanx] = poses[joint.parent_link] @ pose
+    return poses
+
+
+Packed = Tuple[RenderState, Optional[Placed]]
+
+
+class StateSender:
+    """The end that sends; one for each process that receives. What was placed goes over only when it has changed."""
+
+    def __init__(self) -> None:
+        self._sent: Placed = ()
+
+    def pack(self, state: RenderState) -> Packed:
+        placed = state.placed
+        if placed is self._sent:
+            return replace(state, placed=()), None
+        self._sent = placed
+        return replace(state, placed=()), placed
+
+
+class StateReceiver:
+    """The end that receives."""
+
+    def __init__(self) -> None:
+        self._placed: Placed = ()
+
+    def unpack(self, packed: Packed) -> RenderState:
+        """The state that was sent; what was placed is the same tuple until it changes."""
+        state, placed = packed
+        if placed is not None:
+            self._placed = placed
+        return replace(state, placed=self._placed)

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -19,8 +19,7 @@ from nao_sim_bridge.model.meshes import tessellate
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture, start_pitch
 from nao_sim_bridge.model.shapes import Shape, rod
-from nao_sim_bridge.world.entries import color
-from nao_sim_bridge.world.kinds import Kind, Made
+from nao_sim_bridge.world.entries import Kind, Made, color
 from nao_sim_bridge.world.world import Part, WorldError
 
 SHELL, SHELL_COLOR = "shell", (0.16, 0.42, 0.72)
@@ -31,9 +30,9 @@ LIMBS = (
     ("ElbowYaw", "WristYaw", 0.030),
 )
 """Links between whose frames a limb is, and its radius, m."""
-FEET_ROOM = ("box", (0.15, 0.08, 0.05), (0.02, 0.0, -0.02))
-TORSO_ROOM = ("box", (0.13, 0.16, 0.22), (-0.01, 0.0, 0.03))
-HEAD_ROOM = ("sphere", (0.068,), (0.0, 0.0, 0.055))
+FEET_ROOM = Shape("box", (0.15, 0.08, 0.05), (0.02, 0.0, -0.02))
+TORSO_ROOM = Shape("box", (0.13, 0.16, 0.22), (-0.01, 0.0, 0.03))
+HEAD_ROOM = Shape("sphere", (0.068,), (0.0, 0.0, 0.055))
 
 
 def _make(entry: Mapping[str, Any], where: str, _files: object) -> Made:
@@ -68,18 +67,13 @@ def _figure(name: str) -> tuple[tuple[Shape, ...], tuple[Shape, ...], tuple[Shap
 
 def _body(poses: Mapping[str, np.ndarray]) -> list[Shape]:
     """A few shapes that take up the room of the robot."""
-    body = [_put(_shape(TORSO_ROOM), poses["Torso"]), _put(_shape(HEAD_ROOM), poses["HeadPitch"])]
+    body = [_put(TORSO_ROOM, poses["Torso"]), _put(HEAD_ROOM, poses["HeadPitch"])]
     for side in ("L", "R"):
-        body.append(_put(_shape(FEET_ROOM), poses[side + "AnkleRoll"]))
+        body.append(_put(FEET_ROOM, poses[side + "AnkleRoll"]))
         for start, end, radius in LIMBS:
             ends = (poses[side + link][:3, 3] for link in (start, end))
             body.append(rod("capsule", radius, *ends))
     return body
-
-
-def _shape(table: Sequence) -> Shape:
-    kind, size, xyz = table
-    return Shape(kind, size, xyz)
 
 
 def _put(shape: Shape, pose: np.ndarray) -> Shape:

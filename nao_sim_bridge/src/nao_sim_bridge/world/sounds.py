@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Sequence, Tuple, Union
+from typing import Any, Sequence
 
 from nao_sim_bridge.base.config import check_keys, vector
-from nao_sim_bridge.base.errors import ConfigError, did_you_mean
-from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.base.errors import did_you_mean
+from nao_sim_bridge.world.entries import number
+from nao_sim_bridge.world.world import Content, WorldError, WorldSound
 
 KINDS = ("file", "tone", "noise", "say")
 NOISES = ("white", "pink")
@@ -28,42 +28,9 @@ LOUDEST = 140.0
 HIGHEST_TONE = 20000.0
 LONGEST = 3600.0
 
-Content = Union[str, Path, Tuple[float, ...]]
-
-
-@dataclass(frozen=True)
-class WorldSound:
-    """A sound of the world.
-
-    Attributes:
-        name: Unique among the sounds.
-        kind: One of `KINDS`.
-        content: Path of the file, frequencies in Hz, kind of noise, or text.
-        position: In the frame of the floor, or of the object that it rides on, m.
-        on: Name of that object; None when it stands by itself.
-        voice: Who says the text; empty for the voice that the robot has at the start.
-        level_db: At 1 m, dB SPL.
-        start: When it begins, s after the start or a reset.
-        loop: Again and again.
-        pause: Silence between repetitions, s.
-        duration: Of a tone or noise, s; None when it does not end.
-    """
-
-    name: str
-    kind: str
-    content: Content
-    position: Vector3
-    on: str | None
-    voice: str
-    level_db: float
-    start: float
-    loop: bool
-    pause: float
-    duration: float | None
-
 
 def read_sounds(
-    entries: Sequence[tuple[str, Any]], objects: Sequence[str], folder: Path | None, error: type[ConfigError]
+    entries: Sequence[tuple[str, Any]], objects: Sequence[str], folder: Path | None
 ) -> tuple[WorldSound, ...]:
     """The sounds of a world.
 
@@ -71,106 +38,96 @@ def read_sounds(
         entries: Entries of the section, each with its place for error texts.
         objects: Names of the world's objects.
         folder: Where the world file is; None when it is none.
-        error: Class of the errors raised.
     """
     sounds: list[WorldSound] = []
     for where, entry in entries:
-        sound = _read_sound(entry, where, objects, folder, error)
+        sound = _read_sound(entry, where, objects, folder)
         if sound.name in [other.name for other in sounds]:
-            raise error(f"{where}.name", f"{sound.name!r} is taken")
+            raise WorldError(f"{where}.name", f"{sound.name!r} is taken")
         sounds.append(sound)
     return tuple(sounds)
 
 
-def _read_sound(
-    entry: Any, where: str, objects: Sequence[str], folder: Path | None, error: type[ConfigError]
-) -> WorldSound:
+def _read_sound(entry: Any, where: str, objects: Sequence[str], folder: Path | None) -> WorldSound:
     if isinstance(entry, Mapping):
         # YAML reads the bare word "on" as true.
         entry = {"on" if key is True else key: value for key, value in entry.items()}
-    check_keys(entry, where, ("name",), OPTIONS, error)
+    check_keys(entry, where, ("name",), OPTIONS, WorldError)
     if not isinstance(entry["name"], str) or not entry["name"]:
-        raise error(f"{where}.name", f"is {entry['name']!r}, not a name")
-    kind, content = _read_content(entry, where, folder, error)
+        raise WorldError(f"{where}.name", f"is {entry['name']!r}, not a name")
+    kind, content = _read_content(entry, where, folder)
     on = entry.get("on")
     if on is None and "position" not in entry:
-        raise error(where, "missing 'position', or 'on' with the name of an object")
+        raise WorldError(where, "missing 'position', or 'on' with the name of an object")
     if on is not None and on not in objects:
         there = ", ".join(objects) or "none"
         hint = did_you_mean(on, objects)
-        raise error(f"{where}.on", f"is {on!r}{hint}{'' if hint else ','} allowed is an object of this world ({there})")
+        raise WorldError(
+            f"{where}.on", f"is {on!r}{hint}{'' if hint else ','} allowed is an object of this world ({there})"
+        )
     if "voice" in entry and (kind != "say" or not isinstance(entry["voice"], str)):
-        raise error(f"{where}.voice", "is for a text to say, and the name of a voice")
+        raise WorldError(f"{where}.voice", "is for a text to say, and the name of a voice")
     lasting = kind in ("tone", "noise")
     if "duration" in entry and not lasting:
-        raise error(f"{where}.duration", f"is for tones and noises; a {kind} is as long as it is")
+        raise WorldError(f"{where}.duration", f"is for tones and noises; a {kind} is as long as it is")
     loop = entry.get("loop", False)
     if not isinstance(loop, bool):
-        raise error(f"{where}.loop", f"is {loop!r}, allowed is true or false")
+        raise WorldError(f"{where}.loop", f"is {loop!r}, allowed is true or false")
     if "pause" in entry and not loop:
-        raise error(f"{where}.pause", "is for what is repeated: it needs 'loop: true'")
+        raise WorldError(f"{where}.pause", "is for what is repeated: it needs 'loop: true'")
     return WorldSound(
         name=entry["name"],
         kind=kind,
         content=content,
-        position=tuple(vector(entry.get("position", (0.0, 0.0, 0.0)), f"{where}.position", 3, error).tolist()),
+        position=tuple(vector(entry.get("position", (0.0, 0.0, 0.0)), f"{where}.position", 3, WorldError).tolist()),
         on=on,
         voice=entry.get("voice", ""),
-        level_db=_number(entry, "level_db", where, TALK_DB, -20.0, LOUDEST, error),
-        start=_number(entry, "start", where, 0.0, 0.0, math.inf, error),
+        level_db=number(entry, "level_db", where, TALK_DB, -20.0, LOUDEST),
+        start=number(entry, "start", where, 0.0, 0.0, math.inf),
         loop=loop,
-        pause=_number(entry, "pause", where, 0.0, 0.0, LONGEST, error),
-        duration=_number(entry, "duration", where, 1.0, 0.01, LONGEST, error) if "duration" in entry else None,
+        pause=number(entry, "pause", where, 0.0, 0.0, LONGEST),
+        duration=number(entry, "duration", where, 1.0, 0.01, LONGEST) if "duration" in entry else None,
     )
 
 
-def _read_content(entry: Mapping, where: str, folder: Path | None, error: type[ConfigError]) -> tuple[str, Content]:
+def _read_content(entry: Mapping, where: str, folder: Path | None) -> tuple[str, Content]:
     kinds = [kind for kind in KINDS if kind in entry]
     if len(kinds) != 1:
-        raise error(where, f"has {' and '.join(kinds) or 'nothing'} to sound, needs exactly one of {', '.join(KINDS)}")
+        raise WorldError(
+            where, f"has {' and '.join(kinds) or 'nothing'} to sound, needs exactly one of {', '.join(KINDS)}"
+        )
     kind = kinds[0]
     value, place = entry[kind], f"{where}.{kind}"
     if kind == "file":
-        return kind, _file(value, place, folder, error)
+        return kind, _file(value, place, folder)
     if kind == "tone":
-        return kind, _tone(value, place, error)
+        return kind, _tone(value, place)
     if kind == "noise":
         if value not in NOISES:
-            raise error(place, f"is {value!r}, allowed is {' or '.join(NOISES)}")
+            raise WorldError(place, f"is {value!r}, allowed is {' or '.join(NOISES)}")
         return kind, value
     if not isinstance(value, str) or not value.strip():
-        raise error(place, f"is {value!r}, not a text")
+        raise WorldError(place, f"is {value!r}, not a text")
     return kind, value
 
 
-def _file(value: Any, place: str, folder: Path | None, error: type[ConfigError]) -> Path:
+def _file(value: Any, place: str, folder: Path | None) -> Path:
     if not isinstance(value, str) or not value:
-        raise error(place, f"is {value!r}, not the name of a file")
+        raise WorldError(place, f"is {value!r}, not the name of a file")
     if folder is None:
-        raise error(place, "a world without a file has no files beside it")
+        raise WorldError(place, "a world without a file has no files beside it")
     root = folder.resolve()
     path = (root / value).resolve()
     if Path(value).is_absolute() or root not in path.parents:
-        raise error(place, f"is {value!r}, allowed is a name inside {root}, where the world file is")
+        raise WorldError(place, f"is {value!r}, allowed is a name inside {root}, where the world file is")
     if not path.is_file():
-        raise error(place, f"there is no file {value!r} in {root}")
+        raise WorldError(place, f"there is no file {value!r} in {root}")
     return path
 
 
-def _tone(value: Any, place: str, error: type[ConfigError]) -> tuple[float, ...]:
+def _tone(value: Any, place: str) -> tuple[float, ...]:
     listed = value if isinstance(value, list) else [value]
-    frequencies = vector(listed, place, len(listed), error)
+    frequencies = vector(listed, place, len(listed), WorldError)
     if not listed or frequencies.min() <= 0.0 or frequencies.max() > HIGHEST_TONE:
-        raise error(place, f"is {value!r}, allowed is above 0 to {HIGHEST_TONE:g} Hz")
+        raise WorldError(place, f"is {value!r}, allowed is above 0 to {HIGHEST_TONE:g} Hz")
     return tuple(frequencies.tolist())
-
-
-def _number(
-    entry: Mapping, key: str, where: str, default: float, low: float, high: float, error: type[ConfigError]
-) -> float:
-    value = float(vector([entry.get(key, default)], f"{where}.{key}", 1, error)[0])
-    if not low <= value <= high:
-        raise error(
-            f"{where}.{key}", f"is {value:g}, allowed is {low:g}{f'..{high:g}' if high < math.inf else ' or more'}"
-        )
-    return value

@@ -9,7 +9,7 @@ from typing import Callable, Sequence
 import numpy as np
 
 from nao_sim_bridge.base.samples import RATE, Sound
-from nao_sim_bridge.world.sounds import WorldSound
+from nao_sim_bridge.world.world import WorldSound
 
 Speak = Callable[[str, str], Sound]
 """From a text and the name of a voice to its sound; blocking."""

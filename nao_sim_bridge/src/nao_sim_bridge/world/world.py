@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Tuple, Union
 
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.pictures import WorldPicture
 from nao_sim_bridge.world.places import RobotPlace
-from nao_sim_bridge.world.sounds import WorldSound
 
 FLOOR = "floor"
 """A name that no object may have."""
@@ -22,6 +23,7 @@ MOST_PARTS = 16
 """PyBullet silently leaves out what goes beyond in one body that can be touched."""
 
 Color = tuple  # (r, g, b) in 0..1
+Content = Union[str, Path, Tuple[float, ...]]
 
 
 class WorldError(ConfigError):
@@ -147,7 +149,6 @@ class WorldObject:
         rpy: Of its frame in that of the floor, rad.
         parts: What is to be seen of it.
         mass: kg; 0 is immovable.
-        friction: Coefficient.
         rolling_friction: m; keeps balls from rolling for ever.
         restitution: 0..1.
         body: What is to be felt of it, of the kinds that the physics knows; None for the shapes of its parts.
@@ -174,17 +175,42 @@ class WorldObject:
 
 
 @dataclass(frozen=True)
+class WorldSound:
+    """A sound of the world.
+
+    Attributes:
+        name: Unique among the sounds.
+        kind: `file`, `tone`, `noise` or `say`.
+        content: Path of the file, frequencies in Hz, kind of noise, or text.
+        position: In the frame of the floor, or of the object that it rides on, m.
+        on: Name of that object; None when it stands by itself.
+        voice: Who says the text; empty for the voice that the robot has at the start.
+        level_db: At 1 m, dB SPL.
+        start: When it begins, s after the start or a reset.
+        pause: Silence between repetitions, s.
+        duration: Of a tone or noise, s; None when it does not end.
+    """
+
+    name: str
+    kind: str
+    content: Content
+    position: Vector3
+    on: str | None
+    voice: str
+    level_db: float
+    start: float
+    loop: bool
+    pause: float
+    duration: float | None
+
+
+@dataclass(frozen=True)
 class World:
     """A world.
 
     Attributes:
         name: File name without ending.
         description: One line for people.
-        floor: The floor.
-        light: The light of the pictures.
-        background: Colours behind everything.
-        objects: Everything else.
-        sounds: What is to be heard.
         robots: Where the robots start, the first one first; others stand where they are told to.
     """
 

@@ -15,8 +15,8 @@ from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.stats import interleave
 
+from nao_sim_bridge.cameras.darkroom import CameraPlaces
 from nao_sim_bridge.cameras.optics import CameraOptics
-from nao_sim_bridge.cameras.places import CameraPlaces
 from nao_sim_bridge.core.simulation import Scene, Simulation
 from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.render.scene.stage import Stage

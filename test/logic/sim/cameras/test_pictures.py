@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 
 import vision_definitions
-from nao_sim_bridge.cameras import parameters as names
+from nao_sim_bridge.cameras import settings as names
 from nao_sim_bridge.cameras.color_spaces import encode
 from nao_sim_bridge.cameras.optics import CameraOptics, Optics
-from nao_sim_bridge.cameras.sensor import develop
+from nao_sim_bridge.cameras.sensor import Shot, develop
 from nao_sim_bridge.cameras.settings import load_cameras
-from nao_sim_bridge.cameras.shot import Shot
 
 BRIGHTNESS, CONTRAST, SATURATION, HUE, GAIN, H_FLIP, V_FLIP, AUTO_WHITE = 0, 1, 2, 3, 6, 7, 8, 12
 EXPOSURE, ALGORITHM, SHARPNESS, WHITE = 17, 22, 24, 33

@@ -6,7 +6,7 @@ import numpy as np
 import pybullet
 import pytest
 
-from nao_sim_bridge.render.pointer import Pointer, ray_through
+from nao_sim_bridge.render.window import Pointer, ray_through
 
 EYE, TARGET = (1.2, -0.7, 0.6), (0.0, 0.0, 0.3)
 MATRICES = (

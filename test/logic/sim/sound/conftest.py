@@ -11,10 +11,9 @@ from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.sound.air import Air
 from nao_sim_bridge.sound.reader import SoundReader
 from nao_sim_bridge.sound.settings import load_sound_settings
-from nao_sim_bridge.sound.sound_world import SoundWorld
+from nao_sim_bridge.sound.sound_world import Air, SoundWorld
 
 TICK = 1.0 / 120.0
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)

@@ -9,8 +9,7 @@ from disks import room
 
 from nao_sim_bridge.base.samples import sine
 from nao_sim_bridge.base.whole_file import FileTrouble
-from nao_sim_bridge.sound.files import write_sound
-from nao_sim_bridge.sound.wav_file import OggFile, WavFile
+from nao_sim_bridge.sound.files import OggFile, WavFile, write_sound
 
 
 @pytest.mark.parametrize("name, error", [("a.wav", 2e-5), ("a.flac", 2e-5), ("a.ogg", 0.02), ("a.mp3", 0.02)])

@@ -6,8 +6,7 @@ import time
 
 import pytest
 
-from nao_sim_bridge.speech.dictionary import Pronunciations
-from nao_sim_bridge.speech.parameters import Prosody
+from nao_sim_bridge.speech.parameters import Pronunciations, Prosody
 from nao_sim_bridge.speech.sentences import sentences
 from nao_sim_bridge.speech.tags import Bookmark, Pause, Spoken, TagReader
 

@@ -10,18 +10,17 @@ import zxingcpp
 from PIL import Image
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
-from nao_sim_bridge.world.painting import names
 from nao_sim_bridge.world.painting.known_faces import load_faces
 from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
-from nao_sim_bridge.world.pictures import ASPECTS, WorldPicture, aspect, barcode, paint
+from nao_sim_bridge.world.pictures import ASPECTS, PATTERNS, POSTERS, WorldPicture, aspect, barcode, paint
 
 EAN = "4006381333931"
 KNOWN = {
     "landmark": list(map(str, load_landmarks().marks)),
     "face": list(load_faces()),
     "head": list(load_faces()),
-    "poster": list(names.POSTERS),
-    "pattern": list(names.PATTERNS),
+    "poster": list(POSTERS),
+    "pattern": list(PATTERNS),
     "qr": ["hello nao"],
     "barcode": [EAN, "code128:NAO-25"],
 }

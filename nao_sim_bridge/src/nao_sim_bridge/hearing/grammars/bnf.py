@@ -41,11 +41,7 @@ DEEPEST = 100
 
 
 class GrammarError(SimulationError):
-    """A grammar file that cannot be read.
-
-    Attributes:
-        line: Where, from 1; 0 for the file as a whole.
-    """
+    """A grammar file that cannot be read; lines count from 1, 0 is the file as a whole."""
 
     def __init__(self, problem: str, line: int = 0) -> None:
         self.line = line
@@ -68,7 +64,6 @@ class Group:
     """Alternatives, each a row of parts; said so many times.
 
     Attributes:
-        alternatives: Rows of parts.
         least: How often at least.
         most: How often at most; None for any number.
     """
@@ -83,11 +78,9 @@ class BnfGrammar:
     """A grammar file.
 
     Attributes:
-        name: As the file gives it.
         start: Rules that may be said as a whole.
         activatable: Rules that may be switched off.
         slots: Rules that are filled later.
-        rules: What each rule is.
     """
 
     name: str = ""

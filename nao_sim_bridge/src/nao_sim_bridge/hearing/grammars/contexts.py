@@ -20,14 +20,7 @@ class ContextError(SimulationError):
 
 @dataclass(frozen=True)
 class Context:
-    """A grammar in use. Never changed: every change makes another one.
-
-    Attributes:
-        bnf: The grammar file.
-        inactive: Rules that are switched off.
-        slots: Words of the slots that have been filled.
-        parameters: Numbers by name.
-    """
+    """A grammar in use. Never changed: every change makes another one."""
 
     bnf: BnfGrammar
     inactive: FrozenSet[str] = frozenset()
@@ -39,7 +32,6 @@ class Context:
         return list(dict.fromkeys([*self.bnf.start, *self.bnf.activatable]))
 
     def rules(self, kind: str) -> list[str]:
-        """Names of the rules of a type."""
         if kind == "start":
             return list(self.bnf.start)
         if kind == "activatable":
@@ -57,7 +49,6 @@ class Context:
         return replace(self, inactive=self.inactive - {rule} if active else self.inactive | {rule})
 
     def all_switched(self, active: bool) -> Context:
-        """With all rules switched on or off."""
         return replace(self, inactive=frozenset() if active else frozenset(self.switchable()))
 
     def with_slot(self, slot: str, words: Sequence[str]) -> Context:
@@ -70,14 +61,12 @@ class Context:
         return replace(self, slots={**self.slots, slot: filled})
 
     def with_parameter(self, name: str, value: float) -> Context:
-        """With a parameter changed."""
         self.parameter(name)
         if not 0.0 <= value <= 1.0:
             raise BadValue(name, value, "0 to 1")
         return replace(self, parameters={**self.parameters, name: value})
 
     def parameter(self, name: str) -> float:
-        """Value of a parameter."""
         if name not in self.parameters:
             raise UnknownName("parameter of a context", name, self.parameters)
         return self.parameters[name]
@@ -129,7 +118,6 @@ class Contexts:
         self._saved: Dict[str, Dict[str, Context]] = {}
 
     def names(self) -> list[str]:
-        """Names of the contexts."""
         return list(self._contexts)
 
     def get(self, name: str) -> Context:
@@ -165,7 +153,6 @@ class Contexts:
         self._contexts[name] = context
 
     def remove(self, name: str) -> None:
-        """Forget a context."""
         self.get(name)
         del self._contexts[name]
 

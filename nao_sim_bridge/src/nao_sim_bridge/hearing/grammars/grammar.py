@@ -26,11 +26,7 @@ class Words:
 
 @dataclass(frozen=True)
 class Anything:
-    """Any other speech, or none.
-
-    Attributes:
-        written: Whether it is written in the result when there was some.
-    """
+    """Any other speech, or none; whether it is written in the result when there was some."""
 
     written: bool = True
 
@@ -54,7 +50,6 @@ class Repeat:
     """A part, several times.
 
     Attributes:
-        part: The part.
         least: How often at least.
         most: How often at most; None for any number of times.
     """
@@ -69,8 +64,6 @@ Node = Union[Words, Anything, Sequence, Choice, Repeat]
 
 @dataclass(frozen=True)
 class Grammar:
-    """One named set of phrases."""
-
     name: str
     root: Node
 
@@ -84,7 +77,6 @@ def vocabulary(name: str, phrases: Iterable[str], word_spotting: bool = False) -
     """A grammar of whole phrases.
 
     Args:
-        name: Of the grammar.
         phrases: As a client writes them; each is heard as written.
         word_spotting: Find them inside of longer speech too; then "<...> phrase <...>" is heard. Words of two or three
             sounds ("no", "two") are often missed there, so that they are not found in all that sounds like them.

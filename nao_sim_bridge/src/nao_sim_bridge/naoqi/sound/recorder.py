@@ -16,7 +16,7 @@ from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, MicrophoneFormat, flags_to_channel, microphone_format
-from nao_sim_bridge.sound.wav_file import OggFile, WavFile
+from nao_sim_bridge.sound.files import OggFile, WavFile
 
 log = logging.getLogger("nao_sim.recorder")
 

@@ -15,7 +15,7 @@ from nao_sim_bridge.naoqi.binding.arguments import number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.speech import parameters
 from nao_sim_bridge.speech.clips import Style
-from nao_sim_bridge.speech.dictionary import Pronunciations
+from nao_sim_bridge.speech.parameters import Pronunciations
 from nao_sim_bridge.speech.speech import Engine
 from nao_sim_bridge.speech.tags import TAG
 from nao_sim_bridge.speech.voices import load_voices

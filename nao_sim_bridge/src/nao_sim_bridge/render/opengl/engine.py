@@ -10,16 +10,14 @@ import numpy as np
 
 from nao_sim_bridge.model.appearance import load_appearance
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.render.opengl.canvas import Canvases
-from nao_sim_bridge.render.opengl.context import describe, open_context
 from nao_sim_bridge.render.opengl.geometry import POSITION_FORMAT, VERTEX_FORMAT, VERTEX_NAMES
 from nao_sim_bridge.render.opengl.items import Items, spheres_in_sight
 from nao_sim_bridge.render.opengl.looks import STEPS
-from nao_sim_bridge.render.opengl.robot_rows import CORE_WHITE
+from nao_sim_bridge.render.opengl.resources import Canvases, Textures, describe, open_context
 from nao_sim_bridge.render.opengl.scene_block import BLOCK, camera_block, world_constants
 from nao_sim_bridge.render.opengl.shaders import sources
 from nao_sim_bridge.render.opengl.shadow_map import ShadowMap
-from nao_sim_bridge.render.opengl.textures import Textures
+from nao_sim_bridge.render.scene.figure import CORE_WHITE
 from nao_sim_bridge.render.scene.view import NEAR, View
 from nao_sim_bridge.world.render_state import RenderState
 from nao_sim_bridge.world.world import World
@@ -43,13 +41,6 @@ HALO_SIZE, HALO_LIGHT = 2.6, 0.4
 
 class OpenGLEngine:
     """Draws a world with robots; one thread only.
-
-    Attributes:
-        name: What draws, for people.
-
-    Args:
-        world: Floor, light, background and objects.
-        version: Version of all robots.
 
     Raises:
         SimulationError: OpenGL cannot be had here.
@@ -80,7 +71,6 @@ class OpenGLEngine:
         self._items_of: tuple = ()
 
     def close(self) -> None:
-        """Free the context."""
         self._context.release()
 
     def draw(self, state: RenderState, view: View) -> np.ndarray:

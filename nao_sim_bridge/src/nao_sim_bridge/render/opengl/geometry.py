@@ -49,7 +49,6 @@ class Geometry:
         """Take a mesh.
 
         Args:
-            mesh: Triangles.
             colors: (n, 3) of each vertex, or (3,) of all, in 0..1.
             gloss: How much of the lamp they reflect, 0..1; of all, or of each vertex.
         """
@@ -70,7 +69,6 @@ class Geometry:
         return piece
 
     def buffers(self, context: Any) -> tuple[Any, Any]:
-        """Buffers of the vertices and of the vertex indices."""
         return (
             context.buffer(np.concatenate(self._vertices).tobytes()),
             context.buffer(np.concatenate(self._indices).tobytes()),

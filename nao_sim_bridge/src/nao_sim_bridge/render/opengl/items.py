@@ -17,11 +17,10 @@ from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.render.opengl.geometry import COMMAND, Geometry, Piece
 from nao_sim_bridge.render.opengl.looks import STEPS, Look, robot_looks, thing_looks
-from nao_sim_bridge.render.opengl.robot_rows import RobotRows
-from nao_sim_bridge.render.scene.figure import HEAD
+from nao_sim_bridge.render.scene.figure import CORE_WHITE, HEAD
 from nao_sim_bridge.world.builder import heaps_of_bumps, place_of
 from nao_sim_bridge.world.pictures import WorldPicture
-from nao_sim_bridge.world.render_state import RenderState
+from nao_sim_bridge.world.render_state import RenderState, RobotLook, frames_in_world
 from nao_sim_bridge.world.world import World, WorldObject
 
 RUG = "rug"
@@ -30,6 +29,42 @@ RUG_HEIGHT = 0.0002
 """Of each rug over the one before it, m."""
 AT_HOME = 0.005
 """A thing that has moved by less is where it was put: m, and of its axes."""
+
+
+class RobotRows:
+    """One robot, at the rows `items` of all; what has not changed is not worked out again."""
+
+    def __init__(self, model: RobotModel, appearance: Appearance, looks: Sequence[Look], items: slice) -> None:
+        self._model = model
+        self._appearance = appearance
+        self._items = items
+        self._frames = list(dict.fromkeys(look.frame for look in looks))
+        self._frame_of_item = np.array([self._frames.index(look.frame) for look in looks])
+        self._lamps = np.array([look.lamp for look in looks])
+        self._posed: tuple | None = None
+        self._lit: tuple[float, ...] | None = None
+
+    def show(self, look: RobotLook, matrices: np.ndarray, glow: np.ndarray) -> None:
+        """Write where its items are, and their light."""
+        pose = (look.base_position, look.base_orientation, look.joint_positions)
+        if pose != self._posed:
+            poses = frames_in_world(self._model, look)
+            matrices[self._items] = np.array([poses[frame][:3] for frame in self._frames])[self._frame_of_item]
+            self._posed = pose
+        if look.led_values != self._lit:
+            glow[self._items] = self._light(look.led_values)
+            self._lit = look.led_values
+
+    def _light(self, values: Sequence[float]) -> np.ndarray:
+        """(items, 4) glow of all items."""
+        light = np.zeros((len(self._lamps), 4))
+        colors = np.array([figure.lamp.rgb(values) for figure in self._appearance.lamps])
+        level = colors.max(axis=1)
+        full = colors / np.where(level > 0.0, level, 1.0)[:, None] * (1.0 - CORE_WHITE) + CORE_WHITE
+        of_lamp = self._lamps >= 0
+        light[of_lamp, :3] = full[self._lamps[of_lamp]]
+        light[of_lamp, 3] = level[self._lamps[of_lamp]]
+        return light
 
 
 @dataclass(frozen=True)
@@ -53,13 +88,6 @@ class Items:
         of_head: (n,) whether it belongs to the head of the robot itself.
         pictures: (n,) number of the picture on it, -1 for none.
         picture_list: The pictures by number.
-
-    Args:
-        world: Floor and objects.
-        placed: What was added.
-        robots: How many robots there are.
-        model: The robot.
-        appearance: Its looks.
     """
 
     def __init__(
@@ -107,7 +135,6 @@ class Items:
         )
 
     def buffers(self, context: Any) -> tuple[Any, Any]:
-        """Buffers of vertices and of vertex indices."""
         return self._geometry.buffers(context)
 
     def commands(self, chosen: np.ndarray, levels: np.ndarray | int) -> np.ndarray:

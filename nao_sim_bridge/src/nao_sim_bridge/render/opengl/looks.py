@@ -27,7 +27,6 @@ class Look:
     """Triangles of one frame with the colours of their vertices.
 
     Attributes:
-        mesh: Triangles.
         colors: (n, 3) in 0..1, or (3,) for all.
         gloss: Of each vertex or of all, 0..1.
         picture: What covers it instead of the colour.

@@ -59,7 +59,6 @@ def camera_block(view: View, normal: np.ndarray, still: np.ndarray, moving: np.n
     """What the camera gives to the programs, () of `BLOCK`.
 
     Args:
-        view: The camera.
         normal: (3,) unit vector out of the floor.
         still: (4, 4) from world to the shadow map of what stands still.
         moving: (4, 4) the same of what moves.

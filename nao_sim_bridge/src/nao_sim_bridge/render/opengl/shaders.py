@@ -226,11 +226,7 @@ def constants(values: Mapping[str, float | Sequence[float]]) -> str:
 
 
 def sources(values: Mapping[str, float | Sequence[float]]) -> dict[str, tuple[str, str]]:
-    """The programs by name: for vertices and for pixels.
-
-    Args:
-        values: Constants of the world; `scene_block.world_constants`.
-    """
+    """The programs for vertices and for pixels by name, with constants as of `scene_block.world_constants`."""
     known = HEADER + constants(values)
     things = known + SCENE + _THING_VERTEX
     plain = _THING_FRAGMENT.replace("SURFACE", "paint.rgb")

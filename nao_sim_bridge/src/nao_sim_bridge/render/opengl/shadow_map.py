@@ -22,7 +22,6 @@ class ShadowMap:
         matrix: (4, 4) from world to the map, 0..1 each way.
 
     Args:
-        context: Of moderngl.
         size: Pixels each way.
         toward_lamp: (3,) unit vector in world.
     """

@@ -13,21 +13,17 @@ import numpy as np
 import pybullet
 
 from nao_sim_bridge.model.appearance import OFF, Appearance
-from nao_sim_bridge.model.kinematics import (
-    finger_transforms,
-    link_transforms,
-    matrix_quaternion,
-    quaternion_matrix,
-    transform,
-)
+from nao_sim_bridge.model.kinematics import matrix_quaternion
 from nao_sim_bridge.model.meshes import Mesh, merged, tessellate
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.shapes import Shape
-from nao_sim_bridge.world.render_state import RobotLook
-from nao_sim_bridge.world.visuals import visual_shape
+from nao_sim_bridge.world.builder import visual_shape
+from nao_sim_bridge.world.render_state import RobotLook, frames_in_world
 
 HEAD = ("HeadYaw", "HeadPitch")
 """Links that are in the way of the cameras in the head."""
+CORE_WHITE = 0.12
+"""Share of white in the light of a lamp: a saturated colour alone looks like paint, not like light."""
 FAR_AWAY = (-713.0, 1291.0, -977.0)
 """Where hidden things are, m. In no straight direction: the engine takes seconds for what a camera has exactly beside
 it."""
@@ -50,9 +46,6 @@ class Figure:
         lamp_light: (51, 3) light that each lamp gives, (r, g, b) in 0..1.
 
     Args:
-        client: PyBullet's physics client.
-        model: The robot.
-        appearance: Its looks.
         paint_lamps: Change the colour of lamp bodies in the engine. A window needs it; pictures light them up
             later.
     """
@@ -62,7 +55,6 @@ class Figure:
         self._model = model
         self._appearance = appearance
         self._paint_lamps = paint_lamps
-        self._hands = [(joint.parent_link, joint.name[0], i) for i, joint in enumerate(model.joints) if joint.is_hand]
         self._parts = self._build_links()
         self.lamp_bodies = tuple(self._build_lamps())
         self.lamp_light = np.zeros((len(self.lamp_bodies), 3))
@@ -70,19 +62,13 @@ class Figure:
         self._headless = False
 
     def hide(self) -> None:
-        """Put all bodies out of sight."""
         for part in self._parts:
             self._put(part, FAR_AWAY, UNTURNED)
         self.lamp_light = np.zeros_like(self.lamp_light)
         self._shown = None
 
     def show(self, state: RobotLook, headless: bool = False) -> None:
-        """Put all bodies where the state says; what has not changed is left alone.
-
-        Args:
-            state: The robot.
-            headless: Leave the head out.
-        """
+        """Put all bodies where the state says; what has not changed is left alone."""
         shown = self._shown
         if headless != self._headless:
             shown, self._headless = None, headless
@@ -98,11 +84,7 @@ class Figure:
         self._shown = state
 
     def _place(self, state: RobotLook) -> None:
-        base = transform(quaternion_matrix(state.base_orientation), state.base_position)
-        poses = {name: base @ pose for name, pose in link_transforms(self._model, state.joint_positions).items()}
-        for wrist, side, index in self._hands:
-            for phalanx, pose in finger_transforms(self._model, state.joint_positions[index]).items():
-                poses[side + phalanx] = poses[wrist] @ pose
+        poses = frames_in_world(self._model, state)
         placed = {name: (pose[:3, 3].tolist(), matrix_quaternion(pose[:3, :3])) for name, pose in poses.items()}
         for part in self._parts:
             hidden = self._headless and part.frame in HEAD
@@ -131,7 +113,7 @@ class Figure:
         parts = []
         for name, shapes in self._appearance.shapes.items():
             parts += self._build_frame(name, shapes)
-        for _, side, _ in self._hands:
+        for side in ("L", "R"):
             for finger in self._model.fingers:
                 for phalanx in finger.phalanges:
                     parts += self._build_frame(side + phalanx, self._appearance.phalanx)

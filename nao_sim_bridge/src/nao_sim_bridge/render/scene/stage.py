@@ -35,15 +35,9 @@ def _place(pose: Pose | None, home: Place) -> Place:
 
 
 class Stage:
-    """The things of a world and the robots in one PyBullet world.
-
-    Attributes:
-        figures: The robots; the first is the robot itself.
+    """The things of a world and the robots, the robot itself first, in one PyBullet world.
 
     Args:
-        world: Floor and objects.
-        version: Version of all robots.
-        client: PyBullet's physics client.
         floor: Whether the floor is one of the bodies.
         paint_lamps: See `Figure`.
     """
@@ -65,7 +59,6 @@ class Stage:
         """Put everything where the state says; what has not changed is left alone.
 
         Args:
-            state: What is to be seen.
             headless: Leave out the head of the robot itself.
 
         Raises:

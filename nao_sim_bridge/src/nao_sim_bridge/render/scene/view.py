@@ -12,7 +12,7 @@ from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.world.render_state import Camera
 
 if TYPE_CHECKING:
-    from nao_sim_bridge.cameras.shot import Shot
+    from nao_sim_bridge.cameras.sensor import Shot
 
 NEAR = 0.02
 """Nearer things are not drawn, m: a camera of the robot looks through the shell in front of it."""
@@ -29,8 +29,6 @@ class View:
         eye: (3,) in world, m.
         axes: (3, 3) rows: to the right, upwards, and forward along the optical axis; unit vectors in world.
         tangents: Of half the horizontal and half the vertical field of view.
-        width: Of the picture, in pixels.
-        height: Of the picture, in pixels.
         samples: Rays along each edge of a pixel.
         shadows: Whether things throw shadows.
         from_head: The robot's own camera: its head is not drawn, for it would be in the way.

@@ -17,8 +17,6 @@ class Canvas:
         rgb: (h, w, 3) float32 in 0..1.
 
     Args:
-        width: In pixels.
-        height: In pixels.
         unit: Pixels of length 1.
         origin: Column and row of the point (0, 0), in pixels.
         color: To begin with, (r, g, b) in 0..1.
@@ -51,10 +49,6 @@ class Canvas:
         """Mask of an ellipse.
 
         Args:
-            x: Of its centre.
-            y: Of its centre.
-            half_width: Along its own X.
-            half_height: Along its own Y.
             tilt: Of its X over that of the canvas, rad.
             soft: Width of the edge as a share of the smaller half axis; 0 for one pixel.
         """
@@ -113,10 +107,8 @@ def arch(half_width: float, middle: float, ends: float, count: int = 9) -> list[
     """Points of a parabola from left to right, in the units of the arguments.
 
     Args:
-        half_width: From the middle to each end.
         middle: Height at the middle.
         ends: Height at both ends.
-        count: How many points.
     """
     steps = np.linspace(-1.0, 1.0, count)
     return [(float(half_width * t), float(middle + (ends - middle) * t * t)) for t in steps]

@@ -13,11 +13,7 @@ EAN13, CODE128, QR = "EAN13", "Code128", "QRCode"
 
 
 def paint_code(form: str, content: str) -> np.ndarray:
-    """A code with its quiet zone, (h, w, 3) uint8.
-
-    Args:
-        form: `QRCode`, `EAN13` or `Code128`.
-        content: What it says.
+    """A code (`QRCode`, `EAN13` or `Code128`) with its quiet zone, (h, w, 3) uint8.
 
     Raises:
         ValueError: The content does not fit into such a code.

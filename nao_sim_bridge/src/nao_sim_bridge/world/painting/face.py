@@ -18,8 +18,7 @@ from nao_sim_bridge.world.painting.face_features import (
     paint_skin,
 )
 from nao_sim_bridge.world.painting.face_hair import paint_back_hair, paint_beard, paint_glasses, paint_hair
-from nao_sim_bridge.world.painting.face_size import HEAD_HALF_HEIGHT
-from nao_sim_bridge.world.painting.known_faces import FaceLook, load_faces
+from nao_sim_bridge.world.painting.known_faces import HEAD_HALF_HEIGHT, FaceLook, load_faces
 
 UNIT = 112
 """Pixels of half the width of a head."""

@@ -8,8 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from nao_sim_bridge.world.painting.canvas import Canvas, arch
-from nao_sim_bridge.world.painting.face_size import HEAD_HALF_HEIGHT
-from nao_sim_bridge.world.painting.known_faces import FaceLook
+from nao_sim_bridge.world.painting.known_faces import HEAD_HALF_HEIGHT, FaceLook
 
 SIDES = (-1.0, 1.0)
 WHITE_OF_EYE = (0.94, 0.93, 0.91)

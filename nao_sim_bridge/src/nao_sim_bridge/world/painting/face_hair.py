@@ -6,8 +6,7 @@ import numpy as np
 
 from nao_sim_bridge.world.painting.canvas import Canvas, grain
 from nao_sim_bridge.world.painting.face_features import NEARLY_BLACK, SIDES
-from nao_sim_bridge.world.painting.face_size import HEAD_HALF_HEIGHT
-from nao_sim_bridge.world.painting.known_faces import FaceLook
+from nao_sim_bridge.world.painting.known_faces import HEAD_HALF_HEIGHT, FaceLook
 
 STRANDS = (9, 2)
 """Size of the grains of hair in pixels, down and across."""

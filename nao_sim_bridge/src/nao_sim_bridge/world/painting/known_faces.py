@@ -16,6 +16,8 @@ HAIR_STYLES = ("short", "fringe", "long", "parted", "curly", "bald")
 GLASSES = ("none", "round", "square")
 _CHOICES = {"hair_style": HAIR_STYLES, "glasses": GLASSES}
 _SIZES = {"skin": 3, "hair": 3, "iris": 3, "eyes": 3, "brows": 3, "nose": 2, "mouth": 3, "lips": 3, "clothes": 3}
+HEAD_HALF_HEIGHT = 1.45
+"""Half the height of a head in halves of its width."""
 
 
 @dataclass(frozen=True)

@@ -108,4 +108,4 @@ PATTERNS: Mapping[str, Callable[[Canvas], None]] = {
     "window": _window,
     "bricks": _bricks,
 }
-"""What paints each pattern; the names are those of `names.py`."""
+"""What paints each pattern; the names are those of `pictures.py`."""

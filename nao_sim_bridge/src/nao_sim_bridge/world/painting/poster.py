@@ -114,4 +114,4 @@ DRAWINGS: Mapping[str, Callable[[Canvas], None]] = {
     "city": _city,
     "planets": _planets,
 }
-"""What paints each poster; the names are those of `names.py`."""
+"""What paints each poster; the names are those of `pictures.py`."""

@@ -1,10 +1,10 @@
-"""The robot's health in the hands of the simulator: charger, charge, temperatures, broken devices. For any thread."""
+"""What clients may do to the robot: touch it, charge it, warm it, break its devices. For any thread."""
 
 from __future__ import annotations
 
-from typing import Callable
+from typing import Any, Callable, Sequence
 
-from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.temperatures import BATTERY, HEAD
 from nao_sim_bridge.core.runner import SimulationRunner
@@ -14,20 +14,48 @@ from nao_sim_bridge.naoqi.binding.arguments import number
 COLDEST, HOTTEST = -40.0, 200.0
 
 
-class HealthControl:
-    """Changes what a user of a robot cannot: each task ends when it is done.
+class HandsControl:
+    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
+        self._simulation = simulation
+        self._runner = runner
 
-    Args:
-        simulation: Whose robot it is; touched in the simulation thread only.
-        runner: That thread.
-    """
+    def touch(self, sensors: Sequence[str], duration: float, wait: bool = True) -> Task:
+        """Touch a sensor, or stroke over several.
+
+        Args:
+            sensors: Names of sensors, or of their events.
+            duration: s of simulated time; see `Hands.touch`.
+            wait: Whether the task ends when the hand has gone or, without a duration, when it is felt; else when the
+                hand begins to come.
+        """
+        wanted, lasting = _names(sensors), number(duration, "duration", 0.0)
+
+        def touch() -> Task | None:
+            task = self._simulation.hands.touch(wanted, lasting)
+            return task if wait else None
+
+        return self._runner.execute(touch, "touch")
+
+    def release(self, sensors: Sequence[str] = ()) -> Task:
+        """Let go; the task ends when the hands begin to leave: those on these sensors or, if none is named, all."""
+        wanted = _names(sensors)
+        return self._runner.execute(lambda: self._simulation.hands.release(wanted), "release")
+
+
+def _names(sensors: Any) -> list[str]:
+    if not isinstance(sensors, (list, tuple)) or not all(isinstance(name, str) for name in sensors):
+        raise BadValue("sensors", sensors, "a list of names")
+    return list(sensors)
+
+
+class HealthControl:
+    """Changes what a user of a robot cannot: each task ends when it is done."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation
         self._runner = runner
 
     def plug_charger(self, plugged: bool) -> Task:
-        """Plug the charger in, or pull it."""
         return self._run(lambda: self._simulation.robot.power.battery.plug(bool(plugged)), "plugCharger")
 
     def set_battery_charge(self, charge: float) -> Task:
@@ -71,7 +99,6 @@ class HealthControl:
         return self._run(lambda: self._simulation.robot.faults.repair(name), "repairDevice")
 
     def devices(self) -> list[str]:
-        """Names of all devices that can break."""
         return list(self._simulation.robot.faults.known)
 
     def _run(self, change: Callable[[], None], name: str) -> Task:
