@@ -185,7 +185,7 @@ class SoundLocalization(SoundExtractor):
     def __init__(self, module: str, simulation: Simulation, memory: MemoryStore) -> None:
         self._one, self._all = events = [f"{module}/SoundLocated", f"{module}/SoundsLocated"]
         array = microphone_array(simulation.sound.microphones.places)
-        self._own_voice = OwnVoice(simulation.model, simulation.sound)
+        self._own_voice = OwnVoice(simulation.sound)
         self._head = HeadTrack(simulation)
         self._with_energy = False
         localiser = lambda: Localiser(array, RATE)  # noqa: E731
