@@ -32,6 +32,7 @@ done
 mount --bind /dev "$TREE/dev"
 mount --bind "$TREE" "$TREE"
 mount -t proc proc "$TREE/proc"
+$LOOPBACK
 exec chroot "$TREE" /bin/bash -euc "$COMMANDS"
 """
 
@@ -53,7 +54,8 @@ def inside(tree: Path, commands: str, *, network: bool) -> str:
     """Run commands in the tree, with its own processes and mounts; everything ends with them."""
     own = ["unshare", "--mount", "--pid", "--fork", "--kill-child", *([] if network else ["--net"])]
     kept = {name: value for name, value in os.environ.items() if name.startswith(("PIP_", "SSL_", "http", "HTTP"))}
-    environment = {**kept, "PATH": PATH, "HOME": "/root", "TREE": str(tree), "COMMANDS": commands}
+    loopback = "true" if network else "ip link set lo up"  # a network namespace of its own begins without
+    environment = {**kept, "LOOPBACK": loopback, "PATH": PATH, "HOME": "/root", "TREE": str(tree), "COMMANDS": commands}
     done = subprocess.run(
         [*own, "bash", "-c", SCRIPT, "bash", *pip_folders()],
         env=environment,
@@ -99,7 +101,5 @@ def test_the_steps_of_the_container_file_make_a_robot_in_a_bare_debian(tmp_path)
             (entry if name == "ENTRYPOINT" else command).extend(json.loads(told))
     launch, client = (shlex.join([*entry, *words]) for words in (command, ["python3", CLIENT]))
     # No network: the stack needs none but its own loopback.
-    told = inside(
-        tree, f"ip link set lo up; cd {folder}; {launch} > /launch.log 2>&1 & cd {folder}; {client}", network=False
-    )
+    told = inside(tree, f"cd {folder}; {launch} > /launch.log 2>&1 & cd {folder}; {client}", network=False)
     assert 0.0 <= float(json.loads(told.strip().splitlines()[-1].replace("'", '"'))[0]) <= 1.0, told
