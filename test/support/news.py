@@ -8,9 +8,11 @@ import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
+from nao_library_modules.ros.startup_grace import PATIENCE
 from nao_sim_bridge.testing import StackNotReady, wait_until
 
-LIMIT = 30.0
+LIMIT = PATIENCE + 30.0
+"""s; a goal to a robot that has never been there waits for it first."""
 
 
 class News:

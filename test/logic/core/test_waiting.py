@@ -112,3 +112,14 @@ def test_an_interrupt_ends_the_wait_while_time_stands_still(set_time, interrupt)
     waiter = Waiter(interrupt)
     interrupt.trigger()
     assert waiter.end() is False
+
+
+def test_time_starts_with_the_first_message_of_the_clock(set_time):
+    set_time(0.0)
+    started = threading.Thread(target=RosClock.wait_for_start, daemon=True)
+    started.start()
+    started.join(0.05)
+    assert started.is_alive()
+    set_time(500.0)
+    started.join(LIMIT)
+    assert not started.is_alive()

@@ -17,6 +17,7 @@ from ..base.whole_file import NoPlaceForFile, require_new, write_whole
 from ..owners.line import OwnerLine
 from ..ros.goal_tracker import GoalTracker
 from ..ros.node import own_goals, robot_address, robot_beside
+from ..ros.ros_clock import RosClock
 from .core.registry import with_process_modules_running
 from .language.control import Branch, top_level
 from .language.failures import LowLevelFailure, PlanFailure
@@ -53,6 +54,7 @@ class PlanRun:
         If the process is killed instead, the servers see to that: those of the robot of `~pip` and `~pport`, by default
         the one of this namespace.
         """
+        RosClock.wait_for_start()
         if GoalTracker.owners is None:
             ip, port = robot_address(argparse.Namespace(pip=None, pport=None), robot_beside)
             own_goals(OwnerLine(f"{ip}:{port}"))

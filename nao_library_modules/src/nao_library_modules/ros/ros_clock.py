@@ -19,6 +19,14 @@ class RosClock:
         """ROS time in s."""
         return rospy.get_time()
 
+    @staticmethod
+    def wait_for_start() -> None:
+        """Wait for the first message of /clock. A limit that is counted from the zero before it would be over with it.
+
+        Raises ROSInterruptException if the node ends before.
+        """
+        rospy.sleep(0.0)
+
     def wait(self, duration: float, interrupt: CancellationToken) -> bool:
         """Wait, unless interrupted.
 
