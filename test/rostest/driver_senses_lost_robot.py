@@ -19,8 +19,8 @@ from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
-from mortal_simulator import PORT, MortalSimulator  # noqa: E402
-from news import LIMIT, News, Reports  # noqa: E402
+from mortal_simulator import LIMIT, PORT, MortalSimulator  # noqa: E402
+from news import News, Reports  # noqa: E402
 
 FRONT, CHARGE = "FrontTactilTouched", "Device/SubDeviceList/Battery/Charge/Sensor/Value"
 ENDLESS = "nao_library/breathe"

@@ -20,8 +20,7 @@ from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
-from mortal_simulator import PORT, MortalSimulator  # noqa: E402
-from news import LIMIT  # noqa: E402
+from mortal_simulator import LIMIT, PORT, MortalSimulator  # noqa: E402
 
 LONG = "This story takes longer than the robot lives, and nobody will ever know how it ends. " * 4
 

@@ -8,11 +8,9 @@ import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
-from nao_library_modules.ros.startup_grace import PATIENCE
 from nao_sim_bridge.testing import StackNotReady, wait_until
 
-LIMIT = PATIENCE + 30.0
-"""s; a goal to a robot that has never been there waits for it first."""
+LIMIT = 30.0
 
 
 class News:

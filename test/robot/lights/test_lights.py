@@ -218,6 +218,16 @@ def test_a_bad_function_in_a_chain_changes_nothing_and_says_what_is_wrong(robot,
     lights.succeed(f("off", lights=["Brain0"]))
 
 
+def test_names_are_read_again_only_for_a_light_that_is_not_known(lights, monkeypatch):
+    leds, looks = lights.module.leds, []
+    assert leds.names.knows("Brain0")
+    read = leds.read_names
+    monkeypatch.setattr(leds, "read_names", lambda: looks.append(1) or read())
+    lights.succeed(f("on", lights=["Brain0"]), f("off", lights=["Brain0"]))
+    assert not looks
+    assert lights.play(f("on", lights=["Nothing"])).state == "aborted" and len(looks) == 1
+
+
 def test_the_way_of_a_goal_to_the_robot_is_short(lights, monkeypatch):
     ways = []
     start = RemoteMethod.start

@@ -141,6 +141,10 @@ def test_time_stands_still_while_paused_and_passes_no_faster_than_asked(start):
     assert runner.speed == math.inf
     runner.resume()
     assert runner.wait_for_tick(after=tick + 240, timeout=PATIENCE).tick > tick + 240
+    runner.advance(8.0).result(PATIENCE)
+    runner.set_speed(4.0)
+    late = runner.call(lambda: runner.snapshot.tick)
+    assert runner.wait_for_tick(after=late + 10, timeout=1.0), "the pace counts from where it was set"
 
 
 def test_stop_ends_everybody_who_waits_with_an_error(start):
