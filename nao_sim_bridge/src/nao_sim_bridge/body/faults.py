@@ -83,12 +83,14 @@ class Faults:
         sonars = snapshot.sonars  # itself when both work: who looks at each shot once knows it by that
         if not broken.isdisjoint(SONARS):
             sonars = tuple(0.0 if name in broken else echo for name, echo in zip(SONARS, sonars))
+        sensors = _Broken(snapshot.sensors, broken)
         return replace(
             snapshot,
             imu=STILL if INERTIAL in broken else snapshot.imu,
             sonars=sonars,
             fingers=snapshot.fingers - broken,
-            sensors=_Broken(snapshot.sensors, broken),
+            foot_loads=sensors.foot_loads(snapshot.contacts),
+            sensors=sensors,
         )
 
     def _checked(self, name: str) -> str:

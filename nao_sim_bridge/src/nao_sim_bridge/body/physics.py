@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import Callable, Mapping, Sequence
+from typing import Callable, Collection, Mapping, Sequence
 
 import pybullet
 
@@ -301,11 +301,13 @@ class Physics:
     def read_contacts(self) -> tuple[Contact, ...]:
         """Every point where another body presses on the robot."""
         points = pybullet.getContactPoints(self.robot, physicsClientId=self.client)
-        return tuple(
+        robot = self.robot
+        found = [
             Contact(c[LINK_A], c[POSITION_ON_A], c[NORMAL_ON_B], c[NORMAL_FORCE])
             for c in points
-            if c[BODY_B] != self.robot and c[NORMAL_FORCE] > 0.0
-        )
+            if c[BODY_B] != robot and c[NORMAL_FORCE] > 0.0
+        ]
+        return tuple(found)
 
     def link_pose(self, name: str) -> Pose:
         """Pose of a link frame (not of its centre of mass) in world."""
@@ -313,6 +315,19 @@ class Physics:
             self.robot, self.links[name], computeForwardKinematics=True, physicsClientId=self.client
         )
         return Pose(state[4], state[5])
+
+    def link_poses(self, links: Collection[int], torso: Pose) -> dict[int, Pose]:
+        """Poses in world of link frames by their indices; -1 is the torso, whose pose is known."""
+        poses = {}
+        others = [link for link in links if link >= 0]
+        if others:
+            states = pybullet.getLinkStates(
+                self.robot, others, computeForwardKinematics=True, physicsClientId=self.client
+            )
+            poses = {link: Pose(state[4], state[5]) for link, state in zip(others, states)}
+        if -1 in links:
+            poses[-1] = torso
+        return poses
 
     def pose_of(self, name: str) -> Pose:
         """As `link_pose`; of any other name that of the torso."""

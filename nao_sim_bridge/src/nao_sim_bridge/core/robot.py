@@ -8,7 +8,7 @@ from functools import partial
 from typing import Callable, Iterable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import BadValue, NotFinite, UnknownName, check_finite
-from nao_sim_bridge.base.readings import Contact, Pose
+from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.base.tasks import TaskIds
@@ -284,11 +284,12 @@ class SimulatedRobot:
         body = self._physics.read_body()
         contacts = self._physics.read_contacts() if landed else ()
         imu = self._imu.read(body, span)
-        link_poses = {link: self._pose_of(link, body.pose) for link in {contact.link for contact in contacts}}
+        link_poses = self._physics.link_poses({contact[0] for contact in contacts}, body.pose)
         work = self._sensors.motors.work
         self.power.advance(lambda: work(joints.torques, joints.velocities, self.joints.efforts), span)
         if self._imperfection is not None:
             joints, imu, contacts, link_poses = self._imperfection.of(Felt(joints, imu, contacts, link_poses))
+        loads = self._sensors.foot_loads(contacts)
         self._sensed = Snapshot(
             tick=tick,
             time=now,
@@ -303,7 +304,7 @@ class SimulatedRobot:
             linear_velocity=body.linear_velocity,
             angular_velocity=body.angular_velocity,
             imu=imu,
-            odometry=self._reckon(joints.positions, imu, contacts),
+            odometry=self._reckon(joints.positions, imu, loads),
             sonars=self._sonars.read(self.time, body.pose),
             echoes=self._sonars.echoes,
             head_temperature=self.power.head,
@@ -313,6 +314,7 @@ class SimulatedRobot:
             gone=self._physics.bodies.gone,
             contacts=contacts,
             link_poses=link_poses,
+            foot_loads=loads,
             fingers=self._fingers | self._pointed,
             sensors=self._sensors,
         )
@@ -339,10 +341,7 @@ class SimulatedRobot:
             noise = Noise(load_noise(), scene.sensor_noise, self.random, self._ankles, self._dt)
         return Imperfection(noise, Delay(ticks))
 
-    def _reckon(self, positions: Sequence[float], imu: Imu, contacts: Sequence[Contact]) -> Pose:
+    def _reckon(self, positions: Sequence[float], imu: Imu, loads: Sequence[float]) -> Pose:
         if self._odometry is None:
-            self._odometry = Odometry(self.model, self._ankles, positions, imu.angles)
-        return self._odometry.update(positions, imu.angles, contacts)
-
-    def _pose_of(self, link: int, torso: Pose) -> Pose:
-        return torso if link < 0 else self._physics.link_pose(self._link_names[link])
+            self._odometry = Odometry(self.model, positions, imu.angles)
+        return self._odometry.update(positions, imu.angles, loads)

@@ -61,6 +61,7 @@ class Snapshot:
         gone: Names of things of the world that were taken away.
         contacts: Points where something presses on the robot.
         link_poses: Link index to the pose in world of each link that has a contact.
+        foot_loads: Upward force on the left and on the right foot, N; about the totals of their sensors.
         fingers: Touch sensors that a simulated finger presses.
         sensors: How forces, touch and currents follow from the raw readings.
     """
@@ -88,6 +89,7 @@ class Snapshot:
     gone: frozenset
     contacts: Tuple[Contact, ...]
     link_poses: Mapping[int, Pose]
+    foot_loads: Tuple[float, float]
     fingers: frozenset
     sensors: BodySensors = field(repr=False, compare=False)
 
@@ -98,11 +100,6 @@ class Snapshot:
     @cached_property
     def right_foot(self) -> FootForces:
         return self.sensors.foot_forces("R", self._presses)
-
-    @cached_property
-    def foot_loads(self) -> Tuple[float, float]:
-        """Upward force on the left and on the right foot, N; about the totals of their sensors."""
-        return self.sensors.foot_loads(self.contacts)
 
     @cached_property
     def touched(self) -> frozenset:

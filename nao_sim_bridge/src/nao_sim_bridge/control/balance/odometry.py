@@ -8,9 +8,9 @@ also while the foot rolls over an edge; slips go unnoticed, as on a real robot.
 from __future__ import annotations
 
 import math
-from typing import Iterable, Sequence
+from typing import Sequence
 
-from nao_sim_bridge.base.readings import Contact, Pose
+from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Quaternion, from_roll_pitch_yaw, plus, rotate
 from nao_sim_bridge.control.balance.stance import StanceReader
 from nao_sim_bridge.model.robot_model import RobotModel
@@ -27,16 +27,12 @@ class Odometry:
         torso: Pose of the torso in the world of odometry.
 
     Args:
-        ankles: PyBullet's index of the left and the right foot.
         positions: (26,) joint angles at the start, rad.
         tilt: Roll, pitch and yaw at the start by the inertial unit, rad.
     """
 
-    def __init__(
-        self, model: RobotModel, ankles: Sequence[int], positions: Sequence[float], tilt: Sequence[float]
-    ) -> None:
+    def __init__(self, model: RobotModel, positions: Sequence[float], tilt: Sequence[float]) -> None:
         self._reader = StanceReader(model)
-        self._side_of = {ankle: side for side, ankle in enumerate(ankles)}
         level = from_roll_pitch_yaw(tilt[0], tilt[1], 0.0)
         ahead = [rotate(level, self._reader.toe_direction(side, positions)) for side in (LEFT, RIGHT)]
         heading = math.atan2(ahead[LEFT][1] + ahead[RIGHT][1], ahead[LEFT][0] + ahead[RIGHT][0])
@@ -48,21 +44,17 @@ class Odometry:
         self.torso = Pose((-(left[0] + right[0]) / 2, -(left[1] + right[1]) / 2, height), turn)
         self._anchor = plus(self.torso.position, (left, right)[self._foot])
 
-    def update(self, positions: Sequence[float], tilt: Sequence[float], contacts: Iterable[Contact]) -> Pose:
+    def update(self, positions: Sequence[float], tilt: Sequence[float], loads: Sequence[float]) -> Pose:
         """Take in the readings of a tick.
 
         Args:
             positions: (26,) measured joint angles, rad.
             tilt: Roll, pitch and yaw of the torso by the inertial unit, rad.
+            loads: Upward force on the left and on the right foot, N.
         """
         turn = self._turn(tilt)
-        loads = [0.0, 0.0]
-        for link, _, _, force in contacts:
-            side = self._side_of.get(link)
-            if side is not None:
-                loads[side] += force
         sole = rotate(turn, self._reader.sole_center(self._foot, positions))
-        if loads == [0.0, 0.0]:
+        if not any(loads):
             # In the air or lying: nothing tells where it goes.
             self._anchor = plus(self.torso.position, sole)
         x, y, z = self._anchor

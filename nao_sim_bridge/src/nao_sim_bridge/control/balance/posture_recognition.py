@@ -41,6 +41,8 @@ TOUCHING = 0.1
 # How far each joint may be from a predefined posture, rad. The nearest two postures of one family are 0.7 apart. The
 # floor pushes the legs of one who lies out of their angles, whatever their motors do; no two postures share a side.
 TOLERANCE, LYING_TOLERANCE = 0.3, 0.6
+# What has not changed by more since a look is the same body: rad, and N over 1000.
+SAME, SAME_PER_N = 0.003, 0.001
 # Where the robot looks and what it does with its hands make no posture.
 LEFT_OUT = ("Head", "Wrist", "Hand")
 
@@ -62,6 +64,22 @@ def recognise(model: RobotModel, snapshot: Snapshot) -> Recognition:
     roll, pitch, _ = snapshot.imu.angles
     load = (snapshot.left_foot.total + snapshot.right_foot.total) / (model.total_mass * 9.81)
     return recognise_readings(model, snapshot.positions, roll, pitch, load)
+
+
+class PostureWatch:
+    """Recognises again and again, which costs nothing while the body stays as it was recognised."""
+
+    def __init__(self, model: RobotModel) -> None:
+        self._model = model
+        self._readings: Sequence[float] = ()
+        self._seen = Recognition(UNKNOWN, UNKNOWN)
+
+    def recognise(self, snapshot: Snapshot) -> Recognition:
+        readings = (*snapshot.positions, *snapshot.imu.angles[:2], sum(snapshot.foot_loads) * SAME_PER_N)
+        moved = [abs(now - then) for now, then in zip(readings, self._readings)]
+        if not moved or max(moved) > SAME:
+            self._readings, self._seen = readings, recognise(self._model, snapshot)
+        return self._seen
 
 
 def recognise_readings(

@@ -8,7 +8,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.control.balance import posture_recognition as families
-from nao_sim_bridge.control.balance.posture_recognition import recognise
+from nao_sim_bridge.control.balance.posture_recognition import PostureWatch, recognise
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import load_moves
 from nao_sim_bridge.core.runner import SimulationRunner
@@ -104,7 +104,7 @@ class PostureEvents:
     """Raises `PostureChanged` and `PostureFamilyChanged`; called after every tick, in the simulation thread."""
 
     def __init__(self, model: RobotModel, memory: MemoryStore) -> None:
-        self._model = model
+        self._watch = PostureWatch(model)
         self._memory = memory
         self._due = 0.0
         self._known: dict[str, str] = {}
@@ -115,7 +115,7 @@ class PostureEvents:
         if snapshot.time < self._due:
             return
         self._due = snapshot.time + PERIOD
-        seen = recognise(self._model, snapshot)
+        seen = self._watch.recognise(snapshot)
         for event, name in ((POSTURE, seen.posture), (FAMILY, seen.family)):
             if self._known.get(event) != name:
                 self._known[event] = name
@@ -127,7 +127,7 @@ class ALRobotPose:
 
     def __init__(self, runner: SimulationRunner, model: RobotModel) -> None:
         self._runner = runner
-        self._model = model
+        self._watch = PostureWatch(model)
         # Pose, and the simulated time in s since which the robot is in it; replaced as a whole.
         self._state = (UNKNOWN, 0.0)
         self._next = 0.0
@@ -143,6 +143,6 @@ class ALRobotPose:
         if snapshot.time < self._next:
             return
         self._next = snapshot.time + POSE_PERIOD
-        pose = POSES.get(recognise(self._model, snapshot).family, UNKNOWN)
+        pose = POSES.get(self._watch.recognise(snapshot).family, UNKNOWN)
         if pose != self._state[0]:
             self._state = (pose, snapshot.time)
