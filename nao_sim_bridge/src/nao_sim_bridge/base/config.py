@@ -147,7 +147,7 @@ def array(value: Any, where: str, shape: tuple, error: type[ConfigError] = Confi
     except (TypeError, ValueError) as cause:
         raise error(where, f"is {value!r}, not numbers") from cause
     fits = result.ndim == len(shape) and all(want in (-1, have) for want, have in zip(shape, result.shape))
-    if not fits or not np.all(np.isfinite(result)):
+    if not fits or not np.isfinite(result).all():
         wanted = " x ".join("any" if n == -1 else str(n) for n in shape)
         raise error(where, f"is {value!r}, not {wanted} finite numbers")
     result.flags.writeable = False

@@ -296,7 +296,6 @@ class ModelReader:
         return tuple(motors)
 
 
-@lru_cache(maxsize=None)
 def load_model(version: str = "V6") -> RobotModel:
     """The model of one robot version, read once.
 
@@ -308,4 +307,9 @@ def load_model(version: str = "V6") -> RobotModel:
     """
     if version not in VERSIONS:
         raise ConfigError(FILE, f"no robot version {version!r} (allowed: {', '.join(VERSIONS)})")
+    return _load(version)
+
+
+@lru_cache(maxsize=None)
+def _load(version: str) -> RobotModel:  # by itself, for the cache takes load_model() and load_model("V6") for two
     return ModelReader(read_json(config_file(FILE)), version).read()
