@@ -11,7 +11,7 @@ import numpy as np
 from nao_sim_bridge.base.archives import Archive
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.whole_file import write_whole
-from nao_sim_bridge.vision.faces_descriptor import likeness
+from nao_sim_bridge.vision.faces_points import likeness
 
 MOST_PICTURES = 10
 """Pictures of one person at most."""
@@ -64,11 +64,9 @@ class FaceMemory:
         return best, score
 
     def take_over(self, other: FaceMemory, policy: str) -> None:
-        """Take people of another memory in.
+        """Take people of another memory in; one of `POLICIES` says what happens to somebody who is known already.
 
-        Args:
-            policy: What happens to somebody who is known already: "overwrite" takes the pictures of the other memory
-                instead, "merge" has both, "keep" changes nothing.
+        "overwrite" takes the pictures of the other memory instead, "merge" has both, "keep" changes nothing.
         """
         for name, pictures in other._pictures.items():
             if name not in self._pictures or policy == "overwrite":
