@@ -24,12 +24,9 @@ class Arc:
 
 @dataclass(frozen=True)
 class Token:
-    """What is said on an arc.
+    """What is said on an arc, in its pronunciations, of the grammar of that name.
 
-    Attributes:
-        phones: Its pronunciations.
-        heard: What it adds to the result; empty when another arc of the same words tells.
-        grammar: Name of the grammar that it belongs to.
+    `heard` is what it adds to the result, empty when another arc of the same words tells.
     """
 
     phones: Sequence[str]
@@ -51,11 +48,7 @@ class Network:
 def build(
     grammars: Iterable[g.Grammar], pronounce: Callable[[str], Sequence[str]], other_phones: Sequence[str]
 ) -> Network:
-    """The network of several grammars, any of which may be said.
-
-    Args:
-        pronounce: Pronunciations of a word.
-        other_phones: Sounds that other speech is made of.
+    """The network of several grammars, any of which may be said; other speech is made of `other_phones`.
 
     Raises:
         BadValue: The grammars are too large.

@@ -31,12 +31,10 @@ DEEPEST = 1e-3
 
 @dataclass(frozen=True)
 class Likeness:
-    """What tells speech from tones.
+    """What tells speech from tones: how much the most voiced parts repeat themselves, 0..1, and two more figures.
 
-    Attributes:
-        voice: How much the most voiced parts repeat themselves, 0..1.
-        tone: Share of the power that one single tone has in each loud frame, 0..1, on average.
-        change: How much the shape of the spectrum changes while it sounds, dB.
+    They are the share of the power that one single tone has in each loud frame, 0..1, on average, and how much the
+    shape of the spectrum changes while it sounds, dB.
     """
 
     voice: float
