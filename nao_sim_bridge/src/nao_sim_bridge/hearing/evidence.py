@@ -38,6 +38,10 @@ class Piece:
     def frames(self) -> int:
         return self.end - self.start + 1
 
+    def frames_within(self, start: int, end: int) -> int:
+        """How many of its frames lie between two frames, both included."""
+        return max(min(end, self.end) - max(start, self.start) + 1, 0)
+
 
 @dataclass(frozen=True)
 class Evidence:
@@ -123,18 +127,10 @@ def distance(phones: Sequence[str], others: Sequence[str]) -> float:
 
 def score_within(found: Iterable[Piece], start: int, end: int) -> float:
     """Score of what was found between two frames (both included), each piece counted for its part in between."""
-    total = 0.0
-    for piece in found:
-        common = min(end, piece.end) - max(start, piece.start) + 1
-        total += piece.score * max(common, 0) / piece.frames
-    return total
+    return sum(piece.score * piece.frames_within(start, end) / piece.frames for piece in found)
 
 
 def words_within(found: Sequence[Piece], start: int, end: int) -> list[Piece]:
     """The words that lie between two frames for the most part, and those that fill most of what is between."""
-    inside = []
-    for piece in found:
-        common = min(end, piece.end) - max(start, piece.start) + 1
-        if piece.phones and 2 * common >= min(piece.frames, end - start + 1):
-            inside.append(piece)
-    return inside
+    most = end - start + 1
+    return [p for p in found if p.phones and 2 * p.frames_within(start, end) >= min(p.frames, most)]

@@ -108,7 +108,9 @@ class VoiceActivity:
 
     def _take(self, frame: np.ndarray) -> Iterator[SpeechChange | Utterance]:
         s = self._settings
-        loud = self._is_loud(frame)
+        level = self._level(frame)
+        self._levels.append(level)
+        loud = self._stands_out(level)
         self._loud.append(loud)
         if not self._present:
             self._keep(frame)
@@ -121,11 +123,6 @@ class VoiceActivity:
         if self._silent_frames * s.frame_s >= s.pause_s or len(self._speech) * s.frame_s >= s.longest_s:
             yield from self._end()
 
-    def _is_loud(self, frame: np.ndarray) -> bool:
-        level = self._level(frame)
-        self._levels.append(level)
-        return self._stands_out(level)
-
     def _stands_out(self, level: float) -> bool:
         floor = float(np.percentile(self._levels, FLOOR_SHARE))
         return level > max(floor + self._settings.margin(self.sensitivity), self._settings.least_level_db)
@@ -137,9 +134,8 @@ class VoiceActivity:
 
     def _keep(self, frame: np.ndarray) -> None:
         self._before.append(frame)
-        if len(self._before) * self._settings.frame_s > self._settings.before_s + self._settings.window_frames * (
-            self._settings.frame_s
-        ):
+        s = self._settings
+        if len(self._before) * s.frame_s > s.before_s + s.window_frames * s.frame_s:
             self._background.append(self._before.popleft())
 
     def _begin(self) -> SpeechChange:
