@@ -112,8 +112,9 @@ def _circle(points: np.ndarray) -> np.ndarray | None:
 class Ball:
     """A red ball in a picture; its quality says how much it looks like one, up to 1.
 
-    The direction of its centre is alpha, to the left, and beta, downwards; that and the angular radius are in rad.
-    Its place is x, 0 at the left edge of the picture to 1 at the right one, and y, likewise from the upper edge down.
+    The direction of its centre is alpha, seen from above, to the left, and beta, seen from the side, downwards; these
+    and its angular radius are in rad. Its centre is at x, 0 at the left edge of the picture to 1 at the right one, and
+    y, likewise from the upper edge down.
     """
 
     alpha: float

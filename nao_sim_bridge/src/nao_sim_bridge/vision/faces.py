@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from nao_sim_bridge.cameras.optics import Optics
-from nao_sim_bridge.vision.faces_points import Box, FacePoints, Point, describe, find_eyes, find_points
+from nao_sim_bridge.vision.faces_features import Box, FacePoints, Point, describe, find_eyes, find_points
 
 # Which cascade finds faces, and which has to agree in the place that it found.
 FINDER, SECOND_OPINION = "haarcascade_frontalface_alt.xml", "haarcascade_frontalface_default.xml"

@@ -132,10 +132,10 @@ def _peak(values: np.ndarray) -> float:
 class Landmark:
     """A landmark in a picture; its quality says how much its fans look like those of the number, up to 1.
 
-    The direction of its middle is alpha, to the left, and beta, downwards; width and height are the angles it fills,
-    and size is the one its disc would fill seen from the front, from the longest diameter; the heading is its turn in
-    the picture, counterclockwise; all in rad. Its middle is at x, 0 at the left edge of the picture to 1 at the right
-    one, and y, likewise from the upper edge down.
+    Angles are in rad. The direction of its middle is alpha, seen from above, to the left, and beta, seen from the side,
+    downwards. Width and height are the angles that it fills; the size is the one that its disc would fill seen from the
+    front, by the longest diameter. The heading is its turn in the picture, counterclockwise. Its middle is at x, 0 at
+    the left edge of the picture to 1 at the right one, and y, likewise from the upper edge down.
     """
 
     number: int
