@@ -39,24 +39,15 @@ class Track:
         self.loop = loop
         self._segments: tuple[Segment, ...] = ()
 
-    @property
-    def running(self) -> Segment | None:
-        """The segment that was not broken off."""
-        last = self._segments[-1] if self._segments else None
-        return last if last is not None and last.end is None else None
-
     def start(self, frame: int, offset: int) -> None:
         """Let the sound's frame `offset` sound at `frame`, and what follows after it."""
         self._segments = (*self._segments, Segment(frame, offset, None))
 
     def stop(self, frame: int) -> None:
         """Break off at `frame`."""
-        running = self.running
-        if running is not None:
-            if running.begin >= frame:
-                self._segments = self._segments[:-1]
-            else:
-                self._segments = (*self._segments[:-1], running._replace(end=frame))
+        if self._segments and self._segments[-1].end is None:
+            *before, running = self._segments
+            self._segments = (*before, running._replace(end=frame)) if running.begin < frame else tuple(before)
 
     def last_frame(self) -> int | None:
         """Where the last sound of it is over; None when that is open."""

@@ -56,7 +56,10 @@ class Approach:
         if all(abs(a) <= factor * limit for a, limit in zip(away, self.relative.tolerances)):
             if locomotion.active and self._goal is not None and not self._there:
                 return  # it walks the last steps
-            self._arrive()
+            if not self._there:
+                self._there = True
+                for call in self.reached:
+                    call()
             return
         self._there = False
         if time < self._next or (locomotion.active and self._goal is not None and not self._moved(goal)):
@@ -89,12 +92,6 @@ class Approach:
             math.hypot(goal.x - self._goal.x, goal.y - self._goal.y) > GOAL_MOVED
             or abs(turn_to(self._goal.yaw, goal.yaw)) > GOAL_TURNED
         )
-
-    def _arrive(self) -> None:
-        if not self._there:
-            self._there = True
-            for call in self.reached:
-                call()
 
 
 def goal_beside(robot: FootPose, place: Point, relative: Relative) -> FootPose:
