@@ -26,8 +26,8 @@ import numpy as np
 from nao_sim_bridge.base.samples import RATE, Sound, pcm16
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.hearing.array import microphone_array
 from nao_sim_bridge.hearing.detection import SoundDetector
+from nao_sim_bridge.hearing.localisation import microphone_array
 from nao_sim_bridge.hearing.localiser import Localiser
 from nao_sim_bridge.sound.ears import BLOCK
 from nao_sim_bridge.sound.sources import SoundSource

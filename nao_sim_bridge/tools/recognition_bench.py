@@ -15,8 +15,7 @@ from nao_sim_bridge.hearing.grammars.grammar import vocabulary
 from nao_sim_bridge.hearing.listening import Hypothesis, Listening, Recognised
 from nao_sim_bridge.hearing.voice_activity import RATE, SpeechChange
 from nao_sim_bridge.hearing.worker import Ear
-from nao_sim_bridge.speech.engines import Engines
-from nao_sim_bridge.speech.speech import Utterance
+from nao_sim_bridge.speech.engines import Engines, Utterance
 
 PHRASES = Path(__file__).with_name("recognition_phrases.json")
 VOICES = {

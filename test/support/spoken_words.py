@@ -8,8 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from nao_sim_bridge.base.samples import Sound
-from nao_sim_bridge.speech.engines import Engines
-from nao_sim_bridge.speech.speech import Utterance
+from nao_sim_bridge.speech.engines import Engines, Utterance
 
 RATE = 16000
 BLOCK = 2720

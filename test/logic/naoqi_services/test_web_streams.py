@@ -19,7 +19,7 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.sound.web_fetch import Refused, anything, checked_addresses, fetch, is_public
 from nao_sim_bridge.naoqi.sound.web_stream import MODULE, WebStreams
-from nao_sim_bridge.sound.reader import SoundReader
+from nao_sim_bridge.sound.files import SoundReader
 
 SIZES = load_sizes().stream
 PATIENCE = 20.0

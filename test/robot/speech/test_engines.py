@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from waits import hold
 
-from nao_sim_bridge.speech.engines import Engines
-from nao_sim_bridge.speech.speech import SpeechError, Utterance
+from nao_sim_bridge.speech.engines import Engines, SpeechError, Utterance
 from nao_sim_bridge.speech.voices import load_voices
 
 ENGLISH = ("flite", "slt")

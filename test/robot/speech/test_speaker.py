@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from nao_sim_bridge.speech.clips import Style
+from nao_sim_bridge.speech.engines import SpeechError
 from nao_sim_bridge.speech.sentences import sentences
 from nao_sim_bridge.speech.speaker import Speaker
-from nao_sim_bridge.speech.speech import SpeechError
 from nao_sim_bridge.speech.studio import Studio
 from nao_sim_bridge.speech.tags import Cue, Gate
 from nao_sim_bridge.speech.voices import Voice, load_voices

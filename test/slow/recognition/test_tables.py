@@ -10,10 +10,10 @@ from ear_sounds import BLOCK, PLACES, RATE, background, harmonics, heard, noise,
 from spoken_words import LEVEL, blocks, in_a_room, spoken
 from spoken_words import RATE as SPEECH_RATE
 
-from nao_sim_bridge.hearing.array import direction, microphone_array
 from nao_sim_bridge.hearing.detection import SoundDetector
 from nao_sim_bridge.hearing.grammars.grammar import vocabulary
 from nao_sim_bridge.hearing.listening import Listening, Recognised
+from nao_sim_bridge.hearing.localisation import direction, microphone_array
 from nao_sim_bridge.hearing.localiser import Localiser
 from nao_sim_bridge.hearing.worker import Ear
 

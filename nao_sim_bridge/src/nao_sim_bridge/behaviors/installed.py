@@ -111,11 +111,7 @@ class InstalledBehaviors:
 
 @lru_cache(maxsize=None)
 def shipped_behaviors() -> Mapping[str, Behavior]:
-    """The behaviours of the files that come with the simulator, read once.
-
-    Raises:
-        ConfigError: A file has a wrong, unknown or missing entry, or two have the same behaviour.
-    """
+    """The behaviours of the files that come with the simulator, read once; a ConfigError for what is wrong in them."""
     found: dict[str, Behavior] = {}
     for path in sorted(config_file(FOLDER).glob("*.yaml")):
         for name, behavior in read_behaviors(path).items():

@@ -25,11 +25,7 @@ Read = Callable[[str], bytes]
 
 
 def read_package(path: Path) -> list[Behavior]:
-    """The behaviours of a file, or of the package whose manifest.xml it is.
-
-    Raises:
-        ConfigError: It is no such file, or there is something in it that cannot be played.
-    """
+    """The behaviours of a file, or of the package whose manifest.xml it is; a ConfigError for what cannot be played."""
     ending = path.suffix.lower()
     if ending in TEXT_FILES:
         return list(read_behaviors(path).values())
@@ -45,11 +41,7 @@ def read_package(path: Path) -> list[Behavior]:
 
 
 def renamed(behaviors: list[Behavior], name: str) -> list[Behavior]:
-    """The same behaviours under another name, or below it when there are several.
-
-    Raises:
-        ConfigError: It is no name.
-    """
+    """The same behaviours under another name, or below it when there are several; a ConfigError when it is no name."""
     name = checked_name(name.strip("/"), "localPath")
     if len(behaviors) == 1:
         return [replace(behaviors[0], name=name)]

@@ -169,9 +169,10 @@ class BehaviorPlayer:
     def _command(self, step: Say | GoToPosture, run: BehaviorRun) -> Task:
         if isinstance(step, Say):
             return run.watch_command(self._speak(step.text, step.animated), lambda error: self._fail(run, step, error))
-        settled = lambda error, reached=True: self._fail(  # noqa: E731
-            run, step, error or (None if reached else SimulationError("the robot did not get there"))
-        )
+
+        def settled(error: Exception | None, reached: bool = True) -> None:
+            self._fail(run, step, error or (None if reached else SimulationError("the robot did not get there")))
+
         return run.watch_command(self._go_to(step.name, step.speed), settled)
 
     def _fail(self, run: BehaviorRun, step: Step, error: Exception | None) -> None:

@@ -61,15 +61,15 @@ def read_behaviors(path: Path) -> dict[str, Behavior]:
     Raises:
         ConfigError: It cannot be read, or has a wrong, unknown or missing entry.
     """
-    return behaviors_of(_content(path), path.name)
+    try:
+        content = load_yaml(read_bounded(path, LARGEST_FILE).decode("utf-8"))
+    except (OSError, ValueError, yaml.YAMLError) as error:
+        raise ConfigError(path.name, f"cannot be read: {error}") from error
+    return behaviors_of(content, path.name)
 
 
 def behaviors_of(content: Any, file: str) -> dict[str, Behavior]:
-    """The behaviours that the content of a file describes.
-
-    Raises:
-        ConfigError: As above.
-    """
+    """The behaviours that the content of a file describes, as `read_behaviors`."""
     tables = check_keys(content, file, ["behaviors"], ["_meta"])["behaviors"]
     if not isinstance(tables, Mapping) or not tables:
         raise ConfigError(f"{file}: behaviors", f"is {tables!r}, not a mapping of names to behaviours")
@@ -77,21 +77,10 @@ def behaviors_of(content: Any, file: str) -> dict[str, Behavior]:
 
 
 def checked_name(name: Any, where: str) -> str:
-    """A name that a behaviour may have.
-
-    Raises:
-        ConfigError: It is none.
-    """
+    """A name that a behaviour may have; else a ConfigError."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or {".", ".."} & set(name.split("/")):
         raise ConfigError(where, f"{name!r} is no name: letters, digits, _ - and . are, in parts divided by /")
     return name
-
-
-def _content(path: Path) -> Any:
-    try:
-        return load_yaml(read_bounded(path, LARGEST_FILE).decode("utf-8"))
-    except (OSError, ValueError, yaml.YAMLError) as error:
-        raise ConfigError(path.name, f"cannot be read: {error}") from error
 
 
 def _behavior(name: Any, entry: Any, where: str) -> Behavior:

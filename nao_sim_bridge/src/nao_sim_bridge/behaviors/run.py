@@ -13,12 +13,7 @@ SAME = 1e-6
 
 
 class BehaviorRun:
-    """What a behaviour that is played has begun.
-
-    Attributes:
-        behavior: Which it is.
-        task: Ends with it.
-    """
+    """What a behaviour that is played has begun; its task ends with it."""
 
     def __init__(self, behavior: Behavior, task: Task, leds: LedBank) -> None:
         self.behavior = behavior
@@ -36,12 +31,9 @@ class BehaviorRun:
         return self._stopped or self.task.finished
 
     def watch(self, task: Task, end: Callable[[], object] | None = None, needed: bool = True) -> Task:
-        """Have a task end with the behaviour; the task.
+        """Have a task that the behaviour has begun end with it, by killing it when `end` is None; the task.
 
-        Args:
-            task: What the behaviour has begun.
-            end: How it is ended; by killing it when None.
-            needed: Whether the behaviour ends when somebody else kills the task.
+        When somebody else kills a task that is needed, the behaviour ends.
         """
         self._ends[task] = end or task.kill
 
@@ -58,8 +50,7 @@ class BehaviorRun:
     def watch_command(self, command: Task, settled: Callable[..., None]) -> Task:
         """As `watch`, for a command whose result may be a further task, and so on; a task that ends when all have.
 
-        Args:
-            settled: Called at its end with the error or None, and with the result if there is one.
+        `settled` is called at its end with the error or None, and with the result if there is one.
         """
         over = Task(command.name, 0)
         now = [command]
@@ -103,27 +94,20 @@ class BehaviorRun:
 
     def finish(self) -> None:
         """All steps are done."""
-        self._end()
+        self.stop()
         self.task.finish()
 
     def fail(self, error: Exception) -> None:
         """A step cannot be done: the others end, too."""
         if not self.over:
-            self._end()
+            self.stop()
             self.task.finish(error=error)
 
     def stop(self) -> None:
-        """Somebody has killed the task of the behaviour."""
-        self._end()
-
-    def _end(self) -> None:
+        """End all; LEDs show again what they showed before, but for those that somebody else has changed since."""
         self._stopped = True
         for end in list(self._ends.values()):
             end()
-        self._restore_lights()
-
-    def _restore_lights(self) -> None:
-        """Have LEDs show what they showed before, but for those that somebody else has changed since."""
         half_way = {index for indices in self._fades.values() for index in indices}
         now = self._leds.values
         own = (i for i, asked in self._asked.items() if i in half_way or abs(now[i] - asked) < SAME)

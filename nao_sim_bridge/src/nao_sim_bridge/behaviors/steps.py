@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Mapping, Tuple, Union
 
 from nao_sim_bridge.base.errors import SimulationError
@@ -19,9 +19,8 @@ class BehaviorFailed(SimulationError):
 class JointWay:
     """Where one joint goes, from wherever it is when the step begins.
 
-    Attributes:
-        points: Key points, times in s after the begin of the step, rising from above 0; angles in rad (hands 0..1).
-        curved: Whether the handles of the points shape the way; else it is smooth and at rest at both ends.
+    Times of its points are in s after that, rising from above 0; angles in rad (hands 0..1). Their handles shape a
+    curved way; else it is smooth and at rest at both ends.
     """
 
     points: Tuple[KeyPoint, ...]
@@ -35,11 +34,7 @@ class JointWay:
 
 @dataclass(frozen=True)
 class Joints:
-    """Joints that move through key points, all at once.
-
-    Attributes:
-        ways: By name of the joint.
-    """
+    """Joints that move through key points, all at once; their ways are by name."""
 
     ways: Mapping[str, JointWay]
 
@@ -51,24 +46,14 @@ class Joints:
 
 @dataclass(frozen=True)
 class Gesture:
-    """An animation of arms and head that ends where it began.
-
-    Attributes:
-        name: Of the animation, as the library of animations has it.
-    """
+    """An animation of arms and head that ends where it began, by its name in the library of animations."""
 
     name: str
 
 
 @dataclass(frozen=True)
 class Lights:
-    """LEDs that fade to a colour or to an intensity.
-
-    Attributes:
-        group: LED, or group of LEDs.
-        color: Red, green, blue, 0..1; of LEDs with one colour only the blue part counts.
-        duration: s.
-    """
+    """An LED or a group that fades, in s, to red, green, blue, 0..1; LEDs of one colour take the blue part."""
 
     group: str
     color: Tuple[float, float, float]
@@ -77,12 +62,7 @@ class Lights:
 
 @dataclass(frozen=True)
 class Say:
-    """A text that is spoken.
-
-    Attributes:
-        text: What.
-        animated: Whether gestures go with it.
-    """
+    """A text that is spoken, animated by gestures or not."""
 
     text: str
     animated: bool = False
@@ -90,12 +70,7 @@ class Say:
 
 @dataclass(frozen=True)
 class GoToPosture:
-    """A predefined posture that the robot goes to.
-
-    Attributes:
-        name: Of the posture.
-        speed: Share of the top speed, above 0 to 1.
-    """
+    """A predefined posture that the robot goes to; the speed is a share of the top speed, above 0 to 1."""
 
     name: str
     speed: float = 0.8
@@ -103,11 +78,7 @@ class GoToPosture:
 
 @dataclass(frozen=True)
 class Wait:
-    """Nothing for a while.
-
-    Attributes:
-        duration: s.
-    """
+    """Nothing for a while, s."""
 
     duration: float
 
@@ -128,12 +99,7 @@ class Together:
 
 @dataclass(frozen=True)
 class Repeat:
-    """A step again and again.
-
-    Attributes:
-        step: What.
-        times: How often; None until somebody stops the behaviour.
-    """
+    """A step again and again; None times are until somebody stops the behaviour."""
 
     step: Step
     times: int | None
@@ -144,21 +110,16 @@ Step = Union[Joints, Gesture, Lights, Say, GoToPosture, Wait, InTurn, Together, 
 
 @dataclass(frozen=True, eq=False)
 class Behavior:
-    """A behaviour of the robot.
+    """A behaviour by NAOqi's path, for example "animations/Stand/Gestures/Hey_1"; its help is one line about it.
 
-    Attributes:
-        name: NAOqi's path, for example "animations/Stand/Gestures/Hey_1".
-        step: What it does.
-        help: One line about it.
-        nature: "solitary", "interactive" or "no nature": whether autonomous life may make it its activity.
-        tags: What it is for.
+    Its nature, "solitary", "interactive" or "no nature", says whether autonomous life may make it its activity.
     """
 
     name: str
     step: Step
     help: str = ""
     nature: str = NO_NATURE
-    tags: Tuple[str, ...] = field(default=())
+    tags: Tuple[str, ...] = ()
 
 
 def words(step: Step) -> str:

@@ -61,11 +61,7 @@ def read_xar(path: Path) -> Step:
 
 
 def xar_step(content: bytes, where: str) -> Step:
-    """What the content of a behavior.xar does.
-
-    Raises:
-        ConfigError: As above.
-    """
+    """What the content of a behavior.xar does, as `read_xar`."""
     root = parse_xml(content, where)
     for element in root.iter():
         element.tag = element.tag.rsplit("}", 1)[-1]  # the namespace has had the names of several owners
@@ -75,11 +71,7 @@ def xar_step(content: bytes, where: str) -> Step:
 
 
 def parse_xml(content: bytes, where: str) -> Element:
-    """The root of what is written in XML.
-
-    Raises:
-        ConfigError: It is no XML, too much of it, or declares a document type.
-    """
+    """The root of what is written in XML; a ConfigError for too much of it, or with a document type."""
     # Entities can make a short file one that fills the memory; Choregraphe writes none. UTF-16, of which every other
     # byte is 0, would hide them.
     if len(content) > LARGEST_FILE or DOCTYPE in content or b"\0" in content:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
-from typing import Iterable, Sequence, Tuple
+from typing import Callable, Iterable, Sequence, Tuple
 
 import numpy as np
 import pocketsphinx
 
 from nao_sim_bridge.base.whole_file import memory_file
-from nao_sim_bridge.hearing.everyday_speech import EverydaySpeech, Piece, log_score, pieces, search
-from nao_sim_bridge.hearing.evidence import Evidence, evidence
+from nao_sim_bridge.hearing.evidence import Evidence, Piece, evidence
 from nao_sim_bridge.hearing.grammars.grammar import OTHER_SPEECH, Grammar
 from nao_sim_bridge.hearing.listening import Hypothesis
 from nao_sim_bridge.hearing.network import OTHER, Arc, Network, build, spoken_word
@@ -32,16 +32,17 @@ PHRASES, SOUNDS = "phrases", "sounds"
 MOST_SEARCHES = 12
 # Frames a second, in which places of words are counted.
 FRAME_RATE = 100.0
+# The decoder's scores are logarithms divided by this.
+SCORE_UNIT = 1.0 / 1024.0
+# How marks of silence and of noises begin, in the place of words.
+NO_WORD = ("<", "[", "+")
 
 
 @dataclass(frozen=True)
 class Way:
-    """One way through the network.
+    """One way through the network: what was said, other speech as well, and the score of the whole utterance.
 
-    Attributes:
-        tokens: What was said, other speech as well.
-        score: Of the whole utterance.
-        pieces: From the first to the last word of its phrases, with the silence between them.
+    Its pieces are those from the first to the last word of its phrases, with the silence between them.
     """
 
     tokens: Tuple[str, ...]
@@ -53,10 +54,7 @@ class Way:
 class Heard:
     """What an utterance may be other than a phrase.
 
-    Attributes:
-        origin: Time at which its sound begins, with the silence before it, s.
-        onset: Time of its first sound, s.
-        end: Time of its last sound, s.
+    It has the times of its origin, with the silence before it, of its first sound and of its last one, s.
     """
 
     everyday: Sequence[Piece]
@@ -66,11 +64,57 @@ class Heard:
     end: float
 
 
-class Decoder:
-    """Recognises phrases of one set of grammars.
+class EverydaySpeech:
+    """Writes down any English speech as well as it can, with a large dictionary: what phrases are measured against."""
 
-    Args:
-        grammars: What may be said; with none, nothing is ever recognised.
+    def __init__(self) -> None:
+        pocketsphinx.set_loglevel("FATAL")
+        # One fast search is enough: the sense of what is said does not matter here.
+        self._engine = pocketsphinx.Decoder(
+            pocketsphinx.Config(
+                lm=pocketsphinx.get_model_path("en-us/en-us.lm.bin"),
+                dict=pocketsphinx.get_model_path("en-us/cmudict-en-us.dict"),
+                cmn="batch",
+                fwdflat=False,
+                bestpath=False,
+                loglevel="FATAL",
+            )
+        )
+
+    def heard(self, sound: bytes) -> list[Piece]:
+        """The words of an utterance of int16 samples, 16 kHz, and the silence between them."""
+        engine = self._engine
+        heard = search(engine, sound)
+        return pieces(engine, lambda word: (engine.lookup_word(word) or "").split()) if heard else []
+
+
+def search(engine: pocketsphinx.Decoder, sound: bytes) -> bool:
+    """Have a decoder search an utterance of int16 samples, 16 kHz; whether it found something."""
+    engine.start_utt()
+    engine.process_raw(sound, False, True)
+    engine.end_utt()
+    return engine.hyp() is not None
+
+
+def pieces(engine: pocketsphinx.Decoder, phones_of: Callable[[str], Sequence[str]]) -> list[Piece]:
+    """What the last search of a decoder found, which was something.
+
+    `phones_of` gives the phones of a word, named with the number of its pronunciation; it is called for words only.
+    """
+    found = []
+    for s in engine.seg():
+        phones = () if s.word.startswith(NO_WORD) else tuple(phones_of(s.word))
+        found.append(Piece(FURTHER.sub("", s.word), phones, s.start_frame, s.end_frame, log_score(s.ascore)))
+    return [piece for piece in found if piece.frames > 0]
+
+
+def log_score(likelihood: float) -> float:
+    """Logarithm of a likelihood as the decoder tells it."""
+    return math.log(max(likelihood, 1e-300)) / SCORE_UNIT
+
+
+class Decoder:
+    """Recognises phrases of one set of grammars; with none, nothing is ever recognised.
 
     Raises:
         NoPronunciation: A word cannot be said.

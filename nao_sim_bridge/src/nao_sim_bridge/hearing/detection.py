@@ -32,13 +32,9 @@ START, END = 1, 0
 
 @dataclass(frozen=True)
 class Edge:
-    """Beginning or end of a sound.
+    """Beginning or end of a sound, by its kind, `START` or `END`, at a simulated time, s; confidence 0..1.
 
-    Attributes:
-        kind: `START` or `END`.
-        index: Sample of the block at which it is; 0 when it was before the block.
-        time: Simulated time, s.
-        confidence: 0..1.
+    Its index is the sample of the block at which it is, 0 when it was before the block.
     """
 
     kind: int
@@ -48,17 +44,11 @@ class Edge:
 
 
 class SoundDetector:
-    """Follows the sound of the microphones, block by block.
+    """Follows the sound of the microphones, block by block; at a higher sensitivity, 0..1, a sound may be softer.
 
-    Args:
-        rate: Hz.
-        floor: Power of a background, in samples squared over all bands, that is taken for granted at the start; None
-            takes what is heard first for background.
-
-    Attributes:
-        sensitivity: 0..1; the higher, the softer a sound may be.
-        spectra: (frames, bins, microphones) of the last block.
-        loud: Whether in the last block something stood out.
+    `floor` is the power of a background, in samples squared over all bands, that is taken for granted at the start;
+    None takes what is heard first for background. Of the last block there are the spectra, (frames, bins, microphones),
+    and whether something stood out: `loud`.
     """
 
     def __init__(self, rate: int, floor: float | None = None) -> None:
@@ -83,12 +73,7 @@ class SoundDetector:
         return np.repeat(floor / widths, widths)
 
     def feed(self, samples: np.ndarray, time: float) -> list[Edge]:
-        """Listen to a block; the beginnings and ends of sounds in it.
-
-        Args:
-            samples: (n, microphones) int16.
-            time: Simulated time of its first sample, s.
-        """
+        """Listen to a block, (n, microphones) int16 from `time`, s, on; the beginnings and ends of sounds in it."""
         rest = self._rest if self._rest.shape[1:] == samples.shape[1:] else samples[:0]
         joined = np.concatenate([rest, samples])
         first = -len(rest)
@@ -99,13 +84,9 @@ class SoundDetector:
         self.spectra = short_spectra(joined, self._rate)
         self._rest = joined[len(self.spectra) * HOP :]
         powers = np.add.reduceat((np.abs(self.spectra) ** 2).mean(axis=2), self._starts, axis=1)
-        edges = []
-        for number, excess in enumerate(self._excesses(powers)):
-            # What is new in a frame is its second half.
-            edge = self._follow(excess, first + number * HOP + FRAME - HOP, time)
-            if edge is not None:
-                edges.append(edge)
-        return edges
+        new = first + FRAME - HOP  # what is new in a frame is its second half
+        edges = [self._follow(excess, new + number * HOP, time) for number, excess in enumerate(self._excesses(powers))]
+        return [edge for edge in edges if edge is not None]
 
     def _excesses(self, powers: np.ndarray) -> list[float]:
         """By how much each frame stands out, dB; moves the floors along."""

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Sequence
+from typing import Iterable, Sequence, Tuple
 
-from nao_sim_bridge.hearing.everyday_speech import Piece, score_within, words_within
 from nao_sim_bridge.hearing.settings import ConfidenceSettings
 
 # Bounds of the figures: beyond, they say nothing more.
@@ -22,15 +21,35 @@ VOWEL_COST, ALIKE_COST, COST = 0.6, 0.5, 1.0
 
 
 @dataclass(frozen=True)
-class Evidence:
-    """What speaks for a phrase and against it.
+class Piece:
+    """A word, or silence between words, as a decoder found it from its first to its last frame.
 
-    Attributes:
-        difference: How different it sounds from the everyday words in its place, for each of its phones, 0..2.
-        everyday: How much better than those words it fits the sound, a frame, -2..2.
-        sounds: How much better than any sequence of sounds it fits, a frame; hardly above 0, at least -5.
-        same: Whether those words are its own.
-        length: 0..1, number of its phones; 1 for nine and more.
+    The word is without the number of its pronunciation; the phones are how it was said, none for silence; the score
+    says how well it fits the sound, as logarithm of a likelihood.
+    """
+
+    word: str
+    phones: Tuple[str, ...]
+    start: int
+    end: int
+    score: float
+
+    @property
+    def frames(self) -> int:
+        return self.end - self.start + 1
+
+    def frames_within(self, start: int, end: int) -> int:
+        """How many of its frames lie between two frames, both included."""
+        return max(min(end, self.end) - max(start, self.start) + 1, 0)
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What speaks for a phrase and against it, beside the everyday words in its place.
+
+    The difference is how differently it sounds from them, for each of its phones, 0..2; `everyday` is how much better
+    than them it fits the sound, a frame, -2..2; `sounds` is the same beside any sequence of sounds, hardly above 0, at
+    least -5; `same` says whether they are its own words. The length is 1 for nine phones and more.
     """
 
     difference: float
@@ -60,14 +79,10 @@ def evidence(
     sounds: Sequence[Piece],
     inside: bool = False,
 ) -> Evidence:
-    """Weigh a phrase.
+    """Weigh a phrase, its words and the silence between them, beside its utterance in everyday words and single sounds.
 
-    Args:
-        phrase: Its words and the silence between them.
-        spoken: Its words as they are written.
-        everyday: The utterance in everyday words.
-        sounds: The utterance in single sounds.
-        inside: Whether there may be other speech around the phrase; else all words of the utterance should be its own.
+    `spoken` are its words as they are written. Unless other speech may be around it (`inside`), all words of the
+    utterance should be its own.
     """
     start, end = phrase[0].start, phrase[-1].end
     frames = end - start + 1
@@ -108,3 +123,14 @@ def distance(phones: Sequence[str], others: Sequence[str]) -> float:
             following.append(min(changed, row[index + 1] + COST, following[-1] + COST))
         row = following
     return row[-1]
+
+
+def score_within(found: Iterable[Piece], start: int, end: int) -> float:
+    """Score of what was found between two frames (both included), each piece counted for its part in between."""
+    return sum(piece.score * piece.frames_within(start, end) / piece.frames for piece in found)
+
+
+def words_within(found: Sequence[Piece], start: int, end: int) -> list[Piece]:
+    """The words that lie between two frames for the most part, and those that fill most of what is between."""
+    most = end - start + 1
+    return [p for p in found if p.phones and 2 * p.frames_within(start, end) >= min(p.frames, most)]

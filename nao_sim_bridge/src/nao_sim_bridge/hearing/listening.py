@@ -10,15 +10,7 @@ from nao_sim_bridge.hearing.grammars.grammar import Grammar
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """One phrase that may have been said.
-
-    Attributes:
-        phrase: As the grammar writes it.
-        confidence: 0..1.
-        grammar: Name of the grammar that it belongs to.
-        onset: Time of its first sound, s.
-        end: Time of its last sound, s.
-    """
+    """A phrase of a grammar that may have been said, with a confidence of 0..1; onset and end of its sound in s."""
 
     phrase: str
     confidence: float
@@ -29,13 +21,7 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Recognised:
-    """What was made of an utterance.
-
-    Attributes:
-        start: Time at which it began, s.
-        end: Time at which it ended, s.
-        hypotheses: What may have been said, best first; none when it was nothing that is listened for.
-    """
+    """What may have been said in an utterance, best first, none when it was nothing listened for; times in s."""
 
     start: float
     end: float
@@ -44,13 +30,7 @@ class Recognised:
 
 @dataclass(frozen=True)
 class Listening:
-    """What to listen for, and how.
-
-    Attributes:
-        grammars: Sets of phrases.
-        hypotheses: How many of the best ones to tell.
-        sensitivity: 0..1; the higher, the quieter speech may be.
-    """
+    """What to listen for, how many of the best hypotheses to tell, and a sensitivity, 0..1, for quieter speech."""
 
     grammars: Tuple[Grammar, ...] = ()
     hypotheses: int = 1

@@ -9,9 +9,8 @@ from typing import Callable, Sequence
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.hearing.array import MicrophoneArray
 from nao_sim_bridge.hearing.detection import START, SoundDetector
-from nao_sim_bridge.hearing.localisation import UPRIGHT, DirectionFinder
+from nao_sim_bridge.hearing.localisation import UPRIGHT, DirectionFinder, MicrophoneArray
 from nao_sim_bridge.hearing.spectra import CrossSpectra, cross_spectra
 from nao_sim_bridge.sound.sound_world import SoundWorld
 
@@ -29,14 +28,10 @@ FULL_SCALE = 32768.0
 
 @dataclass(frozen=True)
 class HeardSound:
-    """A sound that was located.
+    """A sound that was located, in the frame of the head as `Bearing`, with a confidence of 0..1.
 
-    Attributes:
-        time: Simulated time at which it begins in the block, or of the block itself if it has begun before, s.
-        azimuth: From ahead to the left, in the frame of the head, rad.
-        elevation: Upwards, in the frame of the head, rad.
-        confidence: 0..1.
-        energy: Root mean square of the samples, 0..32768.
+    Its time is the simulated one at which it begins in the block, or of the block itself if it has begun before, s; its
+    energy is the root mean square of the samples, 0..32768.
     """
 
     time: float
@@ -69,13 +64,10 @@ class Localiser:
         up: Sequence[float] = UPRIGHT,
         own_power: Callable[[], float] = lambda: 0.0,
     ) -> HeardSound | None:
-        """Listen to a block; the sound in it, if one stands out and has a direction.
+        """Listen to a block, (n, microphones) int16 from `time`, s, on; the sound that stands out and has a direction.
 
-        Args:
-            samples: (n, microphones) int16.
-            time: Simulated time of its first sample, s.
-            up: Unit vector upwards in the world, in the frame of the head.
-            own_power: Tells what the own loudspeakers add to the mean square of the samples; asked when it matters.
+        `up` is the unit vector upwards in the world, in the frame of the head. `own_power` tells what the own
+        loudspeakers add to the mean square of the samples; it is asked when it matters.
         """
         edges = self._detector.feed(samples, time)
         if not self._detector.loud:

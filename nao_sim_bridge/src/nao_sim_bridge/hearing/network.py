@@ -24,12 +24,9 @@ class Arc:
 
 @dataclass(frozen=True)
 class Token:
-    """What is said on an arc.
+    """What is said on an arc, in its pronunciations, of the grammar of that name.
 
-    Attributes:
-        phones: Its pronunciations.
-        heard: What it adds to the result; empty when another arc of the same words tells.
-        grammar: Name of the grammar that it belongs to.
+    `heard` is what it adds to the result, empty when another arc of the same words tells.
     """
 
     phones: Sequence[str]
@@ -51,11 +48,7 @@ class Network:
 def build(
     grammars: Iterable[g.Grammar], pronounce: Callable[[str], Sequence[str]], other_phones: Sequence[str]
 ) -> Network:
-    """The network of several grammars, any of which may be said.
-
-    Args:
-        pronounce: Pronunciations of a word.
-        other_phones: Sounds that other speech is made of.
+    """The network of several grammars, any of which may be said; other speech is made of `other_phones`.
 
     Raises:
         BadValue: The grammars are too large.
@@ -100,15 +93,19 @@ class _Builder:
     def _words(self, node: g.Words, start: int, end: int) -> None:
         states = [start, *(self._state() for _ in node.spoken[1:]), end]
         for position, (word, here, there) in enumerate(zip(node.spoken, states, states[1:])):
-            token = Token(self._pronounce(word), node.heard if position == 0 else "", self.grammar)
-            self._arc(here, there, self._name(word, token))
+            name = f"{word}-{len(self.network.tokens)}"
+            heard = node.heard if position == 0 else ""
+            self.network.tokens[name] = Token(self._pronounce(word), heard, self.grammar)
+            self._arc(here, there, name)
 
     def _anything(self, written: bool, start: int, end: int) -> None:
         """A loop of single sounds, which may be passed by."""
         loop = self._state()
         self._arc(start, loop)
         for phone in self._other_phones:
-            self._arc(loop, loop, self._other(phone, written))
+            name = f"{OTHER}{'written' if written else 'silent'}-{phone}"
+            self.network.tokens.setdefault(name, Token([phone], g.OTHER_SPEECH if written else "", ""))
+            self._arc(loop, loop, name)
         self._arc(loop, end)
 
     def _repeat(self, node: g.Repeat, start: int, end: int) -> None:
@@ -135,16 +132,6 @@ class _Builder:
     def _state(self) -> int:
         self.network.states += 1
         return self.network.states - 1
-
-    def _name(self, word: str, token: Token) -> str:
-        name = f"{word}-{len(self.network.tokens)}"
-        self.network.tokens[name] = token
-        return name
-
-    def _other(self, phone: str, written: bool) -> str:
-        name = f"{OTHER}{'written' if written else 'silent'}-{phone}"
-        self.network.tokens.setdefault(name, Token([phone], g.OTHER_SPEECH if written else "", ""))
-        return name
 
     def _arc(self, start: int, end: int, token: str | None = None) -> None:
         if len(self.network.arcs) >= MOST_ARCS:

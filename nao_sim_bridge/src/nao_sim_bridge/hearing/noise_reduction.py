@@ -20,18 +20,10 @@ def noise_spectrum(background: np.ndarray) -> np.ndarray:
 
 
 def reduce_noise(speech: np.ndarray, noise: np.ndarray, least_gain: float, smoothing: float) -> np.ndarray:
-    """Speech with less noise.
+    """Speech, (n,) samples, with less of the noise of `noise_spectrum`; of a band of noise only `least_gain` is left.
 
-    The gain of each band follows the decision-directed estimate of the signal-to-noise ratio.
-
-    Args:
-        speech: (n,) samples.
-        noise: From `noise_spectrum`.
-        least_gain: What is left of a band that is only noise, 0..1.
-        smoothing: Share of the frame before in the estimate, 0..1.
-
-    Returns:
-        (n,) samples.
+    The gain of each band follows the decision-directed estimate of the signal-to-noise ratio, in which the frame before
+    has the share `smoothing`.
 
     Source:
         Y. Ephraim, D. Malah: Speech enhancement using a minimum mean-square error short-time spectral amplitude

@@ -42,11 +42,7 @@ class NoPronunciation(SimulationError):
 
 
 class Pronouncer:
-    """Finds pronunciations.
-
-    Args:
-        dictionary: File with a word and its phones on each line, further ones of the same word as "word(2)".
-    """
+    """Finds pronunciations; each line of the dictionary has a word and its phones, further ones as "word(2)"."""
 
     def __init__(self, dictionary: Path) -> None:
         self._known = _read(dictionary)

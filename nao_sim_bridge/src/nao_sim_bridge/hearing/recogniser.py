@@ -6,6 +6,7 @@ import logging
 import queue
 import threading
 from concurrent.futures import Future
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Callable
 
@@ -92,10 +93,8 @@ class _Job:
 class Recogniser:
     """Recognises phrases in what is heard, in a process of its own. Any thread may call.
 
-    Args:
-        on_event: Called with each SpeechChange and Recognised, in order, in a thread of the recogniser.
-        on_progress: Called in that thread whenever `lag` has become smaller.
-        spare: Where a process may be had, and where it goes in the end; None to start and end one.
+    A thread of the recogniser calls `on_event` with each SpeechChange and Recognised, in order, and `on_progress`
+    whenever `lag` has become smaller. A process is had from, and goes back to, the spare one, if that is given.
     """
 
     def __init__(
@@ -145,12 +144,7 @@ class Recogniser:
         self._put(_Job("background", np.ascontiguousarray(samples)))
 
     def hear(self, time: float, samples: np.ndarray) -> None:
-        """Take the next block; returns at once.
-
-        Args:
-            time: Simulated time of its first sample, s.
-            samples: (n,) int16, 16 kHz.
-        """
+        """Take the next block, (n,) int16, 16 kHz, from a simulated time on, s; returns at once."""
         seconds = len(samples) / RATE
         if self._waiting > MOST_WAITING:
             if not self._left_out:
@@ -274,28 +268,22 @@ class Recogniser:
         return answer
 
     def _running(self) -> ChildProcess:
-        """The process; a new one listens for the same as the old one."""
-        if self._process is None:
-            self._process = self._spare_process()
+        """The process; a spare one that is well, or a new one, listens for the same as the old one."""
+        spare = self._spare.take() if self._process is None and self._spare is not None else None
+        if spare is not None:
+            with suppress(RecogniserError):
+                self._process = self._begun(spare)
         if self._process is None:
             process = ChildProcess(MODULE, (), "recogniser", RecogniserError, RecogniserRefused)
-            try:
-                process.receive(START_TIMEOUT, "start of speech recognition")
-                process.ask("listen", self._listening, ANSWER_TIMEOUT, "start of speech recognition")
-            except RecogniserError:
-                process.kill()
-                raise
-            self._process = process
+            self._process = self._begun(process, is_new=True)
         return self._process
 
-    def _spare_process(self) -> ChildProcess | None:
-        """The spare one, if there is one that is well."""
-        process = self._spare.take() if self._spare is not None else None
-        if process is None:
-            return None
+    def _begun(self, process: ChildProcess, is_new: bool = False) -> ChildProcess:
         try:
+            if is_new:
+                process.receive(START_TIMEOUT, "start of speech recognition")
             process.ask("listen", self._listening, ANSWER_TIMEOUT, "start of speech recognition")
         except RecogniserError:
             process.kill()
-            return None
+            raise
         return process

@@ -96,9 +96,5 @@ class RecognitionSettings:
 
 @lru_cache(maxsize=None)
 def load_recognition() -> RecognitionSettings:
-    """The settings of the package.
-
-    Raises:
-        ConfigError: The file does not hold what it should.
-    """
+    """The settings of the package; a ConfigError when the file does not hold what it should."""
     return read_settings(RecognitionSettings, config_file(FILE), ["_note", "_note"])

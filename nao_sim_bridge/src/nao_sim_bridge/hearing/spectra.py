@@ -16,14 +16,10 @@ QUANTUM = 1.0 / 12.0
 
 
 def short_spectra(samples: np.ndarray, rate: int) -> np.ndarray:
-    """Spectra of overlapping frames, scaled so that the squares over all bins of a frame add up to its mean square.
+    """(frames, bins, microphones) spectra of overlapping frames of (n, microphones) samples; only bins of `band(rate)`.
 
-    Args:
-        samples: (n, microphones), at least one frame; what does not fill a frame at the end is left out.
-        rate: Hz.
-
-    Returns:
-        (frames, bins, microphones), the bins of `band(rate)` only.
+    They are scaled so that the squares over all bins of a frame add up to its mean square. There is at least one frame;
+    what does not fill one at the end is left out.
     """
     frames = np.lib.stride_tricks.sliding_window_view(samples, FRAME, axis=0)[::HOP]  # frames, microphones, FRAME
     scale = np.sqrt(2.0 / FRAME / (WINDOW @ WINDOW))
@@ -50,11 +46,9 @@ def frequencies(rate: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class CrossSpectra:
-    """What the microphones have in common over a block.
+    """What microphones have in common over a block: (bins, microphones, microphones) means of x_i conj(x_j).
 
-    Attributes:
-        products: (bins, microphones, microphones) mean of x_i conj(x_j).
-        noise: (bins,) power at each microphone that the others do not share.
+    The noise, (bins,), is the power at each microphone that the others do not share.
     """
 
     products: np.ndarray

@@ -31,12 +31,11 @@ DEEPEST = 1e-3
 
 @dataclass(frozen=True)
 class Likeness:
-    """What tells speech from tones.
+    """What tells speech from noises and tones.
 
-    Attributes:
-        voice: How much the most voiced parts repeat themselves, 0..1.
-        tone: Share of the power that one single tone has in each loud frame, 0..1, on average.
-        change: How much the shape of the spectrum changes while it sounds, dB.
+    The voice is how much the most voiced parts repeat themselves, 0..1. The tone is the share of the power that one
+    single tone has in each loud frame, 0..1, on average. The change is that of the shape of the spectrum while it
+    sounds, dB.
     """
 
     voice: float

@@ -20,12 +20,7 @@ FLOOR_SHARE = 10.0
 
 @dataclass(frozen=True)
 class SpeechChange:
-    """Speech began or ended.
-
-    Attributes:
-        time: s.
-        present: Whether there is speech from now on.
-    """
+    """Speech began or ended at a time, s: whether it is present from then on."""
 
     time: float
     present: bool
@@ -33,14 +28,10 @@ class SpeechChange:
 
 @dataclass(frozen=True)
 class Utterance:
-    """A stretch of speech with a little silence around it.
+    """A stretch of speech with a little silence around it: (n,) float32 samples, -1..1, 16 kHz, from `origin` on.
 
-    Attributes:
-        start: Time at which the speech began, s.
-        end: Time at which it ended, s.
-        origin: Time of the first of `samples`, s.
-        samples: (n,) float32, -1..1, 16 kHz, with the silence.
-        background: (m,) float32, what it sounded like before, without speech; may be empty.
+    The speech itself began at `start` and ended at `end`, s. The background, (m,), is what it sounded like before,
+    without speech; it may be empty.
     """
 
     start: float
@@ -93,14 +84,9 @@ class VoiceActivity:
                 self._keep(frame)
 
     def hear(self, time: float, samples: np.ndarray) -> Iterator[SpeechChange | Utterance]:
-        """Take the next block.
+        """Take the next block, (n,) int16 or float samples in -1..1, 16 kHz; what began or ended in it, in order.
 
-        Args:
-            time: Time of its first sample, s; a gap before it makes everything start anew.
-            samples: (n,) int16 or float samples in -1..1, 16 kHz.
-
-        Yields:
-            What began or ended in it, in order.
+        A gap before its time, s, makes everything start anew.
         """
         heard = _scaled(samples)
         if self._time is not None and abs(self._time + len(self._rest) / RATE - time) > self._settings.frame_s:
@@ -122,7 +108,9 @@ class VoiceActivity:
 
     def _take(self, frame: np.ndarray) -> Iterator[SpeechChange | Utterance]:
         s = self._settings
-        loud = self._is_loud(frame)
+        level = self._level(frame)
+        self._levels.append(level)
+        loud = self._stands_out(level)
         self._loud.append(loud)
         if not self._present:
             self._keep(frame)
@@ -135,11 +123,6 @@ class VoiceActivity:
         if self._silent_frames * s.frame_s >= s.pause_s or len(self._speech) * s.frame_s >= s.longest_s:
             yield from self._end()
 
-    def _is_loud(self, frame: np.ndarray) -> bool:
-        level = self._level(frame)
-        self._levels.append(level)
-        return self._stands_out(level)
-
     def _stands_out(self, level: float) -> bool:
         floor = float(np.percentile(self._levels, FLOOR_SHARE))
         return level > max(floor + self._settings.margin(self.sensitivity), self._settings.least_level_db)
@@ -151,9 +134,8 @@ class VoiceActivity:
 
     def _keep(self, frame: np.ndarray) -> None:
         self._before.append(frame)
-        if len(self._before) * self._settings.frame_s > self._settings.before_s + self._settings.window_frames * (
-            self._settings.frame_s
-        ):
+        s = self._settings
+        if len(self._before) * s.frame_s > s.before_s + s.window_frames * s.frame_s:
             self._background.append(self._before.popleft())
 
     def _begin(self) -> SpeechChange:

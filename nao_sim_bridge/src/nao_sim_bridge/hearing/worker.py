@@ -15,8 +15,7 @@ from typing import Any, Iterable
 import pocketsphinx
 
 from nao_sim_bridge.base.child_process import error_text, pipe_to_parent, serve
-from nao_sim_bridge.hearing.decoder import Decoder
-from nao_sim_bridge.hearing.everyday_speech import EverydaySpeech
+from nao_sim_bridge.hearing.decoder import Decoder, EverydaySpeech
 from nao_sim_bridge.hearing.listening import Listening, Recognised
 from nao_sim_bridge.hearing.pronunciation import Pronouncer
 from nao_sim_bridge.hearing.settings import load_recognition

@@ -15,7 +15,7 @@ from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import START_TIMEOUT, PictureRefused, RenderError
-from nao_sim_bridge.sound.follower import Follower
+from nao_sim_bridge.sound.timeline import Follower
 from nao_sim_bridge.world.render_state import StateSender
 
 log = logging.getLogger("nao_sim.film")

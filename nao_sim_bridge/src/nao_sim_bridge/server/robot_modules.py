@@ -37,7 +37,7 @@ from nao_sim_bridge.server.film_control import FilmControl
 from nao_sim_bridge.server.robot_control import HandsControl, HealthControl
 from nao_sim_bridge.server.things_control import ThingsControl
 from nao_sim_bridge.server.world_sounds_control import WorldSoundsControl
-from nao_sim_bridge.sound.reader import SoundReader
+from nao_sim_bridge.sound.files import SoundReader
 from nao_sim_bridge.speech.studio import Studio
 from nao_sim_bridge.vision.client import VisionProcess
 

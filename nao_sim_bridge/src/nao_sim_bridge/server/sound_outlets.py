@@ -13,7 +13,7 @@ from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.sound.files import WavFile
-from nao_sim_bridge.sound.follower import Follower
+from nao_sim_bridge.sound.timeline import Follower
 
 log = logging.getLogger("nao_sim.sound")
 

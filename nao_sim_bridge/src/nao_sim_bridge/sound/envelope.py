@@ -17,11 +17,8 @@ BEGINNING = -(2**62)
 class Envelope:
     """Numbers that stay as they are until somebody sets them, and then go to the new ones in a straight line.
 
-    Written in the simulation thread, and only for frames that are still to come; read in any thread.
-
-    Args:
-        value: What it is at first.
-        ramp: How long a change takes unless it is told, in frames.
+    Written in the simulation thread, and only for frames that are still to come; read in any thread. A change takes
+    `ramp` frames unless it is told.
     """
 
     def __init__(self, value: Sequence[float], ramp: int) -> None:

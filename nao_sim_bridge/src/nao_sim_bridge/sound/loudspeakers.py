@@ -11,27 +11,28 @@ from nao_sim_bridge.base.samples import RATE, Sound, frame_at, pcm16
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.sound.envelope import Envelope
-from nao_sim_bridge.sound.playing import Mark, Playing
+from nao_sim_bridge.sound.playing import RAMP, Mark, Playing
 from nao_sim_bridge.sound.poses import PoseTrack
 from nao_sim_bridge.sound.settings import SoundSettings
 from nao_sim_bridge.sound.sources import LONGEST_WAY
 from nao_sim_bridge.sound.timeline import Timeline
-from nao_sim_bridge.sound.track import RAMP
+
+SIDES = "-1 (left) to 1 (right)"
 
 
 class SpeakerPlaying(Playing):
     def __init__(self, volume: float, pan: float, *args, **options) -> None:
-        self.volume, self.pan = _volume(volume), _pan(pan)
+        self.volume, self.pan = _within("volume", volume, 0.0, "0 to 1"), _within("pan", pan, -1.0, SIDES)
         super().__init__(*args, gains=self._sides(), **options)
 
     def set_volume(self, volume: float) -> None:
         """Its own volume from now on, 0..1."""
-        self.volume = _volume(volume)
+        self.volume = _within("volume", volume, 0.0, "0 to 1")
         self._set_gains(self._sides())
 
     def set_pan(self, pan: float) -> None:
         """From which side it comes from now on: -1 left, 0 both, 1 right."""
-        self.pan = _pan(pan)
+        self.pan = _within("pan", pan, -1.0, SIDES)
         self._set_gains(self._sides())
 
     def _sides(self) -> tuple[float, float]:
@@ -99,33 +100,19 @@ class Loudspeakers:
         marks: Iterable[Mark] = (),
         after: Playing | None = None,
     ) -> SpeakerPlaying:
-        """Play a sound from now on.
+        """Play a sound from now on; volume and pan are as in `SpeakerPlaying`, start, loop and marks as in `Playing`.
 
         Args:
             sound: One channel for both loudspeakers, or two for left and right; of more the first two count. A long
                 one should have RATE already: else it is converted here.
-            volume: Its own volume, 0..1.
-            pan: -1 left, 0 both, 1 right.
-            start: Where in the sound to begin, s.
-            marks: (seconds, callback), called in the simulation thread when playing passes that place.
             after: Begin at the very frame at which this one will end as things are, so that they follow without a gap;
                 now when that is over, paused or a loop.
         """
         begin = after.end_frame if after is not None else None
         if sound.channels > 2:
             sound = Sound(sound.samples[:, :2], sound.rate)
-        player = SpeakerPlaying(
-            volume,
-            pan,
-            self._timeline,
-            self._ids,
-            name,
-            sound,
-            start=start,
-            loop=loop,
-            marks=marks,
-            begin=begin,
-        )
+        options = {"start": start, "loop": loop, "marks": marks, "begin": begin}
+        player = SpeakerPlaying(volume, pan, self._timeline, self._ids, name, sound, **options)
         self._players = (*self._players, player)
         return player
 
@@ -174,10 +161,8 @@ class Loudspeakers:
 
     def _forget(self, before: int) -> None:
         before -= LONGEST_WAY  # another robot hears it later
-        kept = tuple(player for player in self._players if not player.over_before(before))
-        if len(kept) != len(self._players):
-            self._players = kept
-        for player in kept:
+        self._players = tuple(player for player in self._players if not player.over_before(before))
+        for player in self._players:
             player.forget(before)
         self._master.forget(before)
 
@@ -197,16 +182,10 @@ def checked_past(timeline: Timeline, from_s: float, to_s: float) -> tuple[int, i
     return first, last
 
 
-def _volume(volume: float) -> float:
-    if not 0.0 <= volume <= 1.0:
-        raise BadValue("volume", volume, "0 to 1")
-    return float(volume)
-
-
-def _pan(pan: float) -> float:
-    if not -1.0 <= pan <= 1.0:
-        raise BadValue("pan", pan, "-1 (left) to 1 (right)")
-    return float(pan)
+def _within(name: str, value: float, least: float, allowed: str) -> float:
+    if not least <= value <= 1.0:
+        raise BadValue(name, value, allowed)
+    return float(value)
 
 
 class RobotVoice:

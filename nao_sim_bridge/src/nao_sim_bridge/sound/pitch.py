@@ -11,13 +11,9 @@ WINDOW = 2048
 
 
 def shifted(samples: np.ndarray, factor: float, rate: int, window: int = WINDOW) -> np.ndarray:
-    """A sound with all its frequencies times `factor`, as long as before; float32.
+    """A (frames, channels) sound with all its frequencies times `factor`, 0.25 to 4, as long as before; float32.
 
-    Args:
-        samples: (frames, channels) float array.
-        factor: 0.25 to 4; 1 changes nothing.
-        rate: Samples a second.
-        window: Length of the windows, in samples; voices want about 30 ms.
+    The windows are `window` samples long; voices want about 30 ms.
     """
     if factor == 1.0 or len(samples) == 0:
         return np.asarray(samples, dtype=np.float32)

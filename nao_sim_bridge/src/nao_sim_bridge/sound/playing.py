@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Callable, Iterable, Sequence, Tuple
+from typing import Callable, Iterable, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -11,25 +11,107 @@ from nao_sim_bridge.base.samples import RATE, Sound, frame_at
 from nao_sim_bridge.base.tasks import Task, TaskIds
 from nao_sim_bridge.sound.envelope import Envelope
 from nao_sim_bridge.sound.timeline import Timeline
-from nao_sim_bridge.sound.track import RAMP, Track
 
 Mark = Tuple[float, Callable[[], None]]
+RAMP = 192
+"""Frames (4 ms) in which something that begins or ends in the middle of a wave fades, so that it does not click."""
+
+
+class Segment(NamedTuple):
+    """A stretch in which a sound goes on without a break, from a frame on the timeline on.
+
+    `offset` is the frame of the sound that is there; it ends where it was broken off, None as long as it was not.
+    """
+
+    begin: int
+    offset: int
+    end: int | None
+
+
+class Track:
+    """A sound, (frames, channels), on the timeline: when which part of it sounds.
+
+    Written in the simulation thread, and only for frames that are still to come; read in any thread.
+    """
+
+    def __init__(self, samples: np.ndarray, loop: bool) -> None:
+        self.samples = samples
+        self.loop = loop
+        self._segments: tuple[Segment, ...] = ()
+
+    def start(self, frame: int, offset: int) -> None:
+        """Let the sound's frame `offset` sound at `frame`, and what follows after it."""
+        self._segments = (*self._segments, Segment(frame, offset, None))
+
+    def stop(self, frame: int) -> None:
+        """Break off at `frame`."""
+        if self._segments and self._segments[-1].end is None:
+            *before, running = self._segments
+            self._segments = (*before, running._replace(end=frame)) if running.begin < frame else tuple(before)
+
+    def last_frame(self) -> int | None:
+        """Where the last sound of it is over; None when that is open."""
+        if not self._segments:
+            return -(2**62)
+        last = self._segments[-1]
+        if last.end is not None:
+            return last.end + RAMP
+        return None if self.loop else last.begin + len(self.samples) - last.offset
+
+    def render(self, first: int, last: int) -> np.ndarray | None:
+        """(last - first, channels) samples from frame `first` to `last`; None when nothing sounds there."""
+        out = None
+        for segment in self._segments:
+            low, high = max(first, segment.begin), min(last, self._audible_until(segment, last))
+            if low >= high:
+                continue
+            piece = self._piece(segment.offset + low - segment.begin, high - low)
+            fade = _fade(segment, low, high)
+            if fade is not None:
+                piece = piece * fade[:, None]
+            if out is None:
+                if high - low == last - first:
+                    out = piece
+                    continue
+                out = np.zeros((last - first, self.samples.shape[1]), np.float32)
+            elif not out.flags.writeable:
+                out = out.copy()
+            out[low - first : high - first] += piece
+        return out
+
+    def forget(self, before: int) -> None:
+        """Drop segments that were over before a frame."""
+        self._segments = tuple(s for s in self._segments if s.end is None or s.end + RAMP > before)
+
+    def _audible_until(self, segment: Segment, last: int) -> int:
+        until = last if segment.end is None else segment.end + RAMP
+        return until if self.loop else min(until, segment.begin + len(self.samples) - segment.offset)
+
+    def _piece(self, start: int, count: int) -> np.ndarray:
+        if not self.loop:
+            return self.samples[start : start + count]
+        start %= len(self.samples)
+        if start + count <= len(self.samples):
+            return self.samples[start : start + count]
+        return np.take(self.samples, np.arange(start, start + count), axis=0, mode="wrap")
+
+
+def _fade(segment: Segment, low: int, high: int) -> np.ndarray | None:
+    fade = None
+    if segment.offset > 0 and low < segment.begin + RAMP:
+        fade = np.clip(np.arange(low - segment.begin, high - segment.begin, dtype=np.float32) / RAMP, 0.0, 1.0)
+    if segment.end is not None and high > segment.end:
+        out = np.clip(1.0 - np.arange(low - segment.end, high - segment.end, dtype=np.float32) / RAMP, 0.0, 1.0)
+        fade = out if fade is None else fade * out
+    return fade
 
 
 class Playing:
-    """One sound that plays. Everything but the properties is for the simulation thread.
+    """One sound, at RATE, that plays. Everything but the properties is for the simulation thread.
 
-    Attributes:
-        task: Ends when the sound has been played; its `kill` is silence at once.
-        sound: What plays, at RATE.
-
-    Args:
-        start: Where in the sound to begin, s.
-        loop: Begin again at its end, until it is stopped.
-        marks: (seconds, callback): called in the simulation thread when playing passes that place of the sound; in a
-            loop each time.
-        begin: First frame on the timeline; None for now.
-        gains: Factors of its volume at first.
+    It begins at a frame of the timeline, None for now, and `start` s in the sound; a loop begins again at its end,
+    until it is stopped. Its task ends when it has been played; killing that is silence at once. Marks are (seconds,
+    callback), called in the simulation thread when playing passes that place of the sound, in a loop each time.
     """
 
     def __init__(

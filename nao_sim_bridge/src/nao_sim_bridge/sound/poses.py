@@ -12,12 +12,7 @@ from nao_sim_bridge.model.robot_model import Joint, RobotModel
 
 
 class HeadPoses(NamedTuple):
-    """Poses of the link of the head in world at several times.
-
-    Attributes:
-        rotations: (n, 3, 3).
-        positions: (n, 3), m.
-    """
+    """Poses of the link of the head in world at several times: (n, 3, 3) rotations and (n, 3) positions, m."""
 
     rotations: np.ndarray
     positions: np.ndarray
@@ -28,11 +23,9 @@ class HeadPoses(NamedTuple):
 
 
 class PoseTrack:
-    """Remembers torso and head of each tick. Written in the simulation thread, read in any.
+    """Remembers torso and head of the last `keep` ticks. Written in the simulation thread, read in any.
 
-    Args:
-        link: Link of the head, from which the neck is followed down to the torso.
-        keep: Number of ticks that are remembered.
+    From the `link` of the head the neck is followed down to the torso.
     """
 
     def __init__(self, model: RobotModel, link: str, keep: int) -> None:

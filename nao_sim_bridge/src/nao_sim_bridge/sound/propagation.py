@@ -32,13 +32,9 @@ HALF_WAY = _half_way()
 
 
 def doubled(signal: np.ndarray) -> np.ndarray:
-    """The signal at twice its rate.
+    """The signal, (n,) float32, at twice its rate, (2 n - 4 HALF + 2,).
 
-    Args:
-        signal: (n,) float32.
-
-    Returns:
-        (2 n - 4 HALF + 2,) float32; the first is `signal[HALF - 1]`, the next is half-way to the following one.
+    The first sample is `signal[HALF - 1]`, the next is half-way to the following one.
     """
     out = np.empty(2 * (len(signal) - 2 * HALF + 1), np.float32)
     out[0::2] = signal[HALF - 1 : len(signal) - HALF]
@@ -55,14 +51,9 @@ def cubic(fraction: np.ndarray | float) -> tuple:
 
 
 def at_places(read: Callable[[int, int], np.ndarray | None], places: np.ndarray) -> np.ndarray | None:
-    """A signal at any places between its samples.
+    """A signal at any places between its samples: (...) float32 for (...) float64 places; None when all is silence.
 
-    Args:
-        read: (first, last) to the (last - first,) samples of the signal, or None for silence.
-        places: (...) float64, in samples.
-
-    Returns:
-        Values in the shape of `places`, float32; None when all is silence.
+    `read` gives the (last - first,) samples of the signal from `first` to `last`, or None for silence.
     """
     first = int(np.floor(places.min())) - MARGIN
     signal = read(first, int(np.ceil(places.max())) + MARGIN + 1)
@@ -85,11 +76,9 @@ def at_places(read: Callable[[int, int], np.ndarray | None], places: np.ndarray)
 
 @dataclass(frozen=True)
 class FixedWays:
-    """Ways of sound that never change, as filters.
+    """Ways of sound that never change, as filters, (..., n) taps.
 
-    Attributes:
-        earliest: The filters' first tap is for the sample so many frames ago; negative when it is still to come.
-        taps: (..., n) one filter for each way.
+    The first tap is for the sample `earliest` frames ago, negative when that is still to come.
     """
 
     earliest: int
@@ -111,14 +100,9 @@ class FixedWays:
         return self.earliest + self.taps.shape[-1] - 1, max(0, -self.earliest)
 
     def through(self, signal: np.ndarray, which: tuple | int) -> np.ndarray:
-        """A signal that has come one way, or several ways at once.
+        """A signal, float32 for each frame, that has come the way `which` in `taps`; of several the sum arrives.
 
-        Args:
-            signal: From `span[0]` samples before the first frame to `span[1]` after the last one.
-            which: Index of the way in `taps`; when it selects several, their sum arrives.
-
-        Returns:
-            A value for each frame, float32.
+        It is taken from `span[0]` samples before the first frame to `span[1]` after the last one.
         """
         taps = self.taps[which]
         if taps.ndim > 1:
@@ -127,17 +111,7 @@ class FixedWays:
 
 
 def between_knots(values: np.ndarray, step: int, skip: int, count: int, kind: type = np.float64) -> np.ndarray:
-    """Straight lines between values that are `step` frames apart.
-
-    Args:
-        values: (n, k) of k lines.
-        step: Frames from one to the next.
-        skip: How many frames after the first value the result begins.
-        count: Frames of the result.
-
-    Returns:
-        (k, count).
-    """
+    """(k, count) frames of k straight lines between (n, k) values `step` frames apart, from `skip` after the first."""
     shares = (np.arange(step) / step).astype(kind)
     lines = values.T.astype(kind)
     whole = np.diff(lines)[:, :, None] * shares

@@ -62,11 +62,7 @@ class SoundSettings:
 
 @lru_cache(maxsize=None)
 def load_sound_settings() -> SoundSettings:
-    """Settings as the file gives them.
-
-    Raises:
-        ConfigError: The file cannot be read, or a key is unknown or missing, or a number is none that makes sense.
-    """
+    """Settings as the file gives them; a ConfigError when a key is unknown or missing, or a number makes no sense."""
     settings = read_settings(SoundSettings, config_file(FILE))
     check_keys(settings.channels, f"{FILE}: channels", CHANNELS)
     check_keys(settings.energies, f"{FILE}: energies", CHANNELS)

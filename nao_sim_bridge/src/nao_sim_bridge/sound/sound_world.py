@@ -20,9 +20,7 @@ from nao_sim_bridge.sound.timeline import Timeline
 class Air:
     """What robots in one world hear of it and of each other; settings are those of the file by default.
 
-    Attributes:
-        timeline: The clock of sound.
-        numbers: For the names of sounds that nobody named.
+    `numbers` are for the names of sounds that nobody named.
     """
 
     def __init__(self, ids: TaskIds, tick_s: float, settings: SoundSettings | None = None) -> None:
@@ -52,13 +50,7 @@ class Air:
 class SoundWorld:
     """What sounds and what is heard. It stays at a reset of the simulation, which ends everything that plays.
 
-    Attributes:
-        sources: Sounds in the world, which other robots may hear, too.
-        numbers: For the names of sounds of the world that nobody named.
-
-    Args:
-        seed: Of the background noise.
-        released: Called when time that waited for ears need not wait any more.
+    The seed is that of the background noise; `released` is called when time that waited for ears need not any more.
     """
 
     def __init__(self, model: RobotModel, air: Air, seed: int, released: Callable[[], None] = lambda: None) -> None:

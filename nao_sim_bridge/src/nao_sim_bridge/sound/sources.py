@@ -13,10 +13,9 @@ from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.sound.envelope import Envelope
-from nao_sim_bridge.sound.playing import Playing
+from nao_sim_bridge.sound.playing import RAMP, Playing
 from nao_sim_bridge.sound.settings import SoundSettings
 from nao_sim_bridge.sound.timeline import Timeline
-from nao_sim_bridge.sound.track import RAMP
 
 Position = Tuple[float, float, float]
 
@@ -36,14 +35,10 @@ LOUD_PART = 0.1
 
 @dataclass(frozen=True, eq=False)
 class SoundSource:
-    """A sound at a place in the world. Best made outside the simulation thread: a long sound takes a moment.
+    """A sound at a place in the world, m. Best made outside the simulation thread: a long sound takes a moment.
 
-    Attributes:
-        position: In world, m.
-        sound: What sounds; becomes one channel at RATE.
-        level_db: Level at 1 m, dB SPL, of its loud parts (root mean square).
-        start: Where in the sound to begin, s.
-        loudness: Root mean square of the sound's loud parts.
+    It becomes one channel at RATE and begins `start` s in it. The level is that of its loud parts at 1 m, dB SPL, as
+    root mean square; the loudness is the same of the samples.
     """
 
     name: str
@@ -122,10 +117,8 @@ class SourcePlaying(Playing):
     def forget(self, before: int) -> None:
         """Drop what was over before a frame."""
         super().forget(before)
-        kept = tuple(s for s in self.stints if s.presence.target != (0.0,) or s.presence.at(before) != (0.0,))
-        if len(kept) != len(self.stints):
-            self.stints = kept
-        for stint in kept:
+        self.stints = tuple(s for s in self.stints if s.presence.target != (0.0,) or s.presence.at(before) != (0.0,))
+        for stint in self.stints:
             stint.places.forget(before)
             stint.presence.forget(before)
 
@@ -197,10 +190,8 @@ class Sources:
 
     def _forget(self, before: int) -> None:
         before -= LONGEST_WAY
-        kept = tuple(source for source in self._all if not source.over_before(before))
-        if len(kept) != len(self._all):
-            self._all = kept
-        for source in kept:
+        self._all = tuple(source for source in self._all if not source.over_before(before))
+        for source in self._all:
             source.forget(before)
 
 

@@ -1,7 +1,9 @@
-"""The clock of sound, and what is due on it. Simulation thread only, but for `now`."""
+"""The clock of sound, what is due on it, and threads that follow it. Simulation thread only, but for `now`."""
 
 from __future__ import annotations
 
+import logging
+import threading
 from typing import Callable, Protocol
 
 from nao_sim_bridge.base.guard import Guard
@@ -10,6 +12,10 @@ from nao_sim_bridge.base.samples import RATE
 NEVER = 2**62
 HOUSEKEEPING = RATE
 """Frames between two looks at what nobody can ask for any more."""
+log = logging.getLogger("nao_sim.sound")
+
+LONGEST = RATE
+"""Frames of the longest stretch that is handled at once."""
 
 
 class Due(Protocol):
@@ -42,9 +48,8 @@ class Alarm:
 class Timeline:
     """Simulated time in frames; `keep` s of it are remembered. A tick without work costs one comparison.
 
-    Attributes:
-        now: The frame of now: what is before it is past and never changes; any thread may read it.
-        forget: Called with a frame now and then: what was over before it may be forgotten.
+    What is before the frame of `now` is past and never changes. Functions in `forget` are called with a frame now and
+    then: what was over before it may be forgotten.
     """
 
     def __init__(self, keep: float, guard: Guard) -> None:
@@ -83,3 +88,58 @@ class Timeline:
             for forget in self.forget:
                 self._guard.call(forget, self.oldest)
         self._next = min([self._housekeeping, *(at for at in due.values() if at is not None)])
+
+
+class Follower:
+    """A thread that is told of every stretch of a timeline that passes: to write or send on what was played.
+
+    It calls `handle` with (first, last): the frames `first` to `last`, without it, have passed, `step` of them as long
+    as it keeps up. The stretches follow each other without gaps. When it raises, that is logged and nothing more is
+    handled. Made and closed in any thread.
+    """
+
+    def __init__(self, name: str, timeline: Timeline, handle: Callable[[int, int], None], step: int) -> None:
+        self._timeline = timeline
+        self._handle = handle
+        self._step = step
+        self._next = timeline.now + step
+        self._done = timeline.now
+        self._news = threading.Event()
+        self._closing = False
+        self._name = name
+        self._thread = threading.Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
+        timeline.add(self)
+
+    @property
+    def lag(self) -> float:
+        """What has passed and was not handled, s; 0 when it has failed or is closed."""
+        return (self._timeline.now - self._done) / RATE if self._thread.is_alive() else 0.0
+
+    def close(self, timeout: float = 5.0) -> None:
+        """Handle what has passed, and end; waits for that (wall time, s)."""
+        self._closing = True
+        self._news.set()
+        self._thread.join(timeout)
+
+    def next_due(self) -> int | None:
+        """See Due; simulation thread."""
+        return self._next if self._thread.is_alive() else None
+
+    def work(self, frame: int) -> None:
+        """See Due; simulation thread."""
+        if frame >= self._next:
+            self._next = frame + self._step
+            self._news.set()
+
+    def _run(self) -> None:
+        try:
+            while not self._closing:
+                self._news.wait()
+                self._news.clear()
+                while self._done < self._timeline.now:
+                    last = min(self._timeline.now, self._done + LONGEST)
+                    self._handle(self._done, last)
+                    self._done = last
+        except Exception:
+            log.exception("%s has ended", self._name)

@@ -19,11 +19,9 @@ POSTURE_PATTERN, POSTURE = "[posture]", "Stand"
 
 @dataclass(frozen=True)
 class KeyFrames:
-    """Where one joint goes.
+    """Where one joint goes: angles, rad (hands 0..1), of the head added to where it looks.
 
-    Attributes:
-        times: s from the beginning, rising, between 0 and the length of the animation.
-        angles: rad (hands 0..1); of the head added to where it looks.
+    Their times are in s from the beginning, rising, between 0 and the length of the animation.
     """
 
     times: Tuple[float, ...]
@@ -32,12 +30,9 @@ class KeyFrames:
 
 @dataclass(frozen=True, eq=False)
 class Animation:
-    """A gesture; it ends where it began.
+    """A gesture of arms, hands and head, `length` s long; it ends where it began.
 
-    Attributes:
-        name: NAOqi's path, for example "animations/Stand/Gestures/Hey_1".
-        length: s.
-        joints: Key frames by name of the joint; arms, hands and head only.
+    Its name is NAOqi's path, for example "animations/Stand/Gestures/Hey_1".
     """
 
     name: str
@@ -46,13 +41,7 @@ class Animation:
     joints: Mapping[str, KeyFrames]
 
     def curve(self, joint: str, start: float, home: float, stretch: float) -> SmoothCurve:
-        """The way of a joint.
-
-        Args:
-            start: Where it is, rad.
-            home: Where it began and ends, rad.
-            stretch: Factor of all times.
-        """
+        """The way of a joint that is at `start` and belongs at `home`, rad, with all times `stretch` times as long."""
         frames = self.joints[joint]
         base = home if joint.startswith("Head") else 0.0
         times = [0.0, *(time * stretch for time in frames.times), self.length * stretch]
@@ -61,11 +50,9 @@ class Animation:
 
 @dataclass(eq=False)
 class AnimationLibrary:
-    """The animations that a robot knows, their tags, and the words that call for a tag. Any thread.
+    """The animations that a robot knows, and the tags that words, in lower case, call for. Any thread.
 
-    Attributes:
-        body_language: Tag of those that go with any text.
-        words: Word or words in lower case -> tags.
+    `body_language` is the tag of those that go with any text.
     """
 
     animations: dict[str, Animation]

@@ -55,11 +55,7 @@ class Animator:
     # --- moving ---------------------------------------------------------------------------------------------------
 
     def start(self, animation: Animation, length: float | None = None) -> Task | None:
-        """Begin with an animation, at once or as soon as its joints are free. None when the robot cannot.
-
-        Args:
-            length: How long it takes, s; as it is made when None.
-        """
+        """Begin with an animation, `length` s long if given, when its joints are free; None when the robot cannot."""
         indices = self._usable_joints(animation)
         if indices is None:
             return None

@@ -19,12 +19,7 @@ REST = 0.1
 
 @dataclass(frozen=True)
 class PlannedGesture:
-    """A gesture in its place.
-
-    Attributes:
-        start: s from the beginning of the sentence.
-        length: How long it is to take, s.
-    """
+    """A gesture that begins `start` s after its sentence and takes `length` s."""
 
     start: float
     animation: Animation
@@ -32,7 +27,6 @@ class PlannedGesture:
 
     @property
     def end(self) -> float:
-        """S from the beginning of the sentence."""
         return self.start + self.length
 
 
@@ -45,11 +39,8 @@ def plan(
 ) -> list[PlannedGesture]:
     """Gestures of a sentence, all over when it is; a sentence too short for any has the shortest one, done quickly.
 
-    Args:
-        duration: Of the sentence, s.
-        words: (s from the beginning, word) in their order.
-        mode: One of `MODES`; contextual looks at the words, and fills what is left at random.
-        chance: Chooses among those that fit equally.
+    The contextual mode looks at the words, (s from the beginning, word) in their order, and fills what is left at
+    random; `chance` chooses among those that fit equally.
     """
     if mode == DISABLED:
         return []

@@ -11,9 +11,9 @@ import numpy as np
 
 from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.sound.pitch import shifted
+from nao_sim_bridge.speech.engines import Engines, Speech, Utterance, Word, silence
 from nao_sim_bridge.speech.parameters import DoubleVoice, Pronunciations, Prosody
 from nao_sim_bridge.speech.sentences import Sentence
-from nao_sim_bridge.speech.speech import Engine, Speech, Utterance, Word, silence
 from nao_sim_bridge.speech.tags import Bookmark, Cue, Pause, Spoken
 from nao_sim_bridge.speech.voices import Voice
 
@@ -38,13 +38,7 @@ PITCH_WINDOW = 0.04
 
 @dataclass(frozen=True)
 class Style:
-    """How everything of one text is spoken.
-
-    Attributes:
-        prosody: How, where no tag says otherwise.
-        pronunciations: What is spoken instead of what is written.
-        volume: 0 to 1, of the loudspeakers.
-    """
+    """How everything of one text is spoken: its prosody where no tag says otherwise, its volume 0 to 1."""
 
     voice: Voice
     prosody: Prosody = Prosody()
@@ -55,12 +49,7 @@ class Style:
 
 @dataclass(frozen=True)
 class SpokenWord:
-    """A word begins.
-
-    Attributes:
-        text: As it is written, without punctuation.
-        position: In its sentence, the first is 0.
-    """
+    """A word begins: as it is written, without punctuation; its position in its sentence counts from 0."""
 
     text: str
     position: int
@@ -71,12 +60,7 @@ Mark = Union[SpokenWord, Bookmark, Cue]
 
 @dataclass(frozen=True, eq=False)
 class Clip:
-    """A sentence as sound.
-
-    Attributes:
-        sound: One channel.
-        marks: (s from its beginning, what comes there), in rising order.
-    """
+    """A sentence as sound, one channel, with its marks: (s from its beginning, what comes there), in rising order."""
 
     text: str
     sound: Sound
@@ -92,7 +76,7 @@ class Clip:
 class ClipMaker:
     """Makes clips. Any thread may ask."""
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: Engines) -> None:
         self._engine = engine
         self._lock = threading.Lock()
         self._kept: OrderedDict[Any, Speech] = OrderedDict()

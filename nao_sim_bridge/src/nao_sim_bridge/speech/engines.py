@@ -1,16 +1,16 @@
-"""The handle of the speech process: starts it, has it speak, starts it again when it has died."""
+"""Speech as engines make it, and the handle of their process: starts it, also when it has died, and has it speak."""
 
 from __future__ import annotations
 
 import logging
 import threading
-from dataclasses import replace
-from typing import Any, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Mapping, Sequence, Tuple
 
 import numpy as np
 
 from nao_sim_bridge.base.child_process import ChildProcess
-from nao_sim_bridge.speech.speech import Speech, SpeechError, Utterance, Word, listed
+from nao_sim_bridge.base.errors import SimulationError
 
 log = logging.getLogger("nao_sim.speech")
 
@@ -21,22 +21,63 @@ CLOSING = 1.0
 """s; at the end, a process that still speaks after this is ended by force."""
 # What is less than this, as part of full scale, is a pause.
 QUIET = 0.003
-# Which Debian package brings an engine.
-PACKAGES = {"flite": "flite", "espeak-ng": "espeak-ng"}
 MODULE = "nao_sim_bridge.speech.worker"
 
 
-class Engines:
-    """All engines of this machine, in one process. Any thread may ask; one text is spoken at a time.
+class SpeechError(SimulationError):
+    """Something cannot be said; the text says why."""
 
-    Attributes:
-        lacking: Names of engines that are left out, as if they were not installed.
-        answer_timeout: Longest time to wait for a text to be spoken, s.
-    """
+
+@dataclass(frozen=True)
+class Utterance:
+    """A text without tags that is spoken in one go, voice by the engine's name, `speed` times as fast as its own."""
+
+    engine: str
+    voice: str
+    text: str
+    speed: float = 1.0
+
+
+@dataclass(frozen=True)
+class Word:
+    """A word that is spoken: its first character in the text and how many it has; its start and end in the sound, s."""
+
+    first: int
+    length: int
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class Speech:
+    """An utterance as sound, (frames,) float32 in -1..1, read-only, and its words as they are spoken."""
+
+    samples: np.ndarray
+    rate: int
+    words: Tuple[Word, ...]
+
+    @property
+    def duration(self) -> float:
+        """How long it sounds, s."""
+        return len(self.samples) / self.rate
+
+
+def silence(seconds: float, rate: int) -> np.ndarray:
+    """(frames,) samples of nothing."""
+    return np.zeros(max(round(seconds * rate), 0), dtype=np.float32)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as an error text lists them."""
+    return ", ".join(names) if names else "none"
+
+
+class Engines:
+    """All engines of this machine, in one process. Any thread may ask; one text is spoken at a time."""
 
     def __init__(self) -> None:
-        self.lacking: Sequence[str] = ()
         self.answer_timeout = ANSWER_TIMEOUT
+        """Longest time to wait for a text to be spoken, s."""
         self._lock = threading.Lock()
         self._child: ChildProcess | None = None
         self._found: Mapping[str, Any] | None = None
@@ -63,7 +104,7 @@ class Engines:
             return f"unknown engine {engine!r}, there are {listed(sorted(found))}"
         voices = found[engine]
         if isinstance(voices, str):
-            return f"the engine {engine} is not installed (Debian package {PACKAGES.get(engine, engine)}): {voices}"
+            return f"the engine {engine} is not installed (Debian package {engine}): {voices}"
         if voices is not None and voice not in voices:
             return f"the engine {engine} has no voice {voice!r}, it has {listed(voices)}"
         return None
@@ -120,7 +161,7 @@ class Engines:
         return self._found
 
     def _start(self) -> None:
-        self._child = ChildProcess(MODULE, self.lacking, "speech process", SpeechError, SpeechError)
+        self._child = ChildProcess(MODULE, (), "speech process", SpeechError, SpeechError)
         self._found = None
 
 

@@ -46,16 +46,8 @@ class Espeak:
         self._library = ctypes.CDLL(LIBRARY)
         self._library.espeak_Initialize.argtypes = [c_int, c_int, c_char_p, c_int]
         self._library.espeak_SetVoiceByName.argtypes = [c_char_p]
-        self._library.espeak_Synth.argtypes = [
-            c_char_p,
-            c_size_t,
-            c_uint,
-            c_int,
-            c_uint,
-            c_uint,
-            c_void_p,
-            c_void_p,
-        ]
+        arguments = [c_char_p, c_size_t, c_uint, c_int, c_uint, c_uint, c_void_p, c_void_p]
+        self._library.espeak_Synth.argtypes = arguments
         self._rate = self._library.espeak_Initialize(SYNCHRONOUS, 0, None, NO_EXIT)
         if self._rate <= 0:
             raise OSError("espeak-ng finds none of its data files")

@@ -25,13 +25,7 @@ SWITCHED_OFF_BY_ZERO = ("pitchShift", "doubleVoice")
 
 @dataclass(frozen=True)
 class Prosody:
-    """How a piece of text is spoken, by parameters and tags.
-
-    Attributes:
-        speed: 1 is as fast as the voice speaks by itself, 0.5 to 4.
-        pitch: Factor of all frequencies, 0.5 to 4.
-        gain: Factor of the amplitude.
-    """
+    """How a text is spoken: factors of the voice's own speed and of all frequencies, 0.5 to 4, and of the amplitude."""
 
     speed: float = 1.0
     pitch: float = 1.0
@@ -40,12 +34,10 @@ class Prosody:
 
 @dataclass(frozen=True)
 class DoubleVoice:
-    """A second voice that speaks along.
+    """A second voice that speaks along, `delay` s later.
 
-    Attributes:
-        pitch: Factor of its frequencies to those of the engine's voice; 0 for no second voice.
-        level: Its amplitude as part of the first one's.
-        delay: How much later it speaks, s.
+    Its pitch is the factor of its frequencies to those of the engine's voice, 0 for no second voice; its level is its
+    amplitude as part of the first one's.
     """
 
     pitch: float = 0.0
@@ -122,10 +114,7 @@ class Pronunciations:
         return any(entry[0].lower() == word.lower() for entry in self.entries)
 
     def spoken(self, text: str) -> tuple[str, list[tuple[int, int]]]:
-        """The text as it is spoken, and for each of its characters the part of `text` that it comes from.
-
-        Parts are given by their first character and the one behind the last.
-        """
+        """The text as it is spoken, and for each of its characters the part (first, end) of `text` it comes from."""
         unchanged = [(place, place + 1) for place in range(len(text))]
         if not self.entries:
             return text, unchanged

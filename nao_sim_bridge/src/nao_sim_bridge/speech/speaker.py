@@ -29,10 +29,9 @@ ENQUEUED, STARTED, SENTENCE, WORD, BOOKMARK, DONE, STOPPED, THROWN = KINDS
 class SpeechEvent:
     """Something that happens while the robot speaks, told at the simulated time it happens.
 
-    Attributes:
-        kind: One of `KINDS`. A text is enqueued and started, has sentences, words and bookmarks, and is at
-            last done, stopped, or thrown because it cannot be said.
-        value: The `Clip` of the sentence, the `SpokenWord`, the number of the bookmark; None for the others.
+    By its kind, one of `KINDS`, a text is enqueued and started, has sentences, words and bookmarks, and is at last
+    done, stopped, or thrown because it cannot be said. The value is the `Clip` of the sentence, the `SpokenWord` or the
+    number of the bookmark.
     """
 
     kind: str
@@ -69,14 +68,9 @@ class Speaker:
         studio.released = lambda: simulation.wake()
 
     def say(self, items: Sequence[Item], style: Style, name: str = "say") -> Task:
-        """Speak sentences when all that were asked for before have been spoken.
+        """Speak the sentences of `Studio.read` when all that were asked for before have been spoken.
 
-        Args:
-            items: See `Studio.read`.
-            name: NAOqi name of the call.
-
-        Returns:
-            The task, which ends with the last sound; killing it is silence at once.
+        The task has the NAOqi name of the call and ends with the last sound; killing it is silence at once.
         """
         talk = _Talk(self._simulation.task_ids.make(name, on_kill=self._drop), items, style)
         self._talks.append(talk)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import logging
 import queue
 import threading
-from typing import Any, Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, Callable
 
 import numpy as np
 
@@ -14,40 +15,33 @@ from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.speech.clips import Clip, ClipMaker, Style
-from nao_sim_bridge.speech.engines import Engines
+from nao_sim_bridge.speech.engines import Engines, SpeechError, silence
 from nao_sim_bridge.speech.sentences import Item, Sentence, sentences
-from nao_sim_bridge.speech.speech import SpeechError, silence
 from nao_sim_bridge.speech.tags import Pause, Piece, TagReader
 
 log = logging.getLogger("nao_sim.speech")
 
 
+@dataclass(eq=False)
 class Pending:
-    """A sentence that is being made.
+    """A sentence that is being made: when it is ready, there is a clip, or an error.
 
-    Attributes:
-        ready: True when it is there, or cannot be made.
-        clip: The sentence; None when it cannot be made.
-        error: Why not.
-        wanted: False when nobody waits for it any more; it is left out then.
+    One that nobody wants any more is left out.
     """
 
-    def __init__(self) -> None:
-        self.ready = False
-        self.clip: Clip | None = None
-        self.error: SpeechError | None = None
-        self.wanted = True
+    sentence: Sentence
+    style: Style
+    ready: bool = False
+    clip: Clip | None = None
+    error: SpeechError | None = None
+    wanted: bool = True
 
 
 class Studio:
     """Reads texts and makes sentences of them, one after the other, in a thread of its own.
 
-    Attributes:
-        engines: Who speaks.
-        released: Called when a sentence is there that may have been waited for.
-
-    Args:
-        engines: See above; those of this machine when None.
+    Those who speak are the engines of this machine unless others are given; `released` is called when a sentence is
+    there that may have been waited for.
     """
 
     def __init__(self, engines: Any = None) -> None:
@@ -73,21 +67,13 @@ class Studio:
         return self.sentences_of(text, self.tags.read(text, style.prosody))
 
     def check_length(self, text: str) -> None:
-        """Before a text is read.
-
-        Raises:
-            BadValue: It is too long.
-        """
+        """Refuse a text that is too long with a BadValue, before it is read."""
         longest = load_sizes().speech.text_characters
         if len(text) > longest:
             raise BadValue("text", f"{text[:40]}... of {len(text)} characters", f"{longest} characters at most")
 
     def sentences_of(self, text: str, pieces: list[Piece]) -> list[Item]:
-        """The sentences of what has been read of a text.
-
-        Raises:
-            BadValue: Its pauses are too long together.
-        """
+        """The sentences of what has been read of a text; a BadValue when its pauses are too long together."""
         longest = load_sizes().speech.pauses_s
         pauses = sum(piece.seconds for piece in pieces if isinstance(piece, Pause))
         if pauses > longest:
@@ -96,12 +82,12 @@ class Studio:
 
     def order(self, sentence: Sentence, style: Style) -> Pending:
         """Have a sentence made; at once back."""
-        pending = Pending()
+        pending = Pending(sentence, style)
         with self._lock:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._run, name="speech", daemon=True)
                 self._thread.start()
-        self._orders.put((pending, sentence, style))
+        self._orders.put(pending)
         return pending
 
     def sound(self, text: str, style: Style) -> Sound:
@@ -110,19 +96,15 @@ class Studio:
         Raises:
             SpeechError: It cannot be said.
         """
-        return self._joined(self.read(text, style), style)
-
-    def _joined(self, items: Iterable[Item], style: Style) -> Sound:
         longest, seconds = load_sizes().speech.file_s, 0.0
-        samples = []
-        for item in items:
+        samples = [silence(0.0, RATE)]
+        for item in self.read(text, style):
             if isinstance(item, Sentence):
                 sound = self._maker.make(item, style).sound
                 seconds += sound.duration
                 if seconds > longest:
                     raise SpeechError(f"the text takes more than {longest:g} s to say, which are allowed at once")
                 samples.append(sound.samples[:, 0])
-        samples = samples or [silence(0.0, RATE)]
         return Sound(np.clip(np.concatenate(samples)[:, None] * np.float32(style.volume), -1.0, 1.0), RATE)
 
     def in_background(self, work: Callable[[], Any], name: str) -> Task:
@@ -138,21 +120,18 @@ class Studio:
         self.engines.close()
 
     def _run(self) -> None:
-        while True:
-            order = self._orders.get()
-            if order is None:
-                return
-            pending, sentence, style = order
+        for pending in iter(self._orders.get, None):
             if pending.wanted:
-                self._make(pending, sentence, style)
+                self._make(pending)
 
-    def _make(self, pending: Pending, sentence: Sentence, style: Style) -> None:
+    def _make(self, pending: Pending) -> None:
         try:
-            pending.clip = self._maker.make(sentence, style)
+            pending.clip = self._maker.make(pending.sentence, pending.style)
         except SimulationError as error:
             pending.error = error if isinstance(error, SpeechError) else SpeechError(str(error))
         except Exception as error:
-            log.exception("%r cannot be spoken", sentence.text)
-            pending.error = SpeechError(f"{sentence.text!r} cannot be spoken: {error}")
+            text = pending.sentence.text
+            log.exception("%r cannot be spoken", text)
+            pending.error = SpeechError(f"{text!r} cannot be spoken: {error}")
         pending.ready = True  # from here on the other thread reads it
         self.released()

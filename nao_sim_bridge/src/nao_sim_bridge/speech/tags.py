@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 import re
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Iterator, Mapping, Optional, Union
+from typing import Any, Callable, Iterator, List, Mapping, Optional, Union
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.speech.parameters import Prosody, limited
@@ -145,14 +145,14 @@ class _Reading:
     def volume(self, value: str | None) -> None:
         self._changes["vol"] = _within(value, 0.0, 100.0) / 80.0
 
-    def pause(self, value: str | None) -> Iterator[Piece]:
-        return iter((Pause(min(_within(value, 0.0) / 1000.0, LONGEST_PAUSE)),))
+    def pause(self, value: str | None) -> list[Piece]:
+        return [Pause(min(_within(value, 0.0) / 1000.0, LONGEST_PAUSE))]
 
-    def wait(self, value: str | None) -> Iterator[Piece]:
-        return iter((Pause(_within(value, 0.0, 20.0) * WAIT_UNIT),))
+    def wait(self, value: str | None) -> list[Piece]:
+        return [Pause(_within(value, 0.0, 20.0) * WAIT_UNIT)]
 
-    def bookmark(self, value: str | None) -> Iterator[Piece]:
-        return iter((Bookmark(int(_within(value, 0, LAST_BOOKMARK))),))
+    def bookmark(self, value: str | None) -> list[Piece]:
+        return [Bookmark(int(_within(value, 0, LAST_BOOKMARK)))]
 
     def reset(self, _: str | None) -> None:
         self._changes.clear()
@@ -161,13 +161,13 @@ class _Reading:
     def style(self, value: str | None) -> None:
         self._style = _one_of(value, STYLES)
 
-    def boundary(self, value: str | None) -> Iterator[Piece]:
+    def boundary(self, value: str | None) -> list[Piece]:
         length = {"S": STRONG_BOUNDARY, "W": WEAK_BOUNDARY, "N": 0.0}[_one_of(value, ("S", "W", "N"))]
-        return iter((Pause(length),) if length else ())
+        return [Pause(length)] if length else []
 
-    def sentence_break(self, value: str | None) -> Iterator[Piece]:
+    def sentence_break(self, value: str | None) -> list[Piece]:
         mark = BREAK if _one_of(value, ("0", "1")) == "1" else NO_BREAK
-        return iter((Spoken(mark, self._prosody()),))
+        return [Spoken(mark, self._prosody())]
 
     def normalisation(self, value: str | None) -> None:
         kind = _one_of(value, ("spell", "normal", "address", "sms"))
@@ -187,7 +187,7 @@ class _Reading:
             self._reader.leave_out(f"toi={value}", "no engine here reads phonetic text; it is not spoken")
 
 
-Act = Callable[[_Reading, Optional[str]], Optional[Iterator[Piece]]]
+Act = Callable[[_Reading, Optional[str]], Optional[List[Piece]]]
 ACTIONS: Mapping[str, Act] = {
     "rspd": _Reading.speed,
     "vct": _Reading.pitch,

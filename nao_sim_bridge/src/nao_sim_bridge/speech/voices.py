@@ -9,21 +9,14 @@ from typing import Mapping, Tuple
 from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import BadValue, ConfigError
 from nao_sim_bridge.model.robot_model import frozen_mapping
-from nao_sim_bridge.speech.speech import Engine, SpeechError, listed
+from nao_sim_bridge.speech.engines import Engines, SpeechError, listed
 
 FILE = "voices.json"
 
 
 @dataclass(frozen=True)
 class Voice:
-    """A voice of the robot.
-
-    Attributes:
-        name: NAOqi's name, for example "naoenu".
-        language: For example "English".
-        engine: Who speaks it.
-        engine_voice: The engine's name of it.
-    """
+    """A voice of the robot by NAOqi's name, for example "naoenu", and who speaks it by which name."""
 
     name: str
     language: str
@@ -33,14 +26,7 @@ class Voice:
 
 @dataclass(frozen=True)
 class Language:
-    """A language of the robot.
-
-    Attributes:
-        name: For example "English".
-        locale: For example "en_US".
-        encoding: Of texts in it.
-        voices: Names, the default first.
-    """
+    """A language of the robot ("English", "en_US"), the encoding of texts in it, and its voices, the default first."""
 
     name: str
     locale: str
@@ -56,7 +42,7 @@ class Voices:
     voices: Mapping[str, Voice]
     default_language: str
 
-    def voice(self, name: str, engine: Engine) -> Voice:
+    def voice(self, name: str, engine: Engines) -> Voice:
         """A voice that can speak.
 
         Raises:
@@ -65,13 +51,12 @@ class Voices:
         """
         if name not in self.voices:
             raise BadValue("voice", name, f"one of {listed(self.available_voices(engine))}", self.voices)
-        voice = self.voices[name]
-        problem = engine.missing(voice.engine, voice.engine_voice)
+        problem = self._problem(name, engine)
         if problem is not None:
             raise SpeechError(f"voice {name!r} cannot speak: {problem}")
-        return voice
+        return self.voices[name]
 
-    def language(self, name: str, engine: Engine) -> Language:
+    def language(self, name: str, engine: Engines) -> Language:
         """A language that can be spoken.
 
         Raises:
@@ -86,26 +71,22 @@ class Voices:
             raise SpeechError(f"{name} cannot be spoken: {problems[0]}")
         return language
 
-    def available_languages(self, engine: Engine) -> list[str]:
+    def available_languages(self, engine: Engines) -> list[str]:
         """Languages with a voice whose engine is there."""
         spoken = {self.voices[name].language for name in self.available_voices(engine)}
         return [name for name in self.languages if name in spoken]
 
-    def available_voices(self, engine: Engine) -> list[str]:
+    def available_voices(self, engine: Engines) -> list[str]:
         """Voices whose engine is there."""
         return [name for name in self.voices if self._problem(name, engine) is None]
 
-    def _problem(self, voice: str, engine: Engine) -> str | None:
+    def _problem(self, voice: str, engine: Engines) -> str | None:
         return engine.missing(self.voices[voice].engine, self.voices[voice].engine_voice)
 
 
 @lru_cache(maxsize=None)
 def load_voices() -> Voices:
-    """The languages and voices, read once.
-
-    Raises:
-        ConfigError: If the file has a wrong, unknown or missing entry.
-    """
+    """The languages and voices, read once; a ConfigError for a wrong, unknown or missing entry of the file."""
     tables = check_keys(read_json(config_file(FILE)), FILE, ("default_language", "languages", "voices"), ("_meta",))
     languages: dict[str, Language] = {}
     voices: dict[str, Voice] = {}

@@ -1,6 +1,4 @@
-"""The speech process: `python -m nao_sim_bridge.speech.worker FD [ENGINE ...]`. It holds the engines' libraries.
-
-The named engines are left out, as if they were not installed.
+"""The speech process: `python -m nao_sim_bridge.speech.worker FD`. It holds the engines' libraries.
 
 In a process of its own, because libraries of that kind crash now and then, and because what they compute must not
 take time from the simulation. Each text is spoken in a copy of the process that ends with it: the engines keep a
@@ -32,13 +30,12 @@ PR_SET_PDEATHSIG = 1
 
 def main(arguments: list[str]) -> int:
     """Serve one pipe until it is closed."""
-    pipe = pipe_to_parent(arguments[0])
+    (descriptor,) = arguments
+    pipe = pipe_to_parent(descriptor)
     engines: dict[str, Any] = {}
     found: dict[str, Any] = {}
     for name, make in ENGINES.items():
         try:
-            if name in arguments[1:]:
-                raise OSError("it is left out")
             engines[name] = make()
             found[name] = engines[name].voices()
         except OSError as error:

@@ -22,13 +22,9 @@ LEAVE = 1.5
 
 @dataclass(frozen=True)
 class Relative:
-    """Where the robot should be, as seen from the thing, whose X axis points away from the robot.
+    """Where the robot should be, m and rad, as seen from the thing, whose X axis points away from the robot.
 
-    Attributes:
-        x: m; negative, the robot is this side of the thing.
-        y: m.
-        yaw: rad.
-        tolerances: How near is there: m, m, rad.
+    With a negative x it is this side of the thing. The tolerances, m, m, rad, say how near is there.
     """
 
     x: float = -0.3
@@ -38,13 +34,7 @@ class Relative:
 
 
 class Approach:
-    """Walks to where the robot should be.
-
-    Attributes:
-        relative: Where that is.
-        gait: How it walks.
-        reached: Called each time that it has got there.
-    """
+    """Walks to where the robot should be, `relative` to the thing; calls `reached` each time that it has got there."""
 
     def __init__(self, simulation: Any) -> None:
         self.relative = Relative()
@@ -57,22 +47,19 @@ class Approach:
         self._refused = ""
 
     def go(self, here: Sequence[float], place: Point, time: float) -> None:
-        """Walk on.
-
-        Args:
-            here: x, y in m and heading in rad of the robot in the world.
-            place: Of the thing in the world, m.
-            time: Now, s.
-        """
+        """Walk on from `here`, x, y in m and heading in rad, to the place of the thing, m, both in world; time in s."""
         robot = FootPose(*here)
         goal = goal_beside(robot, place, self.relative)
         away = goal.seen_from(robot)
         locomotion = self._simulation.robot.locomotion
-        near = self._near(away, LEAVE if self._there else 1.0)
-        if near:
+        factor = LEAVE if self._there else 1.0
+        if all(abs(a) <= factor * limit for a, limit in zip(away, self.relative.tolerances)):
             if locomotion.active and self._goal is not None and not self._there:
                 return  # it walks the last steps
-            self._arrive()
+            if not self._there:
+                self._there = True
+                for call in self.reached:
+                    call()
             return
         self._there = False
         if time < self._next or (locomotion.active and self._goal is not None and not self._moved(goal)):
@@ -100,20 +87,11 @@ class Approach:
             return
         self._refused, self._goal = "", goal
 
-    def _near(self, away: FootPose, factor: float) -> bool:
-        return all(abs(a) <= factor * limit for a, limit in zip(away, self.relative.tolerances))
-
     def _moved(self, goal: FootPose) -> bool:
         return (
             math.hypot(goal.x - self._goal.x, goal.y - self._goal.y) > GOAL_MOVED
             or abs(turn_to(self._goal.yaw, goal.yaw)) > GOAL_TURNED
         )
-
-    def _arrive(self) -> None:
-        if not self._there:
-            self._there = True
-            for call in self.reached:
-                call()
 
 
 def goal_beside(robot: FootPose, place: Point, relative: Relative) -> FootPose:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 from enum import Enum
-from typing import Any, Sequence
+from typing import Any, Tuple
 
 import numpy as np
 
@@ -18,8 +18,7 @@ from nao_sim_bridge.model.frames import ROBOT, TORSO, Placement, space_in_torso
 from nao_sim_bridge.model.kinematics import rpy_matrix, transform
 from nao_sim_bridge.tracking import geometry
 from nao_sim_bridge.tracking.approach import Approach
-from nao_sim_bridge.tracking.geometry import Point
-from nao_sim_bridge.tracking.head_servo import HeadServo
+from nao_sim_bridge.tracking.geometry import HEAD, Point
 
 # The place is looked at again so often, s: the robot itself may move.
 LOOK_TIME = 0.1
@@ -31,6 +30,77 @@ ROTATION = 56
 THERE = 0.01
 # Where the head looks for something, HeadYaw and HeadPitch, rad, one after the other.
 SEARCH = ((0.0, -0.1), (0.8, -0.1), (0.8, 0.25), (0.0, 0.25), (-0.8, 0.25), (-0.8, -0.1))
+# How near counts as there, rad.
+ARRIVED = 1e-4
+# Somebody else has moved a command by more than this since, rad.
+MOVED = 0.02
+
+
+class HeadServo:
+    """Moves HeadYaw and HeadPitch, a little at each tick, as long as nobody else has them.
+
+    The velocity, rad/s, and the acceleration, rad/s2, are limits. The head is resting when it has got to where it
+    should be, or need not go anywhere.
+    """
+
+    def __init__(self, simulation: Any, velocity: float, acceleration: float) -> None:
+        self.velocity = velocity
+        self.acceleration = acceleration
+        self._simulation = simulation
+        self._indices = tuple(simulation.model.joint_index[name] for name in HEAD)
+        self._target: Tuple[float, float] | None = None
+        self._angles = [0.0, 0.0]
+        self._speeds = [0.0, 0.0]
+        self.resting = True
+
+    def aim(self, target: Tuple[float, float]) -> None:
+        """Turn to HeadYaw and HeadPitch, rad."""
+        if self._target is None:
+            self._take_up()
+        self._target, self.resting = target, False
+
+    def stop(self) -> None:
+        """Leave the head where it is."""
+        self._target, self.resting = None, True
+
+    def tick(self, dt: float) -> None:
+        """Move on by `dt` seconds."""
+        if self._target is None or self.resting:
+            return
+        robot = self._simulation.robot
+        if robot.motion.busy(self._indices) or any(robot.joints.stiffnesses[i] == 0.0 for i in self._indices):
+            self._take_up()
+            return
+        if any(abs(robot.joints.commands[i] - a) > MOVED for i, a in zip(self._indices, self._angles)):
+            self._take_up()
+        there = [self._step(0, self._target[0], dt)]
+        # How far the head can be lifted and lowered depends on where it is turned to.
+        low, high = robot.joints.limits_beside(self._indices[1], self._angles[0])
+        there.append(self._step(1, min(max(self._target[1], low), high), dt))
+        self._angles[1] = min(max(self._angles[1], low), high)
+        speeds = {i: robot.model.joints[i].max_velocity for i in self._indices}
+        robot.motion.set_targets(dict(zip(self._indices, self._angles)), speeds)
+        self.resting = all(there)
+
+    def _take_up(self) -> None:
+        """Begin from where the head is told to be now."""
+        commands = self._simulation.robot.joints.commands
+        self._angles = [commands[i] for i in self._indices]
+        self._speeds = [0.0, 0.0]
+
+    def _step(self, axis: int, target: float, dt: float) -> bool:
+        """Move an axis; whether it is there."""
+        away = target - self._angles[axis]
+        if abs(away) < ARRIVED and abs(self._speeds[axis]) < self.acceleration * dt * 2.0:
+            self._angles[axis], self._speeds[axis] = target, 0.0
+            return True
+        # The speed from which it can still come to rest at the target.
+        wanted = math.copysign(min(self.velocity, math.sqrt(2.0 * self.acceleration * abs(away)), abs(away) / dt), away)
+        change = self.acceleration * dt
+        speed = min(max(wanted, self._speeds[axis] - change), self._speeds[axis] + change)
+        self._speeds[axis] = speed
+        self._angles[axis] += speed * dt
+        return False
 
 
 class Mode(Enum):
@@ -41,38 +111,21 @@ class Mode(Enum):
     MOVE = "Move"
 
 
-@dataclass(frozen=True)
-class Effector:
-    """Which arms point, too."""
-
-    name: str
-    arms: Sequence[str]
-
-
-EFFECTORS = {
-    "None": Effector("None", ()),
-    "LArm": Effector("LArm", ("LArm",)),
-    "RArm": Effector("RArm", ("RArm",)),
-    "Arms": Effector("Arms", ("LArm", "RArm")),
-}
+EFFECTORS = {"None": (), "LArm": ("LArm",), "RArm": ("RArm",), "Arms": ("LArm", "RArm")}
+"""Names of NAOqi to the arms that point, too."""
 
 
 class Follower:
-    """Follows one place.
+    """Follows one place, with arms too by the name of an effector.
 
-    Attributes:
-        head: Turns the head.
-        approach: Walks to the place.
-        effector: Which arms point at the place.
-        velocity: Of the head at most, rad/s.
-        search_share: Of the head's velocity while it searches.
+    The velocity is that of the head at most, rad/s; while it searches, it has `search_share` of that.
     """
 
     def __init__(self, simulation: Any) -> None:
         self._simulation = simulation
         self.head = HeadServo(simulation, velocity=3.0, acceleration=15.0)
         self.approach = Approach(simulation)
-        self.effector = EFFECTORS["None"]
+        self.effector = "None"
         self.search_share = 0.3
         self._mode = Mode.HEAD
         self._place: Point | None = None
@@ -149,12 +202,12 @@ class Follower:
             self.head.aim(geometry.head_angles(model, in_torso))
         if self._mode is Mode.MOVE:
             self.approach.go(geometry.robot_pose(model, placed), place, now.time)
-        for arm in self.effector.arms:
+        for arm in EFFECTORS[self.effector]:
             self._point(arm, in_torso)
 
     def _point(self, arm: str, in_torso: Point) -> None:
         robot = self._simulation.robot
-        if len(self.effector.arms) > 1 and (in_torso[1] >= 0.0) != (arm == "LArm"):
+        if self.effector == "Arms" and (in_torso[1] >= 0.0) != (arm == "LArm"):
             return  # of two arms the nearer one points
         index = robot.model.joint_index
         angles = geometry.arm_angles(robot.model, arm, in_torso)

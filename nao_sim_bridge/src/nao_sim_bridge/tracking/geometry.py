@@ -53,13 +53,9 @@ def robot_pose(model: RobotModel, placed: Placement) -> Tuple[float, float, floa
 
 
 def seen_place(camera: Sequence[float], alpha: float, beta: float, distance: float) -> Point:
-    """Where something is that a camera sees: x, y, z in the frame of the pose, m.
+    """Where something is that a camera sees, m, in the frame of the camera's pose (m; roll, pitch, yaw in rad).
 
-    Args:
-        camera: Pose of the camera: x, y, z in m, roll, pitch, yaw in rad.
-        alpha: Of it in the picture, positive to the left, rad.
-        beta: Of it in the picture, positive downwards, rad.
-        distance: From the camera, m.
+    It is seen in the picture at alpha, to the left, and beta, downwards, rad, and `distance` m from the camera.
     """
     # Angles of a picture are those of the axes: tangents, not two turns in a row.
     ray = np.array((1.0, math.tan(alpha), -math.tan(beta)))
@@ -75,9 +71,7 @@ def distance_of(size: float, angle: float) -> float:
 def head_angles(model: RobotModel, point: Point, camera: int = 0) -> Tuple[float, float]:
     """HeadYaw and HeadPitch, rad within their limits, that bring a place into the middle of a camera's picture.
 
-    Args:
-        point: In the frame of the torso, m.
-        camera: Index, 0 top, 1 bottom.
+    The place is in the frame of the torso, m; the camera is 0 top or 1 bottom.
     """
     yaw_joint, pitch_joint = map(model.joint, HEAD)
     neck = yaw_joint.origin + pitch_joint.origin

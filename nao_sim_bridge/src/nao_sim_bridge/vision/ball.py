@@ -1,4 +1,7 @@
-"""Finds red balls by their colour and by their outline."""
+"""Finds red balls by their colour and by their outline.
+
+Directions to the outline of a sphere lie on a cone, wherever in the picture it is.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ import cv2
 import numpy as np
 
 from nao_sim_bridge.cameras.optics import Optics
-from nao_sim_bridge.vision.cone import Cone, fit_cone
+from nao_sim_bridge.vision.ellipse import sample
 from nao_sim_bridge.vision.settings import BallSettings, load_vision
 
 ROUNDS = 3
@@ -25,19 +28,93 @@ REACH = 1.6
 """How far outwards edges are looked for, as a share of the radius."""
 STEPS = 48
 """Samples along a ray."""
+CONE_ROUNDS = 4
+LEAST_POINTS = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Cone:
+    """Directions to the outline of a sphere: all have the same angle to an axis, rad, its angular radius.
+
+    The axis is a (3,) unit vector in the frame of the camera: X ahead, Y left, Z up. The residual is the root mean
+    square of how far the directions that were used are off, rad.
+    """
+
+    axis: np.ndarray
+    angle: float
+    residual: float
+
+    @property
+    def alpha(self) -> float:
+        """Direction of the axis seen from above, rad, positive to the left."""
+        return math.atan2(self.axis[1], self.axis[0])
+
+    @property
+    def beta(self) -> float:
+        """Direction of the axis seen from the side, rad, positive downwards."""
+        return math.atan2(-self.axis[2], self.axis[0])
+
+
+def fit_cone(directions: np.ndarray) -> Cone | None:
+    """The cone closest to (n, 3) unit vectors, which need not go all the way round; None when they make none."""
+    if len(directions) < LEAST_POINTS:
+        return None
+    middle = directions.mean(axis=0)
+    middle /= np.linalg.norm(middle)
+    # In the plane across the mean direction, a small cone is nearly a circle: a start for the exact angles.
+    left, up = _across(middle)
+    ahead = directions @ middle
+    if np.any(ahead <= 0.1):
+        return None
+    across = np.stack([directions @ left, directions @ up], axis=1) / ahead[:, None]
+    circle = _circle(across)
+    if circle is None:
+        return None
+    center = circle[:2]
+    for _ in range(CONE_ROUNDS):
+        axis = middle + center[0] * left + center[1] * up
+        axis /= np.linalg.norm(axis)
+        angles = np.arccos(np.clip(directions @ axis, -1.0, 1.0))
+        if np.any(angles < 1e-9):
+            return None
+        # Derivatives of the angles when the axis turns towards left and up.
+        gradient = np.stack([directions @ left, directions @ up], axis=1) / -np.sin(angles)[:, None]
+        system = np.column_stack([gradient, -np.ones(len(angles))])
+        step, *_ = np.linalg.lstsq(system, -angles, rcond=None)
+        center = center + step[:2]
+        if not np.all(np.isfinite(center)):
+            return None
+    axis = middle + center[0] * left + center[1] * up
+    axis /= np.linalg.norm(axis)
+    angles = np.arccos(np.clip(directions @ axis, -1.0, 1.0))
+    angle = float(angles.mean())
+    return Cone(axis, angle, float(np.sqrt(np.mean((angles - angle) ** 2))))
+
+
+def _across(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors to the left and upwards, across an axis."""
+    left = np.cross((0.0, 0.0, 1.0), axis)
+    left /= np.linalg.norm(left)
+    return left, np.cross(axis, left)
+
+
+def _circle(points: np.ndarray) -> np.ndarray | None:
+    """(x, y, radius) of the circle through (n, 2) points, by least squares."""
+    system = np.column_stack([2.0 * points, np.ones(len(points))])
+    solution, _, rank, _ = np.linalg.lstsq(system, np.sum(points**2, axis=1), rcond=None)
+    square = solution[2] + solution[0] ** 2 + solution[1] ** 2
+    if rank < 3 or square <= 0.0:
+        return None
+    return np.array([solution[0], solution[1], math.sqrt(square)])
 
 
 @dataclass(frozen=True)
 class Ball:
-    """A red ball in a picture.
+    """A red ball in a picture; its quality says how much it looks like one, up to 1.
 
-    Attributes:
-        alpha: Direction of its centre seen from above, rad, positive to the left.
-        beta: Direction of its centre seen from the side, rad, positive downwards.
-        radius: Angular radius, rad.
-        x: Its centre in the picture, 0 at the left edge and 1 at the right one.
-        y: The same from the upper edge to the lower one.
-        quality: How much it looks like a ball, up to 1.
+    The direction of its centre is alpha, seen from above, to the left, and beta, seen from the side, downwards; these
+    and its angular radius are in rad. Its centre is at x, 0 at the left edge of the picture to 1 at the right one, and
+    y, likewise from the upper edge down.
     """
 
     alpha: float
@@ -48,7 +125,7 @@ class Ball:
     quality: float
 
     def distance(self, radius: float) -> float:
-        """Distance from the camera to its centre, m, when its radius is `radius`, m."""
+        """Distance from the camera to its centre, m, when it has this radius, m."""
         return radius / math.sin(self.radius)
 
 
@@ -101,16 +178,11 @@ class BallDetector:
 
 
 def red_parts(image: np.ndarray, dark: float) -> tuple[np.ndarray, np.ndarray]:
-    """How red pixels are.
+    """How red the pixels of a (h, w, 3) uint8 picture, blue, green, red, are: two (h, w) float32 arrays.
 
-    Args:
-        image: (h, w, 3) uint8, blue, green, red.
-        dark: Red from which on redness counts fully.
-
-    Returns:
-        (h, w) float32 arrays: the excess of red over the other colours, -255..255, which is mixed as light is at an
-        edge; and redness, that less what the others differ by (orange has more green than blue, as the robot's own
-        arms have), as a share of red, which is the same in light and shadow.
+    First the excess of red over the other colours, -255..255, which is mixed as light is at an edge. Then redness: that
+    less what the others differ by (orange has more green than blue, as the robot's own arms have), as a share of red,
+    the same in light and shadow; below `dark` of red it counts less.
     """
     blue, green, red = cv2.split(image)
     red32 = red.astype(np.float32)
@@ -146,10 +218,8 @@ class _Lens:
 
     def inside(self, places: np.ndarray, border: float = 0.0) -> np.ndarray:
         """Which places are in the picture and not within `border` pixels of its edge."""
-        x, y = places[..., 0], places[..., 1]
         with np.errstate(invalid="ignore"):
-            across = (x > border) & (x < self.width - border)
-            return across & (y > border) & (y < self.height - border)
+            return np.all((places > border) & (places < np.array((self.width, self.height)) - border), axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,17 +249,14 @@ def _edges(cone: Cone, excess: np.ndarray, lens: _Lens, settings: BallSettings) 
     """Edges between red and not red along rays from the middle, where excess falls to half of what it is inside."""
     shares = np.linspace(INSIDE[0], REACH, STEPS)
     turns = np.arange(settings.rays) * (2.0 * math.pi / settings.rays)
-    left = np.cross((0.0, 0.0, 1.0), cone.axis)
-    left /= np.linalg.norm(left)
-    up = np.cross(cone.axis, left)
+    left, up = _across(cone.axis)
     out = np.cos(turns)[:, None] * left + np.sin(turns)[:, None] * up
     angles = cone.angle * shares
     rays = np.cos(angles)[None, :, None] * cone.axis + np.sin(angles)[None, :, None] * out[:, None, :]
     places = lens.places(rays)
     # A ray counts as far as it stays in the picture.
     usable = np.logical_and.accumulate(lens.inside(places, BORDER), axis=1)
-    where = np.nan_to_num(places, nan=-1e4).astype(np.float32) - 0.5
-    values = cv2.remap(excess, where[..., 0], where[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    values = sample(excess, np.nan_to_num(places, nan=-1e4))
     sure = shares <= INSIDE[1]
     level = np.median(values[:, sure], axis=1)
     # What is behind need not be grey: the edge is half way between what is inside and what is just outside.

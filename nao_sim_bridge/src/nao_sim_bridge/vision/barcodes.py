@@ -40,12 +40,10 @@ AROUND = 0.2
 
 @dataclass(frozen=True)
 class Barcode:
-    """A code in a picture.
+    """A code in a picture; its kind is its format, for example "QRCode".
 
-    Attributes:
-        kind: Its format, for example "QRCode".
-        corners: In pixels of the picture: upper left, upper right, lower right and lower left one, as the code is
-            read. Of stripes, the ends of the line along which they were read, each twice.
+    Its corners are in pixels: upper left, upper right, lower right and lower left one, as the code is read. Of stripes
+    they are the ends of the line along which they were read, each twice.
     """
 
     text: str

@@ -56,12 +56,10 @@ class VisionProcess:
         return process.process.pid if process is not None else None
 
     def detector(self, name: str, arguments: Callable[[], tuple] = tuple) -> RemoteDetector:
-        """A detector of one's own.
+        """A detector of one's own, by its name in `DETECTORS`.
 
-        Args:
-            name: Which; a key of `DETECTORS`.
-            arguments: Called for the arguments of its constructor, also when it has to be made again in a new process:
-                what it has to know by then and must not be lost with the old one.
+        `arguments` gives those of its constructor. It is called again when the detector has to be made again in a new
+        process, so it gives what must not be lost with the old one.
         """
         return RemoteDetector(self, name, arguments, next(self._keys))
 
@@ -137,29 +135,18 @@ class RemoteDetector:
     """A detector in the vision process.
 
     When the process dies at work, the detector is made again in a new one and the same work is asked for again, once.
-
-    Attributes:
-        arguments: Gives the arguments of its constructor.
-        key: What the process knows it by.
-        home: The process in which it is; belongs to VisionProcess, as the next.
-        deaths: How often in a row its work ended the process.
     """
 
     def __init__(self, process: VisionProcess, name: str, arguments: Callable[[], tuple], key: int) -> None:
-        self.name = name
+        self.name, self.key = name, key
         self.arguments = arguments
-        self.key = key
+        # For VisionProcess: where it is now, and how often in a row its work ended the process.
         self.home: ChildProcess | None = None
         self.deaths = 0
         self._process = process
 
     def detect(self, image: np.ndarray, optics: Optics, settings: Any = None) -> Any:
-        """What is in a picture; blocks until it is known.
-
-        Args:
-            image: (height, width, 3) uint8, blue, green, red.
-            optics: How it was projected.
-            settings: What the detector wants to be told.
+        """What is in a picture, see `Detector`; blocks until it is known.
 
         Raises:
             VisionRefused: The detector failed.

@@ -15,9 +15,7 @@ from nao_sim_bridge.cameras.optics import Intrinsics
 class Ellipse:
     """An ellipse in a picture; pixels, (0.5, 0.5) is the middle of the first one.
 
-    Attributes:
-        center: (2,) array.
-        shape: (2, 2) array: takes the points of a unit circle, from the centre, to the ellipse.
+    Its shape, (2, 2), takes the points of a unit circle to those of the ellipse, from its centre, (2,).
     """
 
     center: np.ndarray
@@ -38,13 +36,10 @@ class Ellipse:
         return float(across), float(down)
 
     def points(self, turns: np.ndarray, shares: np.ndarray, slant: np.ndarray | None = None) -> np.ndarray:
-        """(n, m, 2) places at angles and at shares of the radius.
+        """(n, m, 2) places at (n,) angles, rad clockwise from upwards, and at (m,) shares of the radius.
 
-        Args:
-            turns: (n,) angles in rad, clockwise as one sees the picture, from its upward direction on.
-            shares: (m,) shares of the radius.
-            slant: (2,) where in the unit circle its own middle is seen: perspective moves it when the circle is
-                slanted and near. None for no perspective.
+        `slant` is where in the unit circle its own middle is seen, (2,): perspective moves it when the circle is
+        slanted and near. None for no perspective.
         """
         circle = np.stack([np.sin(turns), -np.cos(turns)], axis=-1)
         unit = circle[:, None, :] * shares[None, :, None]
@@ -90,13 +85,9 @@ def _seen_slanted(unit: np.ndarray, slant: np.ndarray) -> np.ndarray:
 
 
 def ellipse_of(outline: np.ndarray) -> Ellipse | None:
-    """The ellipse closest to an outline.
+    """The ellipse closest to an outline, (n, 2) float32 in pixels, of at least five points; None when none is close.
 
-    Args:
-        outline: (n, 2) float32, pixels; at least five points.
-
-    Returns:
-        None when none is close. Of all that take the circle to it, `shape` is the symmetric one: without a turn.
+    Of all shapes that take the circle to it, it has the symmetric one: without a turn.
     """
     try:
         (x, y), (first, second), degrees = cv2.fitEllipseDirect(outline)
@@ -118,14 +109,9 @@ def distance_from(ellipse: Ellipse, outline: np.ndarray) -> np.ndarray:
 
 
 def sample(grey: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Brightness at places in a picture, as at its edge for those outside.
+    """Brightness, (n, m) float32, at (n, m, 2) places of a (h, w) picture, as at its edge for those outside.
 
-    Args:
-        grey: (h, w) uint8 or float32.
-        places: (n, m, 2) in pixels, (0.5, 0.5) is the middle of the first one.
-
-    Returns:
-        (n, m) float32.
+    The picture is uint8 or float32; places are in pixels, (0.5, 0.5) is the middle of the first one.
     """
     where = (places - 0.5).astype(np.float32)
     values = cv2.remap(grey, where[..., 0], where[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)

@@ -11,7 +11,7 @@ import numpy as np
 from nao_sim_bridge.base.archives import Archive
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.whole_file import write_whole
-from nao_sim_bridge.vision.faces_descriptor import likeness
+from nao_sim_bridge.vision.faces_features import likeness
 
 MOST_PICTURES = 10
 """Pictures of one person at most."""
@@ -58,17 +58,16 @@ class FaceMemory:
         """Who it is most likely, and how sure that is, 0..1; ("", 0) when nobody is known."""
         best, score = "", 0.0
         for name, pictures in self._pictures.items():
-            found = _score(float(likeness(description, pictures).max()))
+            alike = float(likeness(description, pictures).max())
+            found = min(1.0, max(0.0, (alike - STRANGERS) / (SAME - STRANGERS)))
             if found > score:
                 best, score = name, found
         return best, score
 
     def take_over(self, other: FaceMemory, policy: str) -> None:
-        """Take people of another memory in.
+        """Take people of another memory in; one of `POLICIES` says what happens to somebody who is known already.
 
-        Args:
-            policy: What happens to somebody who is known already: "overwrite" takes the pictures of the other memory
-                instead, "merge" has both, "keep" changes nothing.
+        "overwrite" takes the pictures of the other memory instead, "merge" has both, "keep" changes nothing.
         """
         for name, pictures in other._pictures.items():
             if name not in self._pictures or policy == "overwrite":
@@ -108,10 +107,6 @@ class FaceMemory:
         except (OSError, ValueError) as error:
             raise FaceFileError(f"{str(path)!r} is no file of known faces: {error}") from error
         return memory
-
-
-def _score(likeness_: float) -> float:
-    return float(min(1.0, max(0.0, (likeness_ - STRANGERS) / (SAME - STRANGERS))))
 
 
 def _array(content: bytes) -> np.ndarray:

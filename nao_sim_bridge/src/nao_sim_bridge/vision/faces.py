@@ -9,8 +9,7 @@ import cv2
 import numpy as np
 
 from nao_sim_bridge.cameras.optics import Optics
-from nao_sim_bridge.vision.faces_descriptor import describe
-from nao_sim_bridge.vision.faces_points import Box, FacePoints, Point, find_eyes, find_points
+from nao_sim_bridge.vision.faces_features import Box, FacePoints, Point, describe, find_eyes, find_points
 
 # Which cascade finds faces, and which has to agree in the place that it found.
 FINDER, SECOND_OPINION = "haarcascade_frontalface_alt.xml", "haarcascade_frontalface_default.xml"
@@ -34,13 +33,9 @@ FORGOTTEN = 1.0
 
 @dataclass(frozen=True)
 class FaceSettings:
-    """What the detector is told with a picture.
+    """What the detector is told with a picture: when it was taken, s, by which camera, and what is wanted.
 
-    Attributes:
-        time: When it was taken, s.
-        camera: Which camera took it.
-        track: Whether a face keeps its number from picture to picture, and is looked for where it was.
-        describe: Whether descriptions are wanted.
+    With `track` a face keeps its number from picture to picture, and is looked for where it was.
     """
 
     time: float
@@ -51,18 +46,11 @@ class FaceSettings:
 
 @dataclass(frozen=True)
 class SeenFace:
-    """A face.
+    """A face; its number is the same while it stays in view.
 
-    Attributes:
-        number: The same while it stays in view.
-        box: x, y, width, height of its frame, px.
-        centre: alpha (positive to the left) and beta (positive downwards) of the middle of the frame, rad.
-        size: Width and height of the frame, rad.
-        left_eye: Angles of the centre, the limit at the nose and at the ear of the person's own left eye.
-        right_eye: The same.
-        nose: Angles of the middle of its lower end, its left and right limit.
-        mouth: Angles of the left, right and upper limit.
-        description: See `describe`; None when none is wanted.
+    Its box is the frame x, y, width, height in px, whose centre and size are in rad. Angles are alpha, to the left, and
+    beta, downwards, in rad; of eyes, nose and mouth those of the `FacePoints`. See `describe` for the description, None
+    when none is wanted.
     """
 
     number: int

@@ -37,13 +37,10 @@ SKIPPED = 8
 
 @dataclass(frozen=True)
 class MovementSettings:
-    """What the detector is told with a picture.
+    """What the detector is told with a picture: when it was taken, s, and by which camera.
 
-    Attributes:
-        sensitivity: 0..1; the higher, the smaller a change is enough.
-        time: When it was taken, s.
-        camera: Which camera took it.
-        pose: Of the camera, as the robot knows it: x, y, z in m, roll, pitch, yaw in rad.
+    At a higher sensitivity, 0..1, a smaller change is enough. The pose of the camera is as the robot knows it: x, y, z
+    in m, roll, pitch, yaw in rad.
     """
 
     sensitivity: float
@@ -54,15 +51,10 @@ class MovementSettings:
 
 @dataclass(frozen=True)
 class MovingCluster:
-    """Pixels close together that have changed.
+    """Pixels close together that have changed, and their shares of the picture and of the rectangle around them.
 
-    Attributes:
-        alpha: Of their centre of gravity, rad, positive to the left.
-        beta: The same, positive downwards.
-        corner: (alpha, beta) of the upper left corner of the rectangle around them, rad.
-        size: Width and height of the rectangle, rad.
-        share_of_picture: Moving pixels : pixels of the picture.
-        share_of_rectangle: Moving pixels : pixels of the rectangle.
+    The direction of their centre of gravity is alpha, to the left, and beta, downwards; the corner is that of the upper
+    left corner of the rectangle, and the size its width and height; all in rad.
     """
 
     alpha: float

@@ -53,9 +53,5 @@ class VisionSettings:
 
 @lru_cache(maxsize=None)
 def load_vision() -> VisionSettings:
-    """The settings of the package.
-
-    Raises:
-        ConfigError: The file does not hold what it should.
-    """
+    """The settings of the package; a ConfigError when the file does not hold what it should."""
     return read_settings(VisionSettings, config_file(FILE), ["_note", "_note"])

@@ -37,13 +37,7 @@ class Detector(Protocol):
     """
 
     def detect(self, image: np.ndarray, optics: Optics, settings: Any) -> Any:
-        """What is in a picture.
-
-        Args:
-            image: (height, width, 3) uint8, blue, green, red; read-only.
-            optics: How it was projected; its places are normalised.
-            settings: Whatever its user gives with the picture.
-        """
+        """What is in a (height, width, 3) uint8 picture, blue, green, red, read-only; settings are its user's."""
 
 
 def make_detector(name: str, arguments: tuple = ()) -> Detector:

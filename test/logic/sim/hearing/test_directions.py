@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from ear_sounds import BLOCK, PLACES, RATE, background, harmonics, heard, noise, rms, rounded
 
-from nao_sim_bridge.hearing.array import direction, microphone_array
 from nao_sim_bridge.hearing.detection import END, START, SoundDetector
+from nao_sim_bridge.hearing.localisation import direction, microphone_array
 from nao_sim_bridge.hearing.localiser import Localiser
 
 ARRAY = microphone_array(PLACES)

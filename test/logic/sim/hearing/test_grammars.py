@@ -8,7 +8,7 @@ from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.hearing.grammars import grammar as g
 from nao_sim_bridge.hearing.grammars.bnf import GrammarError, parse_bnf
 from nao_sim_bridge.hearing.grammars.contexts import ContextError, Contexts
-from nao_sim_bridge.hearing.grammars.phrases import spoken_words
+from nao_sim_bridge.hearing.grammars.grammar import spoken_words
 from nao_sim_bridge.hearing.network import MOST_ARCS, build, spoken_word
 from nao_sim_bridge.hearing.pronunciation import Pronouncer, phones_of_ipa
 

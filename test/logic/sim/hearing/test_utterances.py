@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from spoken_words import blocks
 
-from nao_sim_bridge.hearing.everyday_speech import Piece, score_within, words_within
-from nao_sim_bridge.hearing.evidence import Evidence, difference, distance, evidence
+from nao_sim_bridge.hearing.evidence import Evidence, Piece, difference, distance, evidence, score_within, words_within
 from nao_sim_bridge.hearing.noise_reduction import FRAME, noise_spectrum, reduce_noise
 from nao_sim_bridge.hearing.settings import ConfidenceSettings, load_recognition
 from nao_sim_bridge.hearing.speech_likeness import likeness

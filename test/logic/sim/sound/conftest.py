@@ -11,7 +11,7 @@ from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.sound.reader import SoundReader
+from nao_sim_bridge.sound.files import SoundReader
 from nao_sim_bridge.sound.settings import load_sound_settings
 from nao_sim_bridge.sound.sound_world import Air, SoundWorld
 

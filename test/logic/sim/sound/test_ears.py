@@ -9,8 +9,8 @@ import pytest
 
 from nao_sim_bridge.base.samples import pcm16, sine
 from nao_sim_bridge.sound.ears import BLOCK
-from nao_sim_bridge.sound.follower import LONGEST, Follower
 from nao_sim_bridge.sound.sources import SoundSource
+from nao_sim_bridge.sound.timeline import LONGEST, Follower
 
 
 @pytest.fixture

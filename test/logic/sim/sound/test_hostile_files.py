@@ -15,8 +15,7 @@ from waits import hold
 
 from nao_sim_bridge.base.samples import sine
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.sound.files import SoundFileError, write_sound
-from nao_sim_bridge.sound.reader import SoundReader
+from nao_sim_bridge.sound.files import SoundFileError, SoundReader, write_sound
 
 
 def chunk(name, content):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nao_sim_bridge.base.samples import RATE, Sound, sine
-from nao_sim_bridge.sound.track import RAMP
+from nao_sim_bridge.sound.playing import RAMP
 
 STEADY = Sound(np.full(2 * RATE, 0.5, np.float32))
 RISING = Sound(np.arange(RATE, dtype=np.float32) / RATE)

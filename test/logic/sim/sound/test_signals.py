@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from nao_sim_bridge.base.samples import RATE, Sound, pcm16, sine
-from nao_sim_bridge.sound.decimation import REACH, third
+from nao_sim_bridge.sound.ears import REACH, third
 from nao_sim_bridge.sound.envelope import Envelope
 from nao_sim_bridge.sound.pitch import shifted
 from nao_sim_bridge.sound.propagation import FixedWays, arrivals

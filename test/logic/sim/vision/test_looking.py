@@ -11,7 +11,7 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.extractor import Subscription
 from nao_sim_bridge.naoqi.vision.vision_extractor import VisionExtractor
 from nao_sim_bridge.naoqi.vision.watching import Watching
-from nao_sim_bridge.vision.cone import fit_cone
+from nao_sim_bridge.vision.ball import fit_cone
 
 
 class Eyes(Head):

@@ -61,12 +61,7 @@ Part = Union[g.Words, g.Anything, RuleUse, "Group"]
 
 @dataclass(frozen=True)
 class Group:
-    """Alternatives, each a row of parts; said so many times.
-
-    Attributes:
-        least: How often at least.
-        most: How often at most; None for any number.
-    """
+    """Alternatives, each a row of parts, said `least` to `most` times, None for any number."""
 
     alternatives: Tuple[Tuple[Part, ...], ...]
     least: int = 1
@@ -75,13 +70,7 @@ class Group:
 
 @dataclass
 class BnfGrammar:
-    """A grammar file.
-
-    Attributes:
-        start: Rules that may be said as a whole.
-        activatable: Rules that may be switched off.
-        slots: Rules that are filled later.
-    """
+    """A grammar file: rules that may be said as a whole, that may be switched off, and that are filled later, slots."""
 
     name: str = ""
     start: List[str] = field(default_factory=list)

@@ -9,7 +9,6 @@ from nao_sim_bridge.base.errors import BadValue, SimulationError, UnknownName
 from nao_sim_bridge.hearing.grammars import grammar as g
 from nao_sim_bridge.hearing.grammars.bnf import BnfGrammar, Group, Part, RuleUse
 
-RULE_TYPES = ("start", "active", "activatable", "slot")
 THRESHOLD = "ConfidenceThreshold"
 """Parameter of a context: hypotheses below this confidence are not told."""
 
@@ -32,15 +31,17 @@ class Context:
         return list(dict.fromkeys([*self.bnf.start, *self.bnf.activatable]))
 
     def rules(self, kind: str) -> list[str]:
-        if kind == "start":
-            return list(self.bnf.start)
-        if kind == "activatable":
-            return self.switchable()
-        if kind == "active":
-            return [name for name in self.switchable() if name not in self.inactive]
-        if kind == "slot":
-            return list(self.bnf.slots)
-        raise BadValue("typeName", kind, ", ".join(RULE_TYPES))
+        """Names of the rules of a kind: start, active, activatable or slot."""
+        switchable = self.switchable()
+        kinds = {
+            "start": list(self.bnf.start),
+            "active": [name for name in switchable if name not in self.inactive],
+            "activatable": switchable,
+            "slot": list(self.bnf.slots),
+        }
+        if kind not in kinds:
+            raise BadValue("typeName", kind, ", ".join(kinds))
+        return kinds[kind]
 
     def switched(self, rule: str, active: bool) -> Context:
         """With a rule switched on or off."""

@@ -14,8 +14,8 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.samples import RATE
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.hearing.array import microphone_array
 from nao_sim_bridge.hearing.detection import DEFAULT_SENSITIVITY, SoundDetector
+from nao_sim_bridge.hearing.localisation import microphone_array
 from nao_sim_bridge.hearing.localiser import HeardSound, Localiser, OwnVoice
 from nao_sim_bridge.model.frames import ROBOT, Placement, space_in_torso
 from nao_sim_bridge.model.kinematics import LinkPoses, quaternion_matrix, transform

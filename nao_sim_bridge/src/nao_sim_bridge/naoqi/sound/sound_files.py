@@ -12,8 +12,7 @@ from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.sound.files import SoundFileError
-from nao_sim_bridge.sound.reader import SoundReader
+from nao_sim_bridge.sound.files import SoundFileError, SoundReader
 
 ENDINGS = (".wav", ".ogg", ".flac", ".mp3")
 # Of a tone: Hz and s.

@@ -15,8 +15,8 @@ from nao_sim_bridge.naoqi.binding.arguments import number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.speech import parameters
 from nao_sim_bridge.speech.clips import Style
+from nao_sim_bridge.speech.engines import Engines
 from nao_sim_bridge.speech.parameters import Pronunciations
-from nao_sim_bridge.speech.speech import Engine
 from nao_sim_bridge.speech.tags import TAG
 from nao_sim_bridge.speech.voices import load_voices
 
@@ -34,7 +34,7 @@ class VoiceSettings:
         engine: Who says which voices can speak.
     """
 
-    def __init__(self, engine: Engine, files: ClientFiles) -> None:
+    def __init__(self, engine: Engines, files: ClientFiles) -> None:
         self._voices = load_voices()
         self._engine = engine
         self._files = files

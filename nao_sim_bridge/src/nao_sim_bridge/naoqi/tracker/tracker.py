@@ -105,10 +105,10 @@ class ALTracker:
         return self._runner.execute(lambda: setattr(self._follower, "mode", MODES[mode]), "setMode")
 
     def getEffector(self) -> str:
-        return self._follower.effector.name
+        return self._follower.effector
 
     def setEffector(self, effector: str) -> None:
-        self._follower.effector = EFFECTORS[_effector(effector)]
+        self._follower.effector = _effector(effector)
 
     def getRelativePosition(self) -> list[float]:
         relative = self._follower.approach.relative
@@ -187,7 +187,7 @@ class ALTracker:
             self._tracking.searches = False
             self._tracking.periods.update({name: target.period for name, target in TARGETS.items()})
             follower = self._follower
-            follower.mode, follower.effector = Mode.HEAD, EFFECTORS["None"]
+            follower.mode, follower.effector = Mode.HEAD, "None"
             follower.velocity, follower.head.acceleration = DEFAULT_VELOCITY, DEFAULT_ACCELERATION
             follower.search_share = DEFAULT_SEARCH
             follower.approach.relative, follower.approach.gait = Relative(), gait_of()
@@ -198,7 +198,7 @@ class ALTracker:
 
     def removeEffector(self, effector: str) -> None:
         if _effector(effector) == self.getEffector():
-            self._follower.effector = EFFECTORS["None"]
+            self._follower.effector = "None"
 
     # --- older names ----------------------------------------------------------------------------------------------
 

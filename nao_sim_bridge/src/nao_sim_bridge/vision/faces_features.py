@@ -1,4 +1,4 @@
-"""Eyes, nose and mouth of a face, found in the picture."""
+"""Eyes, nose and mouth of a face, and what it looks like, as numbers that are alike for pictures of the same person."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 Point = Tuple[float, float]
 Box = Tuple[float, float, float, float]
 
-# The face is looked at in this size, px; the cascade's frame of a face is its whole.
+# Eyes are looked for in a face of this size, px; the cascade's frame of a face is its whole.
 SIZE = 64
 # Where the middle between the eyes is expected in the frame, how far the eyes are from it, and by how much each may
 # differ; shares of the frame. The slope is that of the line through the eyes.
@@ -27,17 +27,24 @@ BROW, BROW_SHARE = 6, 0.5
 DOUBT, SLOPE_DOUBT = 0.35, 1.6
 # An upright face in which the eyes are at fixed places: its size, and the middle between the eyes, px.
 UPRIGHT, UPRIGHT_EYES, UPRIGHT_DISTANCE = (96, 112), (48.0, 40.0), 40.0
+# A face is described in this size, px: about that of one two metres away in a VGA picture.
+SMALL = (48, 56)
+CELL = 8
+DIRECTIONS = 8
+# How far from its middle the face counts, in halves of its width and height: at its rim it changes when the head turns.
+RIM = (0.8, 1.0)
+# A cell whose edges are all fainter than this, of 255 a pixel, says nothing.
+FAINT = 6.0
+SHARE_OF_EDGES = 0.5
+"""What the edges count; the tones count for the rest."""
 
 
 @dataclass(frozen=True)
 class FacePoints:
     """Points of a face in the picture, px; left and right are the person's own.
 
-    Attributes:
-        left_eye: Centre, limit at the nose, limit at the ear.
-        right_eye: The same.
-        nose: Middle of its lower end, left and right limit.
-        mouth: Left, right and upper limit.
+    Of an eye: centre, limit at the nose, limit at the ear. Of the nose: middle of its lower end, left and right limit.
+    Of the mouth: left, right and upper limit.
     """
 
     left_eye: Tuple[Point, Point, Point]
@@ -47,21 +54,12 @@ class FacePoints:
 
 
 def find_eyes(grey: np.ndarray, box: Box) -> tuple[Point, Point]:
-    """Centres of the eye on the left of the picture and of that on the right, px.
-
-    Args:
-        grey: (h, w) uint8 picture.
-        box: Frame of the face as the cascade gives it: x, y, width, height, px.
-    """
-    x, y, width, height = box
+    """Centres, px, of the eyes on the left and right of a (h, w) uint8 picture, in the cascade's frame of a face."""
+    x, y, width, _ = box
     scale = SIZE / width
-    face = cv2.warpAffine(
-        grey,
-        np.float32(((scale, 0, -x * scale), (0, scale, -y * scale))),
-        (SIZE, SIZE),
-        borderMode=cv2.BORDER_REPLICATE,
-    ).astype(np.float32)
-    dark = _darkness(face)
+    enlarged = np.float32(((scale, 0, -x * scale), (0, scale, -y * scale)))
+    face = cv2.warpAffine(grey, enlarged, (SIZE, SIZE), borderMode=cv2.BORDER_REPLICATE)
+    dark = _darkness(face.astype(np.float32))
     middles_x, middles_y, halves, slopes, belief = _CANDIDATES
     rise = halves * slopes
     left_x, right_x = middles_x - halves, middles_x + halves
@@ -107,10 +105,8 @@ def find_points(grey: np.ndarray, eyes: tuple[Point, Point]) -> FacePoints:
         left_eye=sides[0],
         right_eye=sides[1],
         nose=tuple(_back(back, px, nose_row) for px in ((nose_left + nose_right) / 2.0, nose_right, nose_left)),
-        mouth=(
-            _back(back, mouth_right, mouth_row),
-            _back(back, mouth_left, mouth_row),
-            _back(back, middle, mouth_top),
+        mouth=tuple(
+            _back(back, *at) for at in ((mouth_right, mouth_row), (mouth_left, mouth_row), (middle, mouth_top))
         ),
     )
 
@@ -151,9 +147,7 @@ def _depth(row: float) -> float:
 def _dark_row(face: np.ndarray, depths: Tuple[float, float], reach: float) -> tuple[float, float, float]:
     """The row of a dark feature on the middle line of the face, and its limits to the left and right of the picture.
 
-    Args:
-        depths: Where to look, in distances of the eyes below them.
-        reach: How far to both sides it may extend, in distances of the eyes.
+    It is looked for between two depths below the eyes and reaches no further to both sides, in distances of the eyes.
     """
     first, last = (round(UPRIGHT_EYES[1] + depth * UPRIGHT_DISTANCE) for depth in depths)
     last = min(last, UPRIGHT[1] - 3)
@@ -198,3 +192,66 @@ def _eye_limits(face: np.ndarray, centre: float, sign: float) -> tuple[float, fl
 def _back(matrix: np.ndarray, x: float, y: float) -> Point:
     px, py = matrix @ (x, y, 1.0)
     return float(px), float(py)
+
+
+def describe(picture: np.ndarray, eyes: Tuple[Point, Point]) -> np.ndarray:
+    """(n,) float32 description, of length 1, of a face in a BGR picture with these centres of eyes, px.
+
+    Two parts, each of length 1: how strong edges of each direction are in each part of the face (they say how brows,
+    eyes, glasses, mouth, beard and hair line are), and how bright and of what colour each part is compared with the
+    whole face. Both are taken from a face of one small size, so that distance changes little, and neither knows how
+    bright the light is; the second takes the colour of the light out, too.
+    """
+    face, _ = upright(picture, eyes)
+    face = cv2.resize(face, SMALL, interpolation=cv2.INTER_AREA)
+    return np.concatenate((np.sqrt(SHARE_OF_EDGES) * _edges(face), np.sqrt(1.0 - SHARE_OF_EDGES) * _tones(face)))
+
+
+def likeness(one: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """How alike a description (n,) is to each of others (m, n), at most 1."""
+    return others @ one
+
+
+def _edges(face: np.ndarray) -> np.ndarray:
+    grey = cv2.GaussianBlur(cv2.cvtColor(face, cv2.COLOR_BGR2GRAY), (3, 3), 0).astype(np.float32)
+    dx, dy = cv2.Sobel(grey, cv2.CV_32F, 1, 0) / 4.0, cv2.Sobel(grey, cv2.CV_32F, 0, 1) / 4.0
+    strength, angle = np.hypot(dx, dy), np.mod(np.arctan2(dy, dx), np.pi)
+    # Each edge counts for the two directions next to its own.
+    place = angle / np.pi * DIRECTIONS
+    low = np.floor(place).astype(int)
+    share = place - low
+    maps = np.zeros((DIRECTIONS, *grey.shape), np.float32)
+    rows, columns = np.indices(grey.shape)
+    maps[low % DIRECTIONS, rows, columns] += strength * (1.0 - share)
+    maps[(low + 1) % DIRECTIONS, rows, columns] += strength * share
+    cells = np.stack([_cells(one) for one in maps], axis=-1)
+    # As strong as the strong ones of the neighbourhood: light from one side does not count.
+    around = cv2.blur(cells.sum(axis=-1), (3, 3), borderType=cv2.BORDER_REPLICATE)
+    cells = np.sqrt(np.maximum(cells, 0.0) / (around + FAINT)[..., None])
+    return _unit((cells - cells.mean(axis=(0, 1))) * _weights(cells.shape)[..., None])
+
+
+def _tones(face: np.ndarray) -> np.ndarray:
+    logs = np.log(face.astype(np.float32) + 8.0)
+    brightness = logs.mean(axis=2)
+    colour = np.stack((logs[..., 2] - logs[..., 1], logs[..., 0] - logs[..., 1]), axis=-1)
+    cells = np.stack([_cells(brightness), *(_cells(colour[..., i]) for i in range(2))], axis=-1)
+    weights = _weights(cells.shape)[..., None]
+    return _unit((cells - (cells * weights).sum(axis=(0, 1)) / weights.sum()) * weights)
+
+
+def _cells(values: np.ndarray) -> np.ndarray:
+    """Means over overlapping cells."""
+    means = cv2.blur(values, (CELL, CELL), borderType=cv2.BORDER_REPLICATE)
+    return means[CELL // 2 :: CELL // 2, CELL // 2 :: CELL // 2]
+
+
+def _weights(shape: Tuple[int, ...]) -> np.ndarray:
+    """(rows, columns) of how much each cell counts."""
+    rows, columns = (np.linspace(-1.0, 1.0, count) for count in shape[:2])
+    return np.exp(-((columns[None, :] / RIM[0]) ** 2) - (rows[:, None] / RIM[1]) ** 2)
+
+
+def _unit(values: np.ndarray) -> np.ndarray:
+    flat = values.ravel().astype(np.float32)
+    return flat / max(float(np.linalg.norm(flat)), 1e-6)
