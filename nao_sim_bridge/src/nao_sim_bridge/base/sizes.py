@@ -260,12 +260,13 @@ def require_few(field: str, count: int, what: str) -> None:
 def size_rows() -> list[tuple[str, float, str, str]]:
     """The limits as rows of a table: what, limit, unit (empty for a count), where it counts."""
     return [
-        (f"{name}.{key}", limit, _unit(key), where if isinstance(where, str) else where[key])
+        (
+            f"{name}.{key}",
+            limit,
+            _UNITS.get(key.rsplit("_", 1)[-1], ""),
+            where if isinstance(where, str) else where[key],
+        )
         for name, limits in asdict(load_sizes()).items()
         for where in [_WHERE[name]]
         for key, limit in limits.items()
     ]
-
-
-def _unit(key: str) -> str:
-    return _UNITS.get(key.rsplit("_", 1)[-1], "")

@@ -119,8 +119,8 @@ class RosSide:
             film = self._server.film.stop().result()
         except ERRORS as error:
             return {"success": False, "message": str(error)}
-        duration = rospy.Duration.from_sec(film.duration)
-        return {"success": True, "path": str(film.path), "frames": film.frames, "duration": duration}
+        length = rospy.Duration.from_sec(film.duration)
+        return {"success": True, "path": str(film.path), "frames": film.frames, "length": length}
 
 
 def _empty(action: Callable[[], object]) -> Callable[[EmptyRequest], EmptyResponse]:
