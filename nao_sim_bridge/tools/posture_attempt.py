@@ -99,16 +99,10 @@ class Attempts:
         self._snapshot: Snapshot
 
     def close(self) -> None:
-        """Free the engine."""
         self._physics.close()
 
     def run(self, move: Move, seed: int) -> Outcome:
-        """One attempt from rest.
-
-        Args:
-            move: What to try.
-            seed: Of the disturbance.
-        """
+        """One attempt from rest; `seed` is that of the disturbance."""
         self._begin(random.Random(f"{self._start} {seed}"))
         self._robot.getting_up = True
         task = play(self._robot, "attempt", move)
