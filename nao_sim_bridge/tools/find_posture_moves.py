@@ -69,10 +69,7 @@ def tally(move: Move, runs: int, noise: float, friction: float | None) -> Tally:
         runs=runs,
         reached=sum(outcome.reached for outcome in outcomes),
         others=tuple(sorted({outcome.ended for outcome in outcomes if not outcome.reached})),
-        turn=max(outcome.turn for outcome in outcomes),
-        impact=max(outcome.impact for outcome in outcomes),
-        speed=max(outcome.speed for outcome in outcomes),
-        torque=max(outcome.torque for outcome in outcomes),
+        **{name: max(getattr(outcome, name) for outcome in outcomes) for name in ("turn", "impact", "speed", "torque")},
     )
 
 
