@@ -32,14 +32,9 @@ LIE_TIME = 3.0
 
 @dataclass(frozen=True)
 class Outcome:
-    """How one change of posture ended.
+    """How one change of posture ended: whether it got there without a fall, and how long it took, s.
 
-    Attributes:
-        reached: Whether the robot got there without a fall.
-        time: How long it took, s.
-        misses: Moves that led somewhere else.
-        text: What the table shows.
-        reason: Why it failed, empty when it did not.
+    `misses` are moves that led somewhere else, `text` is what the table shows, `reason` why it failed, if it did.
     """
 
     reached: bool

@@ -36,14 +36,7 @@ QUICK_VOICES = ("slt", "rms")
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is measured.
-
-    Attributes:
-        voices: Who speaks.
-        every: One of so many phrases is said.
-        quiet_s: How long each noise lasts, s.
-        bursts: How many sudden noises there are of each kind.
-    """
+    """How much is measured: one of `every` phrases, `quiet_s` s of each noise, so many bursts of each kind."""
 
     voices: Sequence[str] = tuple(VOICES)
     every: int = 1
@@ -56,15 +49,7 @@ QUICK = Effort(QUICK_VOICES, every=6, quiet_s=8.0, bursts=4)
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the table.
-
-    Attributes:
-        what: What was measured.
-        figures: One for each voice, 0..1.
-        total: Over all voices, 0..1.
-        bound: What `total` must reach, in words.
-        kept: Whether it does.
-    """
+    """A line of the table: figures of each voice and of all, 0..1, and in words the bound that the total must keep."""
 
     what: str
     figures: Sequence[float]

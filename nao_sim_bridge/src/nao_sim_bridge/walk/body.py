@@ -18,12 +18,7 @@ LegPose = Tuple[float, LegAngles, LegAngles]
 
 
 class WalkingBody:
-    """Legs, and whatever is above them.
-
-    Attributes:
-        legs: Their kinematics.
-        mass: Of the robot, kg.
-    """
+    """Legs, and whatever is above them; `mass` is that of the robot, kg."""
 
     def __init__(self, model: RobotModel) -> None:
         self.legs = Legs(model)

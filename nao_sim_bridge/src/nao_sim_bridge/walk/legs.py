@@ -32,12 +32,7 @@ ENOUGH = 5e-4
 
 @dataclass(frozen=True)
 class Sole:
-    """Where a sole is, or is to be.
-
-    Attributes:
-        position: Point below the ankle, m.
-        rotation: Of the foot.
-    """
+    """Where a sole is, or is to be: the point below the ankle, m, and the rotation of the foot."""
 
     position: Vector
     rotation: Matrix

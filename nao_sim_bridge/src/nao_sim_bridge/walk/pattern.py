@@ -14,13 +14,7 @@ Point = Tuple[float, float]
 
 
 class Segment(NamedTuple):
-    """The zero moment point moves in a straight line.
-
-    Attributes:
-        duration: s.
-        start: m.
-        end: m.
-    """
+    """The zero moment point moves in a straight line, m, for a duration, s."""
 
     duration: float
     start: Point
