@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 import numpy as np
@@ -111,8 +112,4 @@ class Stage:
 def thing(name: str, position: Sequence[float], **entry: Any) -> WorldObject:
     """A thing as an entry of a world file describes it."""
     position = [float(value) for value in position]
-    return read_object({"name": name, "position": position, **entry}, name, _no_files)
-
-
-def _no_files(name: str) -> Any:
-    raise FileNotFoundError(name)
+    return read_object({"name": name, "position": position, **entry}, name, Path)

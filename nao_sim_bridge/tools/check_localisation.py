@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import sys
 from dataclasses import dataclass
-from typing import Callable, Iterator, Sequence
+from typing import Callable, Iterator, Optional, Sequence, Tuple
 
 import numpy as np
 from command_line import parse, parts_parser
@@ -36,6 +36,8 @@ from nao_sim_bridge.speech.studio import Studio
 from nao_sim_bridge.speech.voices import load_voices
 from nao_sim_bridge.world.sounds_made import noise
 
+Off = Optional[Tuple[float, float]]
+"""Errors of azimuth and elevation, degrees; None when nothing was located."""
 NEAREST, FARTHEST = 1.0, 3.0
 LENGTH = 0.6
 SNR_DB = 20.0
@@ -69,14 +71,6 @@ PARTS = {
     "turned": Part((0.2, 1.7), turned=True),
     "mouths": Part((1.2, 1.6), bounded=False),
 }
-
-
-@dataclass(frozen=True)
-class Located:
-    """One block of a sound: how far off azimuth and elevation are, degrees; None when nothing was located."""
-
-    azimuth: float | None
-    elevation: float | None
 
 
 @dataclass(frozen=True)
@@ -116,8 +110,8 @@ class Bench:
         self.simulation.robot.motion.set_targets(dict(zip(joints, angles)), dict.fromkeys(joints, 3.0))
         self.simulation.run(1.5)
 
-    def locate(self, wave: np.ndarray, part: Part, snr_db: float | None) -> Iterator[Located]:
-        """What is located of a (n,) sound at a random place, block by block.
+    def locate(self, wave: np.ndarray, part: Part, snr_db: float | None) -> Iterator[Off]:
+        """How far off a (n,) sound at a random place is located, block by block.
 
         Args:
             snr_db: How far noise is below the sound, dB; None for that of the room alone.
@@ -139,11 +133,11 @@ class Bench:
         for start in range(0, len(heard) - BLOCK + 1, BLOCK):
             found = localiser.feed(pcm16(heard[start : start + BLOCK]), start / RATE, tuple(rotation[2]))
             if found is None:
-                yield Located(None, None)
+                yield None
                 continue
             azimuth = math.degrees(found.azimuth - math.atan2(truth[1], truth[0]))
             elevation = math.degrees(found.elevation - math.asin(truth[2]))
-            yield Located(abs((azimuth + 180.0) % 360.0 - 180.0), abs(elevation))
+            yield abs((azimuth + 180.0) % 360.0 - 180.0), abs(elevation)
 
     def _toward(self, part: Part, middle: np.ndarray) -> np.ndarray:
         bearing, distance = self.chance.uniform(-math.pi, math.pi), self.chance.uniform(NEAREST, FARTHEST)
@@ -180,12 +174,12 @@ def spoken_texts() -> list[np.ndarray]:
         studio.close()
 
 
-def summary(what: str, blocks: Sequence[Located], bounded: bool) -> Line:
+def summary(what: str, blocks: Sequence[Off], bounded: bool) -> Line:
     """One line about all blocks of one kind."""
-    azimuths = np.array([block.azimuth for block in blocks if block.azimuth is not None])
-    elevations = np.array([block.elevation for block in blocks if block.elevation is not None])
-    if not len(azimuths):
+    located = [block for block in blocks if block is not None]
+    if not located:
         return Line(what, "nothing was located", not bounded)
+    azimuths, elevations = np.array(located).T
     shares = [float(np.mean(azimuths < bound)) for bound in WITHIN]
     parts = [
         f"located {len(azimuths) / len(blocks):4.0%}",
@@ -204,7 +198,7 @@ def measure_places(name: str, count: int, seed: int) -> Iterator[Line]:
     try:
         for kind, make in bench.kinds.items():
             for snr_db in (None, SNR_DB):
-                blocks: list[Located] = []
+                blocks: list[Off] = []
                 for number in range(count):
                     if part.turned and number % 5 == 0:
                         bench.look_anywhere()

@@ -59,12 +59,8 @@ class Line:
 
     def __str__(self) -> str:
         figures = "".join(f"{100.0 * figure:8.1f}" for figure in self.figures)
-        return f"{self.what:34}{figures:{8 * len(VOICES)}}{100.0 * self.total:8.1f}  {self.bound}{self.missed}"
-
-    @property
-    def missed(self) -> str:
-        """A mark at the end of a line that misses its bound."""
-        return "" if self.kept else "  MISSED"
+        missed = "" if self.kept else "  MISSED"
+        return f"{self.what:34}{figures:{8 * len(VOICES)}}{100.0 * self.total:8.1f}  {self.bound}{missed}"
 
 
 class Check:

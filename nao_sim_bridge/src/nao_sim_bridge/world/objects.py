@@ -139,13 +139,9 @@ def _centred(made: Made) -> tuple[tuple[Part, ...], tuple[Shape, ...] | None, np
     touched = [part.shape for part in made.parts] if made.body is None else made.body
     volumes = np.array([_volume(shape) for shape in touched])
     middle = volumes @ np.array([shape.xyz for shape in touched]) / volumes.sum()
-    parts = tuple(replace(part, shape=_moved(part.shape, middle)) for part in made.parts)
-    body = None if made.body is None else tuple(_moved(shape, middle) for shape in made.body)
+    parts = tuple(replace(part, shape=part.shape.moved(-middle)) for part in made.parts)
+    body = None if made.body is None else tuple(shape.moved(-middle) for shape in made.body)
     return parts, body, middle
-
-
-def _moved(shape: Shape, middle: np.ndarray) -> Shape:
-    return replace(shape, xyz=vector3(np.array(shape.xyz) - middle))
 
 
 def _volume(shape: Shape) -> float:
