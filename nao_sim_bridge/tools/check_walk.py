@@ -225,7 +225,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if workers:
         import ray  # only who has several processes needs it
 
-        ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False)  # once, for all sweeps
+        # Once, for all sweeps.
+        ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, configure_logging=False)
     extent = Extent(chosen.runs, chosen.seconds, chosen.minutes, chosen.seed)
     return measure(chosen.parts, extent, partial(outcomes, workers)) > 0
 
