@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 import numpy as np
@@ -56,13 +57,7 @@ class Viewpoint:
 
 
 class Stage:
-    """A world with things in it, and a camera. To be closed.
-
-    Args:
-        world: Name of the world.
-        engine: What draws; see `Renderer`.
-        version: Of the robot whose camera it is.
-    """
+    """A world by its name with things in it, and the upper camera of a robot of that version. To be closed."""
 
     def __init__(self, world: str = "empty", engine: str = "auto", version: str = "V6") -> None:
         self.optics = CameraOptics(version, 0)
@@ -86,12 +81,9 @@ class Stage:
         parameters: Mapping[int, int] | None = None,
         gone: Sequence[str] = (),
     ) -> np.ndarray:
-        """What the camera sees.
+        """What the camera sees of the world and of `things`.
 
         Args:
-            viewpoint: Where the camera is.
-            things: What is there beside the world.
-            size: Width and height in pixels.
             seed: Of the noise.
             parameters: Of the camera, by NAOqi's id.
             gone: Names of things of the world that are not there.
@@ -120,8 +112,4 @@ class Stage:
 def thing(name: str, position: Sequence[float], **entry: Any) -> WorldObject:
     """A thing as an entry of a world file describes it."""
     position = [float(value) for value in position]
-    return read_object({"name": name, "position": position, **entry}, name, _no_files)
-
-
-def _no_files(name: str) -> Any:
-    raise FileNotFoundError(name)
+    return read_object({"name": name, "position": position, **entry}, name, Path)

@@ -19,14 +19,15 @@ import argparse
 import math
 import sys
 import time
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Mapping, Sequence
 
 import cv2
 import numpy as np
 from camera_stage import AHEAD, EYES, QVGA, VGA, Stage, Viewpoint, thing
-from detection_tally import Tally
-from measurement import StageChecks, command_line, measure, parse
+from command_line import parse
+from measurement import StageChecks, stage_parser
 
 from nao_sim_bridge.vision.ball import BallDetector
 from nao_sim_bridge.vision.barcodes import BarcodeDetector
@@ -63,16 +64,37 @@ MOST_OF = 0.98
 """Share that has to be found within the bounds of distance."""
 
 
-class Checks(StageChecks):
-    """All measurements on one stage.
+@dataclass
+class Tally:
+    """What came of many pictures of a kind: `wanted` of them, in `found` of them the thing was found.
 
-    Args:
-        stage: The lab.
-        count: Pictures of each kind.
-        frames: Pictures of the part `lab`.
-        seed: Of all choices.
-        folder: For pictures in which not everything is as it should be; None to keep none.
+    Attributes:
+        wrong: Findings that were something else.
+        bearings: By how much bearings were off, degrees.
+        distances: By how much distances were off, as shares.
+        times: Processor time of a picture, s.
     """
+
+    wanted: int = 0
+    found: int = 0
+    wrong: int = 0
+    bearings: list[float] = field(default_factory=list)
+    distances: list[float] = field(default_factory=list)
+    times: list[float] = field(default_factory=list)
+
+    def text(self) -> str:
+        parts = [f"found {self.found:3d} of {self.wanted:3d}", f"wrong {self.wrong}"]
+        if self.bearings:
+            parts.append(f"bearing off {np.mean(self.bearings):.2f} mean, {max(self.bearings):.2f} most, deg")
+        if self.distances:
+            mean, most = 100 * np.mean(self.distances), 100 * max(self.distances)
+            parts.append(f"distance off {mean:.1f} mean, {most:.1f} most, %")
+        parts.append(f"{1000 * np.mean(self.times):.1f} ms")
+        return ", ".join(parts)
+
+
+class Checks(StageChecks):
+    """All measurements; `folder` gets pictures in which not everything is as it should be, unless it is None."""
 
     def __init__(self, stage: Stage, count: int, frames: int, seed: int, folder: Path | None = None) -> None:
         super().__init__(stage, count, frames, seed)
@@ -270,12 +292,12 @@ PARTS = ("ball", "light", "landmarks", "red", "codes", "lab")
 
 def options(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line."""
-    parser = command_line(__doc__ or "", PARTS, count=40)
+    parser = stage_parser(__doc__ or "", PARTS, count=40)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
         "--keep", type=Path, metavar="FOLDER", help="write pictures there that are not as they should be"
     )
-    chosen = parse(parser, PARTS, arguments)
+    chosen = parse(parser, PARTS, arguments, count=1, frames=1)
     if chosen.keep is not None and not chosen.keep.is_dir():
         parser.error(f"--keep is {chosen.keep}, which is no folder")
     return chosen
@@ -284,11 +306,8 @@ def options(arguments: Sequence[str] | None = None) -> argparse.Namespace:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure."""
     chosen = options(arguments)
-    return measure(
-        Stage("lab", chosen.engine),
-        lambda stage: Checks(stage, chosen.count, chosen.frames, chosen.seed, chosen.keep),
-        chosen.parts,
-    )
+    with Stage("lab", chosen.engine) as stage:
+        return Checks(stage, chosen.count, chosen.frames, chosen.seed, chosen.keep).measure(chosen.parts)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,8 @@ from typing import Mapping, Sequence
 
 import numpy as np
 from camera_stage import AHEAD, EYES, VGA, Stage, Viewpoint, thing
-from measurement import StageChecks, command_line, measure, parse
+from command_line import parse
+from measurement import StageChecks, stage_parser
 
 from nao_sim_bridge.vision.face_memory import FaceMemory
 from nao_sim_bridge.vision.faces import FaceDetector, FaceSettings, SeenFace
@@ -42,14 +43,6 @@ called by another's name."""
 
 
 class Checks(StageChecks):
-    """All measurements on one stage.
-
-    Args:
-        stage: The lab.
-        count: Pictures of each kind.
-        frames: Pictures of the part `lab`.
-    """
-
     def __init__(self, stage: Stage, count: int, frames: int) -> None:
         super().__init__(stage, count, frames, seed=1)
         self._detector = FaceDetector()
@@ -147,8 +140,9 @@ PARTS = ("found", "names", "lab")
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure."""
-    chosen = parse(command_line(__doc__ or "", PARTS, count=16), PARTS, arguments)
-    return measure(Stage("lab", chosen.engine), lambda stage: Checks(stage, chosen.count, chosen.frames), chosen.parts)
+    chosen = parse(stage_parser(__doc__ or "", PARTS, count=16), PARTS, arguments, count=1, frames=1)
+    with Stage("lab", chosen.engine) as stage:
+        return Checks(stage, chosen.count, chosen.frames).measure(chosen.parts)
 
 
 if __name__ == "__main__":

@@ -15,13 +15,13 @@ be chosen by name:
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 from dataclasses import dataclass
-from typing import Callable, Iterator, Sequence
+from typing import Callable, Iterator, Optional, Sequence, Tuple
 
 import numpy as np
+from command_line import parse, parts_parser
 
 from nao_sim_bridge.base.samples import RATE, Sound, pcm16
 from nao_sim_bridge.core.scene import Scene
@@ -36,6 +36,8 @@ from nao_sim_bridge.speech.studio import Studio
 from nao_sim_bridge.speech.voices import load_voices
 from nao_sim_bridge.world.sounds_made import noise
 
+Off = Optional[Tuple[float, float]]
+"""Errors of azimuth and elevation, degrees; None when nothing was located."""
 NEAREST, FARTHEST = 1.0, 3.0
 LENGTH = 0.6
 SNR_DB = 20.0
@@ -45,7 +47,7 @@ WITHIN = (3.0, 5.0, 10.0)
 NINE_OF_TEN = 0.9
 QUIET_KINDS = ("white", "pink")
 QUIET_LEVELS = (30.0, 50.0, 70.0)
-QUIET_TIME = 60.0
+QUIET_TIME, LONGEST_QUIET = 60.0, 3600.0
 
 
 @dataclass(frozen=True)
@@ -72,22 +74,8 @@ PARTS = {
 
 
 @dataclass(frozen=True)
-class Located:
-    """One block of a sound: how far off azimuth and elevation are, degrees; None when nothing was located."""
-
-    azimuth: float | None
-    elevation: float | None
-
-
-@dataclass(frozen=True)
 class Line:
-    """A line of the table.
-
-    Attributes:
-        what: What was measured.
-        figure: What came out, in words.
-        kept: Whether that is what must come out.
-    """
+    """A line of the table: what was measured, what came out, and whether that is what must come out."""
 
     what: str
     figure: str
@@ -95,11 +83,7 @@ class Line:
 
 
 class Bench:
-    """A robot that listens, and sounds around it.
-
-    Args:
-        seed: Of all chance.
-    """
+    """A robot that listens, and sounds around it."""
 
     def __init__(self, seed: int) -> None:
         self.chance = np.random.default_rng(seed)
@@ -126,12 +110,10 @@ class Bench:
         self.simulation.robot.motion.set_targets(dict(zip(joints, angles)), dict.fromkeys(joints, 3.0))
         self.simulation.run(1.5)
 
-    def locate(self, wave: np.ndarray, part: Part, snr_db: float | None) -> Iterator[Located]:
-        """What is located of a sound at a random place, block by block.
+    def locate(self, wave: np.ndarray, part: Part, snr_db: float | None) -> Iterator[Off]:
+        """How far off a (n,) sound at a random place is located, block by block.
 
         Args:
-            wave: (n,) the sound.
-            part: Where.
             snr_db: How far noise is below the sound, dB; None for that of the room alone.
         """
         simulation, sound = self.simulation, self.simulation.sound
@@ -151,15 +133,11 @@ class Bench:
         for start in range(0, len(heard) - BLOCK + 1, BLOCK):
             found = localiser.feed(pcm16(heard[start : start + BLOCK]), start / RATE, tuple(rotation[2]))
             if found is None:
-                yield Located(None, None)
+                yield None
                 continue
             azimuth = math.degrees(found.azimuth - math.atan2(truth[1], truth[0]))
             elevation = math.degrees(found.elevation - math.asin(truth[2]))
-            yield Located(abs((azimuth + 180.0) % 360.0 - 180.0), abs(elevation))
-
-    def close(self) -> None:
-        """Free the simulation."""
-        self.simulation.close()
+            yield abs((azimuth + 180.0) % 360.0 - 180.0), abs(elevation)
 
     def _toward(self, part: Part, middle: np.ndarray) -> np.ndarray:
         bearing, distance = self.chance.uniform(-math.pi, math.pi), self.chance.uniform(NEAREST, FARTHEST)
@@ -196,12 +174,12 @@ def spoken_texts() -> list[np.ndarray]:
         studio.close()
 
 
-def summary(what: str, blocks: Sequence[Located], bounded: bool) -> Line:
+def summary(what: str, blocks: Sequence[Off], bounded: bool) -> Line:
     """One line about all blocks of one kind."""
-    azimuths = np.array([block.azimuth for block in blocks if block.azimuth is not None])
-    elevations = np.array([block.elevation for block in blocks if block.elevation is not None])
-    if not len(azimuths):
+    located = [block for block in blocks if block is not None]
+    if not located:
         return Line(what, "nothing was located", not bounded)
+    azimuths, elevations = np.array(located).T
     shares = [float(np.mean(azimuths < bound)) for bound in WITHIN]
     parts = [
         f"located {len(azimuths) / len(blocks):4.0%}",
@@ -220,7 +198,7 @@ def measure_places(name: str, count: int, seed: int) -> Iterator[Line]:
     try:
         for kind, make in bench.kinds.items():
             for snr_db in (None, SNR_DB):
-                blocks: list[Located] = []
+                blocks: list[Off] = []
                 for number in range(count):
                     if part.turned and number % 5 == 0:
                         bench.look_anywhere()
@@ -228,7 +206,7 @@ def measure_places(name: str, count: int, seed: int) -> Iterator[Line]:
                 where = "quiet room" if snr_db is None else f"{snr_db:g} dB SNR"
                 yield summary(f"{name}, {kind}, {where}", blocks, part.bounded)
     finally:
-        bench.close()
+        bench.simulation.close()
 
 
 def measure_quiet(seconds: float, seed: int) -> Iterator[Line]:
@@ -236,7 +214,7 @@ def measure_quiet(seconds: float, seed: int) -> Iterator[Line]:
     chance = np.random.default_rng(seed)
     places = Bench(seed)
     array = microphone_array(places.simulation.sound.microphones.places)
-    places.close()
+    places.simulation.close()
     for kind in QUIET_KINDS:
         for level_db in QUIET_LEVELS:
             sides = [noise(kind, seconds, int(chance.integers(2**31))).samples[:, 0] for _ in range(4)]
@@ -252,43 +230,23 @@ def measure_quiet(seconds: float, seed: int) -> Iterator[Line]:
             yield Line(f"quiet, {kind}, {level_db:g} dB", figure, not edges and not located)
 
 
-def measure(parts: Sequence[str], count: int, seconds: float, seed: int) -> int:
-    """Print a table; returns how many lines miss their bound."""
-    missed = 0
-    for name in parts:
-        for line in measure_quiet(seconds, seed) if name == "quiet" else measure_places(name, count, seed):
-            missed += not line.kept
-            print(
-                f"{'  ' if line.kept else 'X '}{line.what:38} {line.figure}{'' if line.kept else '   MISSED'}",
-                flush=True,
-            )
-    return missed
-
-
-def options(arguments: Sequence[str]) -> argparse.Namespace:
-    """What was asked for."""
-    names = [*PARTS, "quiet"]
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", help=f"any of {', '.join(names)}; all when there is none")
+def main() -> int:
+    """Measure what the command line asks for, and print a table."""
+    names = (*PARTS, "quiet")
+    parser = parts_parser(__doc__ or "", names)
     parser.add_argument("--sounds", type=int, default=40, help="sounds for each line")
     parser.add_argument("--seconds", type=float, default=QUIET_TIME, help="length of the steady noises")
     parser.add_argument("--seed", type=int, default=1, help="of all chance")
-    chosen = parser.parse_args(arguments)
-    unknown = [name for name in chosen.parts if name not in names]
-    if unknown:
-        parser.error(f"no part {', '.join(unknown)}; there are {', '.join(names)}")
-    if chosen.sounds < 1:
-        parser.error(f"--sounds is {chosen.sounds}, allowed is 1 or more")
-    if not 1.0 <= chosen.seconds <= 3600.0:
-        parser.error(f"--seconds is {chosen.seconds:g}, allowed is 1 to 3600")
-    chosen.parts = chosen.parts or names
-    return chosen
-
-
-def main() -> int:
-    """Measure what the command line asks for."""
-    chosen = options(sys.argv[1:])
-    missed = measure(chosen.parts, chosen.sounds, chosen.seconds, chosen.seed)
+    chosen = parse(parser, names, None, sounds=1, seconds=1.0)
+    if chosen.seconds > LONGEST_QUIET:
+        parser.error(f"--seconds is {chosen.seconds:g}, allowed is 1 to {LONGEST_QUIET:g}")
+    missed = 0
+    for name in chosen.parts:
+        quiet, seed = name == "quiet", chosen.seed
+        for line in measure_quiet(chosen.seconds, seed) if quiet else measure_places(name, chosen.sounds, seed):
+            missed += not line.kept
+            mark, end = ("  ", "") if line.kept else ("X ", "   MISSED")
+            print(f"{mark}{line.what:38} {line.figure}{end}", flush=True)
     print(f"{missed} missed" if missed else "all within their bounds")
     return 1 if missed else 0
 

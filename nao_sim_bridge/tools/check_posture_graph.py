@@ -15,6 +15,8 @@ import random
 import sys
 from dataclasses import dataclass
 
+from walk_trial import SIDES
+
 from nao_sim_bridge.control.balance.posture_recognition import LYING, UNKNOWN, lean_of, recognise
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_graph import ON_FEET
@@ -24,21 +26,15 @@ from nao_sim_bridge.model.postures import load_postures, posture
 
 # Time to come to rest before a change, and the longest a change may take, s.
 SETTLE_TIME, PATIENCE = 1.5, 90.0
-# Time from a push until the robot gets up, s, and where pushes go, degrees.
+# Time from a push until the robot gets up, s.
 LIE_TIME = 3.0
-SIDES = {"front": 0, "left": 90, "back": 180, "right": 270}
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How one change of posture ended.
+    """How one change of posture ended: whether it got there without a fall, and how long it took, s.
 
-    Attributes:
-        reached: Whether the robot got there without a fall.
-        time: How long it took, s.
-        misses: Moves that led somewhere else.
-        text: What the table shows.
-        reason: Why it failed, empty when it did not.
+    `misses` are moves that led somewhere else, `text` is what the table shows, `reason` why it failed, if it did.
     """
 
     reached: bool
@@ -49,15 +45,7 @@ class Outcome:
 
 
 def change(start: str, goal: str, speed: float, noise: float, seed: int) -> Outcome:
-    """One change of posture.
-
-    Args:
-        start: Posture to begin in.
-        goal: Posture to go to.
-        speed: Share of the joints' top speeds.
-        noise: Largest deviation of each joint at the start, rad.
-        seed: Of the noise.
-    """
+    """One change of posture at a share of the joints' top speeds; `noise` is how far they are off at the start, rad."""
     simulation = Simulation(Scene(posture=start))
     try:
         _settle(simulation, start, noise, random.Random(f"{start} {goal} {seed}"))
@@ -70,14 +58,7 @@ def change(start: str, goal: str, speed: float, noise: float, seed: int) -> Outc
 
 
 def attempt(simulation: Simulation, goal: str, speed: float, may_lie: bool) -> Outcome:
-    """One change of posture from wherever the robot is.
-
-    Args:
-        simulation: Whose robot it is.
-        goal: Posture to go to.
-        speed: Share of the joints' top speeds.
-        may_lie: Whether a torso near the floor is no fall.
-    """
+    """One change of posture from wherever the robot is; if it `may_lie`, a torso near the floor is no fall."""
     begun = simulation.time
     way = PostureChange(simulation.robot, lambda: simulation.snapshot, goal, speed, 3, load_moves())
     task = way.start()
@@ -96,16 +77,7 @@ def attempt(simulation: Simulation, goal: str, speed: float, may_lie: bool) -> O
 
 
 def stand_up(angle: float, speed: float, seed: int) -> tuple[str, Outcome]:
-    """Push the robot over and let it stand up.
-
-    Args:
-        angle: Where the push goes, degrees from straight ahead, counter-clockwise.
-        speed: Share of the joints' top speeds.
-        seed: Of moment, strength and direction of the push.
-
-    Returns:
-        How it lay, and what became of it.
-    """
+    """Push the robot over towards about an angle of `SIDES` and let it stand up; how it lay, and what became of it."""
     simulation = Simulation(Scene(posture="Stand"))
     try:
         chance = random.Random(f"{angle} {seed}")

@@ -16,19 +16,17 @@ import sys
 from dataclasses import dataclass
 from typing import Iterable, Sequence
 
+from walk_trial import BODY, PUSH_TIME, SIDES
+
 from nao_sim_bridge.core.simulation import Scene, Simulation
 
 POSTURES = ("Stand", "StandInit", "StandZero", "Crouch")
-# Name -> where the push goes, degrees from straight ahead, counter-clockwise.
-SIDES = {"front": 0, "left": 90, "back": 180, "right": 270}
-# Length of a push, and the longest time to fall or to settle after it, s.
-PUSH_TIME, PATIENCE = 0.1, 4.0
+# Longest time to fall or to settle after a push, s.
+PATIENCE = 4.0
 # How much runs differ: joint angles in rad, direction in degrees, wait before the push in s.
 JOINT_NOISE, TURN_NOISE, WAIT = 0.01, 10.0, (0.8, 1.3)
 # A torso that has sunk by this much, m, has fallen.
 SUNK = 0.1
-# What hits the floor when it is too late; hands and forearms are put there on purpose.
-BODY = ("torso", "Neck", "Head", "LShoulder", "RShoulder", "LBicep", "RBicep")
 # Back in the posture: m, rad.
 NEAR, LEAN = 0.01, math.radians(1.0)
 
@@ -51,10 +49,9 @@ class Outcome:
 
 
 def push(simulation: Simulation, impulse: float, angle: float, seed: int, watch: bool = True) -> Outcome:
-    """Push the robot of a simulation once, from the start.
+    """Reset a simulation and push its robot once.
 
     Args:
-        simulation: Reset first.
         impulse: N s.
         angle: Where the push goes, degrees.
         seed: Of what differs between runs; 0 for no differences.

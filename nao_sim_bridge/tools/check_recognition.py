@@ -16,13 +16,13 @@ is 1 when a figure misses its bound. Parts can be chosen by name:
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from dataclasses import dataclass, replace
 from typing import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
+from command_line import parse, parts_parser
 from recognition_bench import VOICES, Bench, Heard, not_speech, sudden
 
 NOISES = ("clean", "white", "pink")
@@ -36,14 +36,7 @@ QUICK_VOICES = ("slt", "rms")
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is measured.
-
-    Attributes:
-        voices: Who speaks.
-        every: One of so many phrases is said.
-        quiet_s: How long each noise lasts, s.
-        bursts: How many sudden noises there are of each kind.
-    """
+    """How much is measured: one of `every` phrases, `quiet_s` s of each noise, so many bursts of each kind."""
 
     voices: Sequence[str] = tuple(VOICES)
     every: int = 1
@@ -56,15 +49,7 @@ QUICK = Effort(QUICK_VOICES, every=6, quiet_s=8.0, bursts=4)
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the table.
-
-    Attributes:
-        what: What was measured.
-        figures: One for each voice, 0..1.
-        total: Over all voices, 0..1.
-        bound: What `total` must reach, in words.
-        kept: Whether it does.
-    """
+    """A line of the table: figures of each voice and of all, 0..1, and in words the bound that the total must keep."""
 
     what: str
     figures: Sequence[float]
@@ -74,22 +59,12 @@ class Line:
 
     def __str__(self) -> str:
         figures = "".join(f"{100.0 * figure:8.1f}" for figure in self.figures)
-        return f"{self.what:34}{figures:{8 * len(VOICES)}}{100.0 * self.total:8.1f}  {self.bound}{self.missed}"
-
-    @property
-    def missed(self) -> str:
-        """A mark at the end of a line that misses its bound."""
-        return "" if self.kept else "  MISSED"
+        missed = "" if self.kept else "  MISSED"
+        return f"{self.what:34}{figures:{8 * len(VOICES)}}{100.0 * self.total:8.1f}  {self.bound}{missed}"
 
 
 class Check:
-    """The parts of the table.
-
-    Args:
-        bench: Who speaks and hears.
-        verbose: Tell each phrase that is not as it should be.
-        effort: How much to measure.
-    """
+    """The parts of the table; `verbose` tells each phrase that is not as it should be."""
 
     def __init__(self, bench: Bench, verbose: bool, effort: Effort) -> None:
         self._bench = bench
@@ -199,21 +174,17 @@ def _line(what: str, shares: Sequence[float], least: float = 0.0, most: float = 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure and print; 1 when a figure misses its bound."""
     names = ("words", "second", "others", "spotting", "quiet", "sudden")
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", metavar="PART", help="parts to measure; all of them by default")
+    parser = parts_parser(__doc__ or "", names)
     parser.add_argument("-v", "--verbose", action="store_true", help="tell each phrase that is not as it should be")
     parser.add_argument("--quick", action="store_true", help="few voices, phrases and noises, no bounds")
-    options = parser.parse_args(arguments)
-    unknown = [part for part in options.parts if part not in names]
-    if unknown:
-        parser.error(f"no part {unknown[0]!r}; there are {', '.join(names)}")
+    options = parse(parser, names, arguments)
     bench = Bench()
     try:
         effort = QUICK if options.quick else Effort()
         check = Check(bench, options.verbose, effort)
         print(f"{'percent':34}{''.join(f'{voice:>8}' for voice in effort.voices):{8 * len(VOICES)}}{'all':>8}  bound")
         began, kept = time.process_time(), True
-        for part in options.parts or names:
+        for part in options.parts:
             for line in getattr(check, part)():
                 if options.quick:  # too few of each for a verdict
                     line = replace(line, bound="", kept=True)

@@ -2,7 +2,8 @@
 """Measures how the simulated robot walks and prints each figure beside its bound. Needs no ROS master.
 
 Whatever is measured is what really happens in the physics, not what the robot believes. The exit status is 1 when a
-figure misses its bound. Everything takes about half an hour of processor time; parts can be chosen by name:
+figure misses its bound. Everything takes about half an hour of processor time; with --jobs above 1, several processes
+(needs the extra `[sweep]`). Parts can be chosen by name:
 
   speeds     speed, deviation, odometry and joint speeds of a minute at one velocity
   wander     random orders, changing every 2 s, for minutes; sensors like a real robot's, here and below
@@ -16,15 +17,17 @@ figure misses its bound. Everything takes about half an hour of processor time; 
 
 from __future__ import annotations
 
-import argparse
 import logging
 import math
-import multiprocessing
 import sys
 from dataclasses import dataclass
-from typing import Any, Callable, Iterable, Iterator, Sequence
+from functools import partial
+from typing import Any, Callable, Iterable, Iterator, List, Mapping, Sequence
 
 import walk_runs
+from command_line import parse, parts_parser
+
+from nao_sim_bridge.sweep import sweep
 
 MAX_STEP_X, MAX_STEP_Y = {"MaxStepX": 0.06}, {"MaxStepY": 0.16}
 # Velocity, gait, which part of the velocity counts, and what it must be at least, SI.
@@ -50,14 +53,7 @@ NINE_OF_TEN = 0.9
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the table.
-
-    Attributes:
-        what: What was measured.
-        figure: What came out, in words.
-        bound: What must come out.
-        kept: Whether it did.
-    """
+    """A line of the table: what was measured, what came out and what must, in words, and whether it did."""
 
     what: str
     figure: str
@@ -73,7 +69,6 @@ class Extent:
         runs: Of everything that depends on chance; None for what each part takes by itself.
         seconds: Of every walk at one velocity.
         minutes: Of every walk by random orders.
-        first: First seed.
     """
 
     runs: int | None
@@ -87,7 +82,7 @@ class Extent:
 
 
 # Runs a function with each of the tuples of arguments; results in their order.
-Runner = Callable[[Callable[..., Any], Sequence[tuple]], Iterable[Any]]
+Runner = Callable[[Callable[..., Any], Sequence[tuple]], List[Mapping[str, Any]]]
 
 
 def speeds(run: Runner, extent: Extent) -> Iterator[Line]:
@@ -95,25 +90,26 @@ def speeds(run: Runner, extent: Extent) -> Iterator[Line]:
     arguments = [(velocity, gait, extent.seconds) for velocity, gait, _, _ in SPEEDS.values()]
     for (name, (_, _, axis, least)), made in zip(SPEEDS.items(), run(walk_runs.straight, arguments)):
         unit = "rad/s" if axis == 2 else "m/s"
-        fast = made.speed[axis] / least
-        fell = "" if made.up else ", fell"
-        yield Line(name, f"{made.speed[axis]:.4f} {unit}{fell}", f"{least * SHARE:.4f}", made.up and fast >= SHARE)
+        speed = made[("x", "y", "theta")[axis]]
+        fell = "" if made["up"] else ", fell"
+        kept = made["up"] and speed / least >= SHARE
+        yield Line(name, f"{speed:.4f} {unit}{fell}", f"{least * SHARE:.4f}", kept)
         if axis != 2:
-            degrees = math.degrees(made.turn)
-            yield Line("  to the side", f"{made.aside * 100.0:.2f} cm/m", "at most 1", made.aside <= 0.01)
+            aside, degrees, odometry = made["aside"], math.degrees(made["turn"]), made["odometry"]
+            yield Line("  to the side", f"{aside * 100.0:.2f} cm/m", "at most 1", aside <= 0.01)
             yield Line("  heading", f"{degrees:.2f} deg/m", "at most 1", degrees <= 1.0)
-            yield Line("  odometry", f"{made.odometry * 100.0:.2f} % of the way", "at most 2", made.odometry <= 0.02)
-        (share, joint), (time, longest) = made.fastest, made.above
-        above = f", {longest} above for {time * 1000:.0f} ms" if time else ""
-        yield Line("  joints", f"{joint} {share:.2f} of its top speed{above}", "at most 1.05", share <= 1.05)
+            yield Line("  odometry", f"{odometry * 100.0:.2f} % of the way", "at most 2", odometry <= 0.02)
+        share, time = made["fastest"], made["above"]
+        above = f", {made['longest']} above for {time * 1000:.0f} ms" if time else ""
+        yield Line("  joints", f"{made['joint']} {share:.2f} of its top speed{above}", "at most 1.05", share <= 1.05)
 
 
 def wander(run: Runner, extent: Extent, impulse: float = 0.0) -> Iterator[Line]:
     """Random orders, without a fall."""
     seeds = extent.seeds(10)
-    runs = list(run(walk_runs.wander, [(seed, extent.minutes * 60.0, impulse) for seed in seeds]))
-    good = sum(up for up, _, _ in runs)
-    misses = [f"{seed}: {why} at {time:.0f} s" for seed, (up, time, why) in zip(seeds, runs) if not up]
+    runs = run(walk_runs.wander, [(seed, extent.minutes * 60.0, impulse) for seed in seeds])
+    good = sum(made["up"] for made in runs)
+    misses = [f"{seed}: {made['why']} at {made['time']:.0f} s" for seed, made in zip(seeds, runs) if not made["up"]]
     least = len(runs) if not impulse else NINE_OF_TEN * len(runs)
     name = f"random orders, {extent.minutes:g} min" + (f", pushes of {impulse:g} N s" if impulse else "")
     note = f" (seed {', '.join(misses)})" if misses else ""
@@ -128,35 +124,35 @@ def pushed(run: Runner, extent: Extent) -> Iterator[Line]:
 def push(run: Runner, extent: Extent) -> Iterator[Line]:
     """One push of 2 N s."""
     for side, name in enumerate(SIDES):
-        runs = list(run(walk_runs.push, [(seed, side, 2.0, False) for seed in extent.seeds(20)]))
-        good, least = sum(not made.fell for made in runs), NINE_OF_TEN * len(runs)
+        runs = run(walk_runs.push, [(seed, side, 2.0, False) for seed in extent.seeds(20)])
+        good, least = sum(not made["fell"] for made in runs), NINE_OF_TEN * len(runs)
         yield Line(f"2 N s to the {name}", f"{good} of {len(runs)}", f"at least {least:g}", good >= least)
 
 
 def falls(run: Runner, extent: Extent) -> Iterator[Line]:
     """Falls are noticed, and the robot stands up."""
     arguments = [(seed, seed % len(SIDES), 3.0, True) for seed in extent.seeds(12)]
-    fallen = [made for made in run(walk_runs.push, arguments) if made.fell]
-    hits = [made for made in fallen if made.impact]
-    early = [made.noticed_before for made in hits if made.noticed_before is not None]
+    fallen = [made for made in run(walk_runs.push, arguments) if made["fell"]]
+    hits = [made for made in fallen if made["impact"]]
+    early = [made["early"] for made in hits if "early" in made]
     lead = f", {min(early):.2f} s before at least" if early else ""
     figure = f"{len(fallen)} of {len(arguments)} fell, {len(early)} of {len(hits)} impacts foreseen{lead}"
     kept = len(early) == len(hits) and all(lead > 0.0 for lead in early)
     yield Line("3 N s: noticed before the impact", figure, "all", kept)
-    up = sum(made.stood_up for made in fallen)
+    up = sum(made["stood_up"] for made in fallen)
     yield Line("3 N s: stands up again", f"{up} of {len(fallen)}", "all", up == len(fallen))
 
 
 def targets(run: Runner, extent: Extent) -> Iterator[Line]:
     """Walks to a place."""
-    runs = list(run(walk_runs.arrive, [(seed,) for seed in extent.seeds(20)]))
-    good = sum(made.reached and made.distance <= 0.02 and made.turn <= math.radians(2.0) for made in runs)
+    runs = run(walk_runs.arrive, [(seed,) for seed in extent.seeds(20)])
+    there = [made for made in runs if made["reached"]]
+    good = sum(made["distance"] <= 0.02 and made["turn"] <= math.radians(2.0) for made in there)
     x, y, theta = walk_runs.GOAL
-    reached = sum(made.reached for made in runs)
-    far, turn = max(made.distance for made in runs), math.degrees(max(made.turn for made in runs))
-    figure = f"{good} of {len(runs)} ({reached} say so; furthest {far * 100.0:.1f} cm, {turn:.1f} deg)"
+    far, turn = max(made["distance"] for made in runs), math.degrees(max(made["turn"] for made in runs))
+    figure = f"{good} of {len(runs)} ({len(there)} say so; furthest {far * 100.0:.1f} cm, {turn:.1f} deg)"
     yield Line(f"moveTo({x}, {y}, {theta}) within 2 cm and 2 deg", figure, "all", good == len(runs))
-    worst = max(made.odometry for made in runs)
+    worst = max(made["odometry"] for made in runs)
     yield Line("  odometry", f"{worst * 100.0:.2f} % of the way at worst", "at most 2", worst <= 0.02)
 
 
@@ -176,17 +172,17 @@ def grounds(run: Runner, extent: Extent) -> Iterator[Line]:
 
 def stops(run: Runner, extent: Extent) -> Iterator[Line]:
     """Stopped at random moments."""
-    runs = list(run(walk_runs.stop_somewhere, [(seed,) for seed in extent.seeds(20)]))
-    yield Line("stands 2 s after a stop", f"{sum(runs)} of {len(runs)}", "all", all(runs))
+    runs = run(walk_runs.stop_somewhere, [(seed,) for seed in extent.seeds(20)])
+    good = sum(made["result"] for made in runs)
+    yield Line("stands 2 s after a stop", f"{good} of {len(runs)}", "all", good == len(runs))
 
 
 PARTS = {part.__name__: part for part in (speeds, wander, pushed, push, falls, targets, grounds, stops)}
 
 
-def _walked_on(name: str, runs: Iterable[tuple[bool, float]]) -> Line:
-    made = list(runs)
-    good, least = sum(up and way >= GROUND_WAY for up, way in made), min(way for _, way in made)
-    return Line(name, f"{good} of {len(made)} (least way {least:.2f} m)", "all", good == len(made))
+def _walked_on(name: str, runs: list[Mapping[str, Any]]) -> Line:
+    good, least = sum(made["up"] and made["way"] >= GROUND_WAY for made in runs), min(made["way"] for made in runs)
+    return Line(name, f"{good} of {len(runs)} (least way {least:.2f} m)", "all", good == len(runs))
 
 
 def measure(parts: Iterable[str], extent: Extent, run: Runner) -> int:
@@ -202,62 +198,38 @@ def measure(parts: Iterable[str], extent: Extent, run: Runner) -> int:
     return missed
 
 
-def options(arguments: Sequence[str]) -> argparse.Namespace:
-    """Read the command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", metavar="PART", help=f"{', '.join(PARTS)} (default: all)")
+def outcomes(workers: int, function: Callable[..., Any], jobs: Sequence[tuple]) -> list[Mapping[str, Any]]:
+    """What a function makes of each of the tuples of arguments, in their order.
+
+    Args:
+        workers: Processes; 0 for this one.
+    """
+    shown = workers > 0 and sys.stderr.isatty()
+    table = sweep(lambda seed: function(*jobs[seed]), len(jobs), workers=workers, progress=shown)
+    if table.errors:
+        raise RuntimeError(table.errors[0]["error"])
+    return table.rows
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure, print, and tell by the exit status whether all was well."""
+    parser = parts_parser(__doc__ or "", PARTS)
     parser.add_argument("--runs", type=int, help="of everything that depends on chance (default: 5 to 20, by part)")
     parser.add_argument("--seconds", type=float, default=60.0, help="of a walk at one velocity (default 60)")
     parser.add_argument("--minutes", type=float, default=5.0, help="of a walk by random orders (default 5)")
     parser.add_argument("--seed", type=int, default=1, help="the first one (default 1)")
     parser.add_argument("--jobs", type=int, default=1, help="processes (default 1)")
-    chosen = parser.parse_args(arguments)
-    unknown = [name for name in chosen.parts if name not in PARTS]
-    if unknown:
-        parser.error(f"no part {', '.join(unknown)}; there are {', '.join(PARTS)}")
-    for name, least in (("jobs", 1), ("runs", 1), ("seconds", 1.0), ("minutes", 0.1)):
-        value = getattr(chosen, name)
-        if value is not None and not least <= value < math.inf:
-            parser.error(f"--{name} is {value:g}: at least {least:g}")
-    return chosen
+    chosen = parse(parser, PARTS, arguments, jobs=1, runs=1, seconds=1.0, minutes=0.1)
+    logging.getLogger("nao_sim").setLevel(logging.ERROR)  # falls and refused orders are no news
+    workers = chosen.jobs if chosen.jobs > 1 else 0
+    if workers:
+        import ray  # only who has several processes needs it
 
-
-def quiet() -> None:
-    """Let falls and refused orders be no news."""
-    logging.getLogger("nao_sim").setLevel(logging.ERROR)
-
-
-def _call(job: tuple[Callable[..., Any], tuple]) -> Any:
-    function, arguments = job
-    return function(*arguments)
-
-
-def counted(results: Iterable[Any], count: int) -> Iterator[Any]:
-    """Pass results on, with a word about how many are there for who looks at a terminal."""
-    shown = sys.stderr.isatty()
-    for number, result in enumerate(results, 1):
-        if shown:
-            print(
-                f"\r  {number} of {count} runs" if number < count else "\r\033[K", end="", file=sys.stderr, flush=True
-            )
-        yield result
-
-
-def main(arguments: Sequence[str]) -> int:
-    """Measure, print, and tell by the exit status whether all was well."""
-    chosen = options(arguments)
-    quiet()
+        # Once, for all sweeps.
+        ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, configure_logging=False)
     extent = Extent(chosen.runs, chosen.seconds, chosen.minutes, chosen.seed)
-    parts = chosen.parts or list(PARTS)
-    if chosen.jobs == 1:
-        return measure(parts, extent, lambda run, jobs: counted((run(*job) for job in jobs), len(jobs))) > 0
-    # Fresh processes: the engine's state must not be shared.
-    with multiprocessing.get_context("spawn").Pool(chosen.jobs, quiet) as pool:
-        return (
-            measure(parts, extent, lambda run, jobs: counted(pool.imap(_call, [(run, job) for job in jobs]), len(jobs)))
-            > 0
-        )
+    return measure(chosen.parts, extent, partial(outcomes, workers)) > 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

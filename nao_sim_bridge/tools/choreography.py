@@ -17,6 +17,7 @@ from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.postures import posture
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.walk.legs import JOINTS, LEFT, RIGHT, Legs, Sole
+from nao_sim_bridge.walk.matrices import IDENTITY
 
 BASE = "StandInit"
 BODY = ("height", "pitch", "roll", "com_x", "com_y", "left_x", "left_y", "left_z", "right_x", "right_y", "right_z")
@@ -32,18 +33,12 @@ Table = Mapping[str, Keys]
 
 
 class Choreographer:
-    """Turns tables into samples of joints.
-
-    Args:
-        model: The robot.
-    """
+    """Turns tables into samples of joints."""
 
     def __init__(self, model: RobotModel) -> None:
         self._model = model
         self._legs = Legs(model)
         self._base = posture(model, BASE)
-        identity = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-        self._level = identity
         # The feet stand flat in StandInit: where they are in the frame of the torso tells how it is over them.
         (_, ankle, foot), (_, other, _) = (self._leg_state(side, self._base) for side in (LEFT, RIGHT))
         self._pitch = -math.atan2(foot[2], foot[8])
@@ -55,13 +50,7 @@ class Choreographer:
         self._com_x = self._torso_x + float((turn @ center_of_links(model, model.links, self._base))[0])
 
     def samples(self, table: Table) -> tuple[list[str], list[tuple[float, list[float]]]]:
-        """Joints and their angles over time.
-
-        Args:
-            table: The motion.
-
-        Returns:
-            Names of the joints that move, and samples: time in s and angles in rad.
+        """Names of the joints that a motion moves, and samples: time in s and angles in rad.
 
         Raises:
             ValueError: There is no such channel, its times do not begin with 0, or a joint would go beyond its limit.
@@ -100,8 +89,8 @@ class Choreographer:
         body.update({name: value for name, value in values.items() if name in BODY})
         rotation = rpy_matrix((body["roll"], body["pitch"], 0.0))
         turn = tuple(float(v) for v in rotation.flatten())
-        left = self._sole(body["left_x"], body["left_y"] + self._half_width, body["left_z"])
-        right = self._sole(body["right_x"], body["right_y"] - self._half_width, body["right_z"])
+        left = Sole((body["left_x"], body["left_y"] + self._half_width, body["left_z"]), IDENTITY)
+        right = Sole((body["right_x"], body["right_y"] - self._half_width, body["right_z"]), IDENTITY)
         x, y = self._torso_x, 0.0
         for _ in range(ROUNDS):
             hip_yaw, l_leg, r_leg = self._legs.solve((x, y, body["height"]), turn, left, right, 0.0)
@@ -112,9 +101,6 @@ class Choreographer:
             x += self._com_x + body["com_x"] - (x + float(center[0]))
             y += body["com_y"] - (y + float(center[1]))
         return angles
-
-    def _sole(self, x: float, y: float, z: float) -> Sole:
-        return Sole((x, y, z), self._level)
 
     def _leg_state(self, side: int, angles: Sequence[float]) -> tuple:
         yaw, *rest = (angles[index] for index in self._legs.indices[side])

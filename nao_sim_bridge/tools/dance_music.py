@@ -13,13 +13,7 @@ MELODY = (2, 1, 2, 0, 2, 1, 0, 1)
 
 
 def dance_music(tempo: float, rate: int, random: np.random.Generator) -> np.ndarray:
-    """The samples.
-
-    Args:
-        tempo: Beats a minute.
-        rate: Samples a second.
-        random: For the noise of the drums.
-    """
+    """The samples, `rate` a second, of `tempo` beats a minute; `random` is for the noise of the drums."""
     beat = 60.0 / tempo
     total = np.zeros(round((BEATS * beat + 0.5) * rate))
     for number in range(BEATS):

@@ -19,18 +19,19 @@ import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Sequence
+from typing import Any, Callable, Sequence
 
 import numpy as np
 from posture_attempt import Attempts, Mark, Outcome
-from posture_moves_file import put
 from sep_cma_es import SepCmaEs
 from symmetric_frames import mirrored, to_frames, to_vector
 
+from nao_sim_bridge.base.config import config_file
 from nao_sim_bridge.control.balance.posture_recognition import STANDING
-from nao_sim_bridge.core.posture_moves import Move, load_moves
+from nao_sim_bridge.core.posture_moves import FILE, Move, load_moves
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures
+from nao_sim_bridge.model.robot_model import RobotModel
 
 # Seeds of checks begin here: no search has seen them.
 CHECK_SEEDS = 1_000_000
@@ -68,10 +69,7 @@ def tally(move: Move, runs: int, noise: float, friction: float | None) -> Tally:
         runs=runs,
         reached=sum(outcome.reached for outcome in outcomes),
         others=tuple(sorted({outcome.ended for outcome in outcomes if not outcome.reached})),
-        turn=max(outcome.turn for outcome in outcomes),
-        impact=max(outcome.impact for outcome in outcomes),
-        speed=max(outcome.speed for outcome in outcomes),
-        torque=max(outcome.torque for outcome in outcomes),
+        **{name: max(getattr(outcome, name) for outcome in outcomes) for name in ("turn", "impact", "speed", "torque")},
     )
 
 
@@ -94,6 +92,45 @@ def cost(move: Move, outcome: Outcome) -> float:
 
 def _worth(mark: Mark) -> float:
     return 0.5 * mark.upright + mark.height / 0.2 + 1.2 * mark.flat - 4.0 * mark.beside
+
+
+# --- the file ---------------------------------------------------------------------------------------------------------
+
+
+def put(model: RobotModel, move: Move, runs: int, reached: int) -> None:
+    """Put a move that was tried so often into the file, in place of one that begins and ends alike."""
+    path = config_file(FILE)
+    content = json.loads(path.read_text(encoding="utf-8"))
+    entry = {
+        "from": move.start,
+        "to": move.goal,
+        "checked": {"runs": runs, "reached": reached},
+        "frames": [
+            {
+                "time": round(frame.duration, 3),
+                "angles": {model.joints[i].name: round(angle, 4) for i, angle in sorted(frame.angles.items())},
+            }
+            for frame in move.frames
+        ],
+    }
+    ends = (move.start, move.goal)
+    places = [i for i, other in enumerate(content["moves"]) if (other["from"], other["to"]) == ends]
+    if places:
+        content["moves"][places[0]] = entry
+    else:
+        content["moves"].append(entry)
+    path.write_text(text_of(content), encoding="utf-8")
+
+
+def text_of(content: dict[str, Any]) -> str:
+    """The file as text: one key frame a line, so that a change shows what moved."""
+    moves = []
+    for move in content["moves"]:
+        head = ", ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in move.items() if key != "frames")
+        frames = ",\n".join(f"   {json.dumps(frame)}" for frame in move["frames"])
+        moves.append(f'  {{{head}, "frames": [\n{frames}\n  ]}}')
+    about = json.dumps(content["_meta"], indent=1).replace("\n", "\n ")
+    return f'{{\n "_meta": {about},\n "moves": [\n' + ",\n".join(moves) + "\n ]\n}\n"
 
 
 # --- checking ---------------------------------------------------------------------------------------------------------

@@ -155,7 +155,7 @@ def tai_chi() -> Table:
     """Weight goes from foot to foot, and each leg is lifted once, the robot standing on the other."""
     # s: rising, sinking, to the left, its leg lifted until, to the right, its leg lifted until, home, end.
     times = [2.5, 5.0, 7.5, 10.0, 12.5, 15.0, 17.5, 20.0, 22.5, 24.5, 26.5]
-    rows_left = [  # ShoulderPitch, ShoulderRoll, ElbowYaw, ElbowRoll, WristYaw, Hand of a left arm
+    rows = [  # ShoulderPitch, ShoulderRoll, ElbowYaw, ElbowRoll, WristYaw, Hand of a left arm
         (0.1, 0.1, -1.2, -0.3, -0.6, 0.8),
         (1.1, 0.2, -1.2, -0.9, -0.6, 0.5),
         (0.3, 0.1, -0.9, -1.2, -0.9, 0.8),
@@ -167,56 +167,18 @@ def tai_chi() -> Table:
         (0.1, 0.1, -1.2, -0.3, -0.6, 0.8),
         (1.1, 0.2, -1.2, -0.9, -0.3, 0.5),
     ]
-    rows_right = [
-        (0.1, 0.1, -1.2, -0.3, -0.6, 0.8),
-        (1.1, 0.2, -1.2, -0.9, -0.6, 0.5),
-        (0.9, 0.1, -1.0, -1.2, -1.2, 0.8),
-        (0.6, 0.9, -1.3, -0.5, -0.6, 0.8),
-        (0.5, 1.0, -1.3, -0.4, -0.6, 0.8),
-        (0.3, 0.1, -0.9, -1.2, -0.9, 0.8),
-        (-0.2, 0.5, -0.9, -0.9, -0.6, 1.0),
-        (-0.2, 0.6, -0.9, -0.6, -0.6, 1.0),
-        (0.1, 0.1, -1.2, -0.3, -0.6, 0.8),
-        (1.1, 0.2, -1.2, -0.9, -0.3, 0.5),
-    ]
+    rows_right = [*rows[:2], *rows[5:8], *rows[2:5], *rows[8:]]  # what the left arm does on the way to the other side
     lifted, ahead = 0.045, 0.02
     low, tall = HEIGHT - 0.03, HEIGHT - 0.012
     over, lean = 0.05, 0.1
     return {
-        **arms(times, INIT_ARM, _columns(rows_left), _columns(rows_right)),
-        "height": [
-            (0.0, HEIGHT),
-            (2.5, HEIGHT),
-            (5.0, low),
-            (7.5, tall),
-            (12.5, tall),
-            (15.0, low),
-            (17.5, tall),
-            (20.0, tall),
-            (22.5, HEIGHT),
-            (24.5, low),
-            (26.5, HEIGHT),
-        ],
-        "com_y": [
-            (0.0, 0.0),
-            (5.0, 0.0),
-            (8.0, over),
-            (12.6, over),
-            (17.0, -over),
-            (20.2, -over),
-            (22.8, 0.0),
-            (26.5, 0.0),
-        ],
-        "roll": [
-            (0.0, 0.0),
-            (5.0, 0.0),
-            (8.0, -lean),
-            (12.6, -lean),
-            (17.0, lean),
-            (20.2, lean),
-            (22.8, 0.0),
-            (26.5, 0.0),
-        ],
+        **arms(times, INIT_ARM, _columns(rows), _columns(rows_right)),
+        "height": through(
+            f"0 {HEIGHT}, 2.5 {HEIGHT}, 5 {low}, 7.5 {tall}, 12.5 {tall}, 15 {low}, "
+            f"17.5 {tall}, 20 {tall}, 22.5 {HEIGHT}, 24.5 {low}, 26.5 {HEIGHT}"
+        ),
+        "com_y": through(f"0 0, 5 0, 8 {over}, 12.6 {over}, 17 {-over}, 20.2 {-over}, 22.8 0, 26.5 0"),
+        "roll": through(f"0 0, 5 0, 8 {-lean}, 12.6 {-lean}, 17 {lean}, 20.2 {lean}, 22.8 0, 26.5 0"),
         "right_z": [(0.0, 0.0), (8.4, 0.0), (9.9, lifted), (11.0, lifted), (12.4, 0.0), (26.5, 0.0)],
         "right_x": [(0.0, 0.0), (8.4, 0.0), (9.9, ahead), (11.0, ahead), (12.4, 0.0), (26.5, 0.0)],
         "left_z": [(0.0, 0.0), (17.2, 0.0), (18.4, lifted), (19.0, lifted), (20.0, 0.0), (26.5, 0.0)],

@@ -36,13 +36,9 @@ MOST_TRIALS = 50
 
 
 class Mark(NamedTuple):
-    """The body at one moment.
+    """The body at one moment: height of the torso, m, cosine of its lean and of that of the feet (mean of both).
 
-    Attributes:
-        height: Of the torso, m.
-        upright: Cosine of the lean of the torso.
-        flat: Cosine of the lean of the feet, mean of both.
-        beside: How far the torso is from the middle of the feet, horizontally, m.
+    `beside` is how far the torso is from the middle of the feet, horizontally, m.
     """
 
     height: float
@@ -99,16 +95,10 @@ class Attempts:
         self._snapshot: Snapshot
 
     def close(self) -> None:
-        """Free the engine."""
         self._physics.close()
 
     def run(self, move: Move, seed: int) -> Outcome:
-        """One attempt from rest.
-
-        Args:
-            move: What to try.
-            seed: Of the disturbance.
-        """
+        """One attempt from rest; `seed` is that of the disturbance."""
         self._begin(random.Random(f"{self._start} {seed}"))
         self._robot.getting_up = True
         task = play(self._robot, "attempt", move)

@@ -35,12 +35,7 @@ BLOCK = 2720
 
 @dataclass(frozen=True)
 class Heard:
-    """What came of one phrase.
-
-    Attributes:
-        said: The phrase.
-        found: What was recognised, in order; mostly one or none.
-    """
+    """What came of one phrase: what was recognised, in order; mostly one or none."""
 
     said: str
     found: Sequence[Hypothesis]

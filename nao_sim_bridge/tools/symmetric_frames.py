@@ -31,9 +31,7 @@ TOLERANCE = 0.02
 def to_vector(model: RobotModel, frames: Sequence[KeyFrame]) -> np.ndarray:
     """(len(frames) * 11,) angles of the left side in rad and the duration in s, frame by frame.
 
-    Args:
-        model: The robot.
-        frames: All of them name every joint of arms and legs; the right side must mirror the left one.
+    All frames name every joint of arms and legs; the right side must mirror the left one.
     """
     left = [model.joint_index[f"L{name}"] for name in PAIRS]
     return np.array([[*(frame.angles[i] for i in left), frame.duration] for frame in frames]).ravel()
@@ -42,10 +40,7 @@ def to_vector(model: RobotModel, frames: Sequence[KeyFrame]) -> np.ndarray:
 def to_frames(model: RobotModel, vector: Sequence[float], head: float = 0.0) -> tuple[KeyFrame, ...]:
     """The frames of a vector: within the joint limits, and so long that no motor is asked for more than it can.
 
-    Args:
-        model: The robot.
-        vector: As `to_vector` gives it.
-        head: Pitch of the head in all of them, rad.
+    In all of them the head is pitched by `head`, rad.
     """
     frames: list[KeyFrame] = []
     for row in np.asarray(vector, dtype=float).reshape(-1, SIZE):

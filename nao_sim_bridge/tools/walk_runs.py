@@ -1,20 +1,20 @@
 """Single runs of walking robots, each in a world of its own, from a few numbers to a few numbers; for `check_walk.py`.
 
-All of them are plain functions of plain values, so that they can run in processes of their own.
+All of them are functions from plain values to named numbers, truth values and texts, as `sweep` takes them.
 """
 
 from __future__ import annotations
 
 import math
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Dict, Mapping, Union
 
 from walk_trial import REAL, Trial
 
 from nao_sim_bridge.walk.footsteps import FootPose
 
+Result = Dict[str, Union[bool, float, str]]
 # Until a walk has its speed, s.
 RAMP = 4.0
 # How often orders change and pushes come, s.
@@ -25,67 +25,17 @@ POSTURES = ("Stand", "StandInit", "StandZero", "Crouch")
 FLOOR = "friction: 1.0, color: [1, 1, 1], tile_color: [1, 1, 1], tile_size: 1.0"
 
 
-@dataclass(frozen=True)
-class Straight:
-    """A walk at one velocity.
+def straight(velocity: tuple[float, float, float], gait: Mapping[str, float], seconds: float, seed: int = 0) -> Result:
+    """Walk at a velocity for so long, with ideal sensors; s.
 
-    Attributes:
-        up: It did not fall.
-        speed: m/s, m/s, rad/s, true, in its own frame.
-        aside: Deviation to the side, m for each m of way.
-        turn: Deviation of the heading, rad for each m of way.
+    Returns:
+        up: Whether it did not fall.
+        x, y, theta: True velocity in its own frame, m/s, m/s, rad/s.
+        aside, turn: Deviation to the side, m for each m of way, and of the heading, rad for each m of way.
         odometry: Error of the place that it thinks it is at, by the way.
-        fastest: Largest share of a joint's top speed, with the joint's name.
-        above: Longest time that a joint was over its top speed, s, with the joint's name.
+        fastest, joint: Largest share of a joint's top speed, and which joint had it.
+        above, longest: Longest time that a joint was over its top speed, s, and which one.
     """
-
-    up: bool
-    speed: tuple[float, float, float]
-    aside: float
-    turn: float
-    odometry: float
-    fastest: tuple[float, str]
-    above: tuple[float, str]
-
-
-@dataclass(frozen=True)
-class Fall:
-    """How a push ended.
-
-    Attributes:
-        fell: Whether the robot fell.
-        noticed_before: How long before the impact the fall was noticed, s; None when it was not, or nothing hit.
-        impact: Whether torso, head or an upper arm hit the floor.
-        stood_up: Whether the robot stands in the end.
-    """
-
-    fell: bool
-    noticed_before: float | None
-    impact: bool
-    stood_up: bool
-
-
-@dataclass(frozen=True)
-class Arrival:
-    """How a walk to a place ended.
-
-    Attributes:
-        reached: The walk says that it is there.
-        distance: From the place where it should be, true, m.
-        turn: The same of the heading, rad.
-        odometry: Error of the place that it thinks it is at, by the way.
-    """
-
-    reached: bool
-    distance: float
-    turn: float
-    odometry: float
-
-
-def straight(
-    velocity: tuple[float, float, float], gait: Mapping[str, float], seconds: float, seed: int = 0
-) -> Straight:
-    """Walk at a velocity for so long, with ideal sensors; s."""
     with Trial(seed) as trial:
         start, believed = trial.place, trial.believed
         trial.go(*velocity, gait=dict(gait))
@@ -108,21 +58,25 @@ def straight(
         length = math.hypot(end.x, end.y)
         sideways = end.x if abs(velocity[1]) > abs(velocity[0]) else end.y
         straight_on = velocity[2] == 0.0 and length > 0.0
-        fastest = max((share, name) for name, share in trial.fastest.items())
-        above = max((time, name) for name, time in trial.longest_above.items())
-        return Straight(
-            up,
-            (moved.x / seconds, moved.y / seconds, turned / seconds),
-            abs(sideways) / length if straight_on else 0.0,
-            abs(end.yaw) / length if straight_on else 0.0,
-            error / max(length, way, 1e-9),
-            fastest,
-            above,
-        )
+        fastest, joint = max((share, name) for name, share in trial.fastest.items())
+        above, longest = max((time, name) for name, time in trial.longest_above.items())
+        return {
+            "up": up,
+            "x": moved.x / seconds,
+            "y": moved.y / seconds,
+            "theta": turned / seconds,
+            "aside": abs(sideways) / length if straight_on else 0.0,
+            "turn": abs(end.yaw) / length if straight_on else 0.0,
+            "odometry": error / max(length, way, 1e-9),
+            "fastest": fastest,
+            "joint": joint,
+            "above": above,
+            "longest": longest,
+        }
 
 
-def wander(seed: int, seconds: float, impulse: float) -> tuple[bool, float, str]:
-    """Obey random orders, maybe pushed at random; whether it is still up, for how long it was, s, and what ended it."""
+def wander(seed: int, seconds: float, impulse: float) -> Result:
+    """Obey random orders, maybe pushed at random; whether it is still `up`, what `time` it was, s, and `why` not."""
     with Trial(seed, **REAL) as trial:
         begun = trial.time
         while trial.up and trial.time < begun + seconds:
@@ -135,24 +89,38 @@ def wander(seed: int, seconds: float, impulse: float) -> tuple[bool, float, str]
             trial.push(impulse, trial.chance.uniform(-math.pi, math.pi))
             trial.run(EVERY - moment)
         fell = "fell" if trial.noticed is not None or trial.impact is not None else ""
-        return trial.up, trial.time - begun, fell or trial.ended
+        return {"up": trial.up, "time": trial.time - begun, "why": fell or trial.ended}
 
 
-def push(seed: int, side: int, impulse: float, get_up: bool) -> Fall:
-    """Push a walking robot once, from the front, left, back or right (0..3), at any phase of its steps."""
+def push(seed: int, side: int, impulse: float, get_up: bool) -> Result:
+    """Push a walking robot once, from the front, left, back or right (0..3), at any phase of its steps.
+
+    Returns:
+        fell: Whether the robot fell.
+        impact: Whether torso, head or an upper arm hit the floor.
+        early: How long before the impact the fall was noticed, s; not there when it was not, or nothing hit.
+        stood_up: Whether the robot stands in the end.
+    """
     with Trial(seed, **REAL) as trial:
         trial.go(0.07, 0.0, 0.0)
         trial.run(trial.chance.uniform(3.0, 3.84))
         trial.push(impulse, side * math.pi / 2.0 + trial.chance.uniform(-0.3, 0.3))
         if trial.run(4.0):
-            return Fall(False, None, False, True)
+            return {"fell": False, "impact": False, "stood_up": True}
         trial.fall()
-        early = trial.impact - trial.noticed if trial.impact is not None and trial.noticed is not None else None
-        return Fall(True, early, trial.impact is not None, trial.get_up() if get_up else False)
+        noticed = trial.impact is not None and trial.noticed is not None
+        early = {"early": trial.impact - trial.noticed} if noticed else {}
+        return {"fell": True, "impact": trial.impact is not None, "stood_up": get_up and trial.get_up(), **early}
 
 
-def arrive(seed: int) -> Arrival:
-    """Walk to a place from a random posture, with a real robot's sensors."""
+def arrive(seed: int) -> Result:
+    """Walk to a place from a random posture, with a real robot's sensors.
+
+    Returns:
+        reached: Whether the walk says that it is there.
+        distance, turn: True, from the place where it should be, m, and of the heading, rad.
+        odometry: Error of the place that it thinks it is at, by the way.
+    """
     with Trial(seed, POSTURES[seed % len(POSTURES)], **REAL) as trial:
         trial.run(trial.chance.uniform(0.0, 1.0))
         start, believed = trial.place, trial.believed
@@ -163,20 +131,21 @@ def arrive(seed: int) -> Arrival:
         off = FootPose(*GOAL).seen_from(there)
         error = _apart(there, trial.believed.seen_from(believed))
         reached = task.finished and task.value is True and trial.up
-        return Arrival(reached, math.hypot(off.x, off.y), abs(off.yaw), error / math.hypot(*GOAL[:2]))
+        distance, odometry = math.hypot(off.x, off.y), error / math.hypot(*GOAL[:2])
+        return {"reached": reached, "distance": distance, "turn": abs(off.yaw), "odometry": odometry}
 
 
-def on_ground(scene: Mapping[str, Any], seed: int, seconds: float) -> tuple[bool, float]:
-    """Walk a bow on another ground or with a load; whether it walks on to the end, and how far it gets, m."""
+def on_ground(scene: Mapping[str, Any], seed: int, seconds: float) -> Result:
+    """Walk a bow on another ground or with a load; whether it is `up` to the end, and its `way`, m."""
     with Trial(seed, **{**REAL, **scene}) as trial:
         start = trial.place
         trial.go(0.08, 0.0, 0.05)
         trial.run(seconds)
         end = trial.place.seen_from(start)
-        return trial.stop(), math.hypot(end.x, end.y)
+        return {"up": trial.stop(), "way": math.hypot(end.x, end.y)}
 
 
-def on_slope(heading: float, degrees: float, seed: int, seconds: float) -> tuple[bool, float]:
+def on_slope(heading: float, degrees: float, seed: int, seconds: float) -> Result:
     """The same on a floor that rises in a direction, rad."""
     along, aside = (degrees * part for part in (math.cos(heading), math.sin(heading)))
     with tempfile.TemporaryDirectory() as folder:

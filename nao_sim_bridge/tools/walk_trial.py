@@ -22,14 +22,14 @@ REAL = {"sensor_noise": 1.0, "sensor_delay": 0.016}
 SETTLE = 0.5
 # What hits the floor in a fall; hands and forearms are put there on purpose.
 BODY = ("torso", "Neck", "Head", "LShoulder", "RShoulder", "LBicep", "RBicep")
-# Length of a push, s.
-PUSH_TIME = 0.1
+# Length of a push, s; name -> where one goes, degrees from straight ahead, counter-clockwise.
+PUSH_TIME, SIDES = 0.1, {"front": 0, "left": 90, "back": 180, "right": 270}
 # A foot on the ground carries this, N; a robot that stands moves no faster, m/s.
 CARRIES, STILL = 3.0, 0.05
 
 
 class Trial:
-    """One robot from the start of its walk on.
+    """One robot, stiff in a posture, from the start of its walk on.
 
     Attributes:
         simulation: The world with the robot.
@@ -40,11 +40,6 @@ class Trial:
         ended: Why a walk could not begin or ended before time; empty when none did.
         fastest: Largest share of its top speed that a leg's joint has had, by name.
         longest_above: Longest time without a break over the top speed, s, by name.
-
-    Args:
-        seed: Of chance, here and in the sensors.
-        posture: Where it starts, stiff.
-        scene: Further arguments of the scene.
     """
 
     def __init__(self, seed: int, posture: str = "StandInit", **scene: Any) -> None:

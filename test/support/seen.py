@@ -11,8 +11,8 @@ from nao_sim_bridge.cameras.sensor import Shot
 from nao_sim_bridge.model.kinematics import matrix_quaternion, rpy_matrix
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.render import RenderState
 from nao_sim_bridge.world.reader import read_world
+from nao_sim_bridge.world.render_state import RenderState
 from nao_sim_bridge.world.world import World
 
 MODEL = load_model()

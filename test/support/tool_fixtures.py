@@ -39,7 +39,7 @@ def run(tools, capsys, monkeypatch):
     def run(name, *options):
         monkeypatch.setattr(sys, "argv", [f"{name}.py", *options])
         try:
-            status = getattr(tools, name).main(*([options] if name == "check_walk" else []))
+            status = getattr(tools, name).main()
         except SystemExit as end:
             status = end.code
         captured = capsys.readouterr()

@@ -14,7 +14,8 @@ from waits import hold
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.render import PRESETS, Camera, Renderer, RenderError, RenderState, Viewer, preset_camera
+from nao_sim_bridge.render.client import Renderer, RenderError, Viewer
+from nao_sim_bridge.world.render_state import PRESETS, Camera, RenderState, preset_camera
 
 SMALL = {"width": 160, "height": 120, "supersampling": 1}
 FRONT = preset_camera("front", MODEL, STATE, **SMALL)

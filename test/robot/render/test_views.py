@@ -12,10 +12,10 @@ from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.cameras.darkroom import CameraPlaces
 from nao_sim_bridge.model.shapes import Shape
-from nao_sim_bridge.render import RobotLook
 from nao_sim_bridge.render.engines import open_engine
 from nao_sim_bridge.render.scene.view import View
 from nao_sim_bridge.world.pictures import WorldPicture
+from nao_sim_bridge.world.render_state import RobotLook
 from nao_sim_bridge.world.world import Part, WorldObject
 
 VIEW, HERE = View.of_shot(shot()), (0.0, 0.0, 0.0)

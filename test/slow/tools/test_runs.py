@@ -73,11 +73,11 @@ def test_each_part_of_recognition_gives_its_lines(tools):
 def test_walks_are_measured(tools):
     runs = tools.walk_runs
     made = runs.straight((0.08, 0.0, 0.0), {}, 4.2)
-    assert made.up and made.speed[0] == pytest.approx(0.08, rel=0.05)
-    assert made.odometry < 0.02 and 0.3 < made.fastest[0] < 1.2
+    assert made["up"] and made["x"] == pytest.approx(0.08, rel=0.05)
+    assert made["odometry"] < 0.02 and 0.3 < made["fastest"] < 1.2
     assert runs.stop_somewhere(2) is True
     fall = runs.push(1, 1, 8.0, get_up=False)
-    assert fall.fell and fall.impact and fall.noticed_before > 0.0
+    assert fall["fell"] and fall["impact"] and fall["early"] > 0.0
 
 
 def test_moves_of_the_file_get_there_from_starts_no_search_has_seen(tools, run):

@@ -6,13 +6,11 @@ import posixpath
 import zipfile
 import zlib
 from pathlib import Path
-from typing import Iterable
 
 from nao_sim_bridge.base.sizes import ArchiveSizes, load_sizes
 
 PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 ENCRYPTED = 0x1
-CHUNK = 64 * 1024
 
 
 class BadArchive(ValueError):
@@ -68,22 +66,18 @@ class Archive:
         """
         if name not in self._members:
             raise BadArchive(f"there is no {name!r} in it")
-        content = bytearray()
+        largest = max(0, min(self._sizes.member_bytes, self._sizes.total_bytes - self._unpacked))
         try:
             with self._archive.open(self._members[name]) as member:
-                while True:
-                    chunk = member.read(CHUNK)
-                    if not chunk:
-                        return bytes(content)
-                    content += chunk
-                    self._unpacked += len(chunk)
-                    if len(content) > self._sizes.member_bytes or self._unpacked > self._sizes.total_bytes:
-                        raise BadArchive(f"{name!r} is too large: {self._allowed()}")
+                content = member.read(largest + 1)
         except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, NotImplementedError) as error:
             raise BadArchive(f"{name!r} is broken: {error}") from error
+        self._unpacked += len(content)
+        if len(content) > largest:
+            raise BadArchive(f"{name!r} is too large: {self._allowed()}")
+        return content
 
-    def _check(self, entries: Iterable[zipfile.ZipInfo]) -> None:
-        entries = list(entries)
+    def _check(self, entries: list[zipfile.ZipInfo]) -> None:
         if len(entries) > self._sizes.members:
             raise BadArchive(f"has {len(entries)} members, at most {self._sizes.members} are allowed")
         for entry in entries:

@@ -46,12 +46,7 @@ class SimulationError(RuntimeError):
 
 
 class ConfigError(SimulationError):
-    """A data file that does not hold what it should.
-
-    Attributes:
-        where: File and place in it.
-        problem: What is wrong there.
-    """
+    """A data file that does not hold what it should: `where` in which file, and the `problem` there."""
 
     def __init__(self, where: str, problem: str) -> None:
         self.where = where
@@ -111,12 +106,7 @@ class SimulationStopped(SimulationError):
 
 
 class NotFinite(SimulationError):
-    """Numbers of which one is not finite, or that are too large to be summed up.
-
-    Attributes:
-        what: What they are.
-        numbers: They.
-    """
+    """Numbers of which one is not finite, or that are too large to be summed up, and what they are."""
 
     def __init__(self, what: str, numbers: Sequence[float]) -> None:
         self.what = what

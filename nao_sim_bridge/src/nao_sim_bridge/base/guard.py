@@ -13,13 +13,7 @@ log = logging.getLogger("nao_sim.guard")
 
 @dataclass(frozen=True)
 class Failure:
-    """Something that has raised.
-
-    Attributes:
-        culprit: What raised, as "module.function" of the package.
-        error: The last error of it, as a text.
-        count: How often it has raised.
-    """
+    """What has raised, as "module.function" of the package, its last error as a text, and how often it has raised."""
 
     culprit: str
     error: str

@@ -5,53 +5,11 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 
-from nao_sim_bridge.base.config import config_file, read_settings
+from nao_sim_bridge.base.config import config_file, read_json, read_settings
 from nao_sim_bridge.base.errors import BadValue, ConfigError
 
 FILE = "sizes.json"
 _UNITS = {"bytes": "bytes", "s": "s", "hz": "Hz", "pixels": "pixels", "side": "pixels", "characters": "characters"}
-# What each section bounds, and what is bounded in it, of all its limits or of each; for the table of all limits.
-_WHERE: dict[str, str | dict[str, str]] = {
-    "sound": "sound files, of clients and of worlds",
-    "decoder": "the process that decodes sound files",
-    "loaded_sounds": "what ALAudioPlayer keeps of one robot: loaded, playing, and sound sets",
-    "world_sounds": "sounds of the world, of its file and of clients, while they sound",
-    "stream": "ALAudioPlayer.playWebStream",
-    "archive": "packages of behaviours (.pkg, .zip), files of known faces (.npz)",
-    "picture": "picture files on things of the world",
-    "yaml": "worlds, things and behaviours: values, those of aliases counted each time; lists in each other",
-    "call": "arguments of any call to the simulated robot",
-    "lists": {
-        "key_frames": "of all joints of a call: angles, stiffnesses, Bezier curves",
-        "poses": "of all effectors of a call: positionInterpolations, transformInterpolations",
-        "places": "control points of moveTo",
-        "steps": "setFootSteps, with those that are left of earlier calls",
-        "colours": "fadeListRGB",
-        "commands": "DCM.set, DCM.setAlias: of one actuator, with those that are left of earlier calls",
-        "aliases": "DCM.createAlias",
-        "devices": "of one alias of the DCM",
-    },
-    "clients": {
-        "stuck_s": "a client that takes nothing, though more waits than its system and ours can hold",
-        "calls": "that wait for a module of a client; of more the oldest are lost",
-        "call_s": "until a module of a client that does not answer gets no calls any more",
-        "changes": "ALMemory.getDataOnChange: calls that wait; of more the oldest is given up",
-        "subscribers": "names at an extractor; of more the oldest is taken off",
-        "sound_blocks": "of 170 ms that wait for a client; of more the oldest are lost",
-        "cameras": "ALVideoDevice: subscribers",
-        "camera_idle_s": "after which a subscriber of ALVideoDevice that asks for nothing has gone",
-        "cameras_remembered": "ALVideoDevice: subscribers that have gone, and are found again when they ask",
-        "frames": "calls that wait for a frame of one subscriber",
-        "series": "ALPhotoCapture: series that are under way",
-        "faces": "ALFaceDetection: calls that learn a face, and wait",
-        "things": "that clients have placed in the world",
-    },
-    "memory": "what clients write into ALMemory of one robot: values with their histories; keys and subscriptions",
-    "speech": "texts to say, files of speech, the dictionary of a language",
-    "vocabulary": "ALSpeechRecognition: phrases, and contexts that are put aside",
-    "behaviors": "behaviours of clients: those that are installed, and those of ALFrameManager",
-    "film": "texts in films",
-}
 
 
 @dataclass(frozen=True)
@@ -150,7 +108,7 @@ class ListSizes:
 
 @dataclass(frozen=True)
 class ClientSizes:
-    """Of what waits for clients and is kept for them; `_WHERE` says what each is."""
+    """Of what waits for clients and is kept for them; the file says what each is."""
 
     stuck_s: float
     calls: int
@@ -259,13 +217,9 @@ def require_few(field: str, count: int, what: str) -> None:
 
 def size_rows() -> list[tuple[str, float, str, str]]:
     """The limits as rows of a table: what, limit, unit (empty for a count), where it counts."""
-    return [
-        (f"{name}.{key}", limit, _unit(key), where if isinstance(where, str) else where[key])
-        for name, limits in asdict(load_sizes()).items()
-        for where in [_WHERE[name]]
-        for key, limit in limits.items()
-    ]
-
-
-def _unit(key: str) -> str:
-    return _UNITS.get(key.rsplit("_", 1)[-1], "")
+    where_of, rows = read_json(config_file(FILE))["_meta"]["where"], []
+    for name, limits in asdict(load_sizes()).items():
+        for key, limit in limits.items():
+            where = where_of[name] if isinstance(where_of[name], str) else where_of[name][key]
+            rows.append((f"{name}.{key}", limit, _UNITS.get(key.rsplit("_", 1)[-1], ""), where))
+    return rows

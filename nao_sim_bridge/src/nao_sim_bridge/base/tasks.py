@@ -165,14 +165,5 @@ def stopped_error() -> SimulationStopped:
 
 def worked_out(task: Task, work: Callable[[], Any], thread: str) -> Task:
     """`task`, which ends with what `work` returns or raises in a thread of its own: for what takes wall time."""
-
-    def run() -> None:
-        try:
-            result = work()
-        except Exception as error:
-            task.finish(error=error)
-        else:
-            task.finish(result)
-
-    threading.Thread(target=run, name=thread, daemon=True).start()
+    threading.Thread(target=task.finish_with, args=(work,), name=thread, daemon=True).start()
     return task

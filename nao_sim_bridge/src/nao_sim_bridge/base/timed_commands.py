@@ -44,12 +44,7 @@ def merged(old: Sequence[Point], new: Iterable[Point], update: str) -> tuple[Poi
 
 @dataclass(frozen=True)
 class Polyline:
-    """Straight lines through points: a curve as joints follow it.
-
-    Attributes:
-        times: Of the points, s, rising, the first is 0.
-        values: At these times.
-    """
+    """Straight lines through points, a curve as joints follow it: times, s, that rise from 0, and values at these."""
 
     times: Tuple[float, ...]
     values: Tuple[float, ...]

@@ -119,13 +119,12 @@ class Cameras:
         every: bool = False,
         keep: int = 1,
     ) -> CameraStream:
-        """Look through a camera from now on; the first frame is that of the next tick.
+        """Look through a camera from now on, 0 top, 1 bottom; resolution and colour space are NAOqi's ids.
+
+        The first frame is that of the next tick.
 
         Args:
             name: For the log.
-            camera: 0 top, 1 bottom.
-            resolution: NAOqi's id.
-            color_space: NAOqi's id.
             fps: Frames a second, up to 30. The camera runs at the highest rate that somebody asks for; others get
                 those of its frames that come next when theirs is due.
             every: Keep all frames that are due, in order, and let time that runs faster than the wall clock wait for
@@ -276,7 +275,7 @@ class Cameras:
 
     def answer(self, ask: Ask, answer: Answer) -> None:
         """Tell somebody who asked, in the cameras' thread."""
-        callback = ask.callback
+        callback = ask.take_callback()
         self._darkroom.put(lambda: callback(answer))
 
     # --- inside ---------------------------------------------------------------------------------------------------

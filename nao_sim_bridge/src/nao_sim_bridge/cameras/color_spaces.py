@@ -7,7 +7,7 @@ others plus 128, and in those with a chroma C instead, the hue h as above.
 
 from __future__ import annotations
 
-from typing import Callable, Mapping
+from typing import Callable, Mapping, Sequence
 
 import cv2
 import numpy as np
@@ -17,21 +17,12 @@ from nao_sim_bridge.base.errors import BadValue
 Y_OF_RGB = (0.299, 0.587, 0.114)
 
 
-def encode(rgb: np.ndarray, color_space: int) -> bytes:
-    """The bytes of a picture.
-
-    Args:
-        rgb: (h, w, 3) uint8; the width is even.
-        color_space: NAOqi's id.
+def encoded(rgb: np.ndarray, color_space: int) -> np.ndarray:
+    """The pixels of a (h, w, 3) uint8 picture of even width in a colour space (NAOqi's id), (h, w) or (h, w, layers).
 
     Raises:
         BadValue: A colour camera does not have this colour space.
     """
-    return np.ascontiguousarray(encoded(rgb, color_space)).tobytes()
-
-
-def encoded(rgb: np.ndarray, color_space: int) -> np.ndarray:
-    """As `encode`: (h, w) or (h, w, layers) uint8."""
     if color_space not in ENCODERS:
         raise BadValue("colorSpace", color_space, "one of " + ", ".join(map(str, ENCODERS)))
     return ENCODERS[color_space](rgb)
@@ -40,6 +31,10 @@ def encoded(rgb: np.ndarray, color_space: int) -> np.ndarray:
 def luminance(rgb: np.ndarray) -> np.ndarray:
     """(h, w) uint8."""
     return cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
+
+
+def _converted(code: int) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda rgb: cv2.cvtColor(rgb, code)
 
 
 def _plane(convert: Callable[[np.ndarray], np.ndarray], index: int) -> Callable[[np.ndarray], np.ndarray]:
@@ -51,26 +46,17 @@ def _yuv(rgb: np.ndarray) -> np.ndarray:
     return cv2.cvtColor(rgb, cv2.COLOR_RGB2YCrCb)[..., (0, 2, 1)]
 
 
-def _chroma_of_pairs(rgb: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Y (h, w), and U and V (h, w / 2) of two pixels each."""
-    y, v, u = cv2.split(cv2.cvtColor(rgb, cv2.COLOR_RGB2YCrCb))
-    half = (rgb.shape[1] // 2, rgb.shape[0])
-    u, v = (cv2.resize(plane, half, interpolation=cv2.INTER_AREA) for plane in (u, v))
-    return y, u, v
+def _of_pairs(order: Sequence[int]) -> Callable[[np.ndarray], np.ndarray]:
+    """Four bytes for two pixels: Y of the left one (0), of the right one (1), their U or Cb (2), their V or Cr (3)."""
 
+    def convert(rgb: np.ndarray) -> np.ndarray:
+        y, v, u = cv2.split(cv2.cvtColor(rgb, cv2.COLOR_RGB2YCrCb))
+        half = (rgb.shape[1] // 2, rgb.shape[0])
+        u, v = (cv2.resize(plane, half, interpolation=cv2.INTER_AREA) for plane in (u, v))
+        planes = (y[:, 0::2], y[:, 1::2], u, v)
+        return cv2.merge([planes[number] for number in order]).reshape(*rgb.shape[:2], 2)
 
-def _yuv422(rgb: np.ndarray) -> np.ndarray:
-    """Four bytes for two pixels: Y of the left one, U, Y of the right one, V; the cameras themselves give this."""
-    y, u, v = _chroma_of_pairs(rgb)
-    merged = cv2.merge((y[:, 0::2], u, y[:, 1::2], v))
-    return merged.reshape(*rgb.shape[:2], 2)
-
-
-def _yycbcr(rgb: np.ndarray) -> np.ndarray:
-    """Four bytes for two pixels: Y of the left one, Y of the right one, Cb, Cr."""
-    y, u, v = _chroma_of_pairs(rgb)
-    merged = cv2.merge((y[:, 0::2], y[:, 1::2], u, v))
-    return merged.reshape(*rgb.shape[:2], 2)
+    return convert
 
 
 def _hsy(rgb: np.ndarray) -> np.ndarray:
@@ -97,10 +83,6 @@ def _hue_saturation_mixed(rgb: np.ndarray) -> np.ndarray:
 def _argb(rgb: np.ndarray) -> np.ndarray:
     opaque = np.full(rgb.shape[:2], 255, dtype=np.uint8)
     return cv2.merge((opaque, *cv2.split(rgb)))
-
-
-def _cie(code: int) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda rgb: cv2.cvtColor(rgb, code)
 
 
 def _polar(code: int) -> Callable[[np.ndarray], np.ndarray]:
@@ -130,18 +112,18 @@ ENCODERS: Mapping[int, Callable[[np.ndarray], np.ndarray]] = {
     6: _plane(_hsy, 0),
     7: _plane(_hsy, 1),
     8: luminance,
-    9: _yuv422,
+    9: _of_pairs((0, 2, 1, 3)),  # as the cameras themselves give it
     10: _yuv,
     11: _same,
     12: _hsy,
-    13: lambda rgb: cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR),
-    14: _yycbcr,
+    13: _converted(cv2.COLOR_RGB2BGR),
+    14: _of_pairs((0, 1, 2, 3)),
     15: _hue_as_color,
     16: _hue_saturation_mixed,
     18: _argb,
-    19: _cie(cv2.COLOR_RGB2XYZ),
-    22: _cie(cv2.COLOR_RGB2Lab),
-    24: _cie(cv2.COLOR_RGB2Luv),
+    19: _converted(cv2.COLOR_RGB2XYZ),
+    22: _converted(cv2.COLOR_RGB2Lab),
+    24: _converted(cv2.COLOR_RGB2Luv),
     25: _polar(cv2.COLOR_RGB2Lab),
     26: _polar(cv2.COLOR_RGB2Luv),
 }

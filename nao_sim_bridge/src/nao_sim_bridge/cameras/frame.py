@@ -67,22 +67,18 @@ class Ask:
     """Somebody waits for a frame: `callback` is called once, with it or with an error."""
 
     def __init__(self, callback: Callable[[Answer], None]) -> None:
-        self.callback = callback
+        self._callback: Callable[[Answer], None] | None = callback
         self.given_up = False
 
     @property
     def answered(self) -> bool:
         """Whether the callback has been called, or is about to be."""
-        return self.callback is _answered
+        return self._callback is None
 
     def take_callback(self) -> Callable[[Answer], None]:
-        """The callback, to be called; it can be had once."""
-        callback, self.callback = self.callback, _answered
+        """The callback, to be called; it can be had once: what it belongs to need not be kept."""
+        callback, self._callback = self._callback, None
         return callback
-
-
-def _answered(_: Answer) -> None:
-    """In the place of a callback that has been called: what it belongs to need not be kept."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,12 +32,7 @@ class Intrinsics:
 
 @dataclass(frozen=True)
 class Optics:
-    """A pinhole.
-
-    Attributes:
-        hfov: Horizontal field of view, rad.
-        vfov: Vertical field of view, rad.
-    """
+    """A pinhole of a horizontal and a vertical field of view, rad."""
 
     hfov: float
     vfov: float

@@ -77,13 +77,9 @@ class Shot:
 
 @dataclass(frozen=True)
 class Chosen:
-    """What a picture was taken with.
+    """What a picture was taken with: exposure and gain in the units of the camera's parameters.
 
-    Attributes:
-        exposure: In the unit of the camera's parameter.
-        gain: In the unit of the camera's parameter.
-        white_balance: Colour temperature that appears white, K.
-        luminance: Mean of the finished picture, 0..255.
+    `white_balance` is the colour temperature that appears white, K, `luminance` the mean of the finished picture.
     """
 
     exposure: int

@@ -39,11 +39,9 @@ LEAST_FPS = 0.001
 
 @dataclass(frozen=True)
 class Resolution:
-    """A size of pictures.
+    """A size of pictures, with NAOqi's number and name.
 
     Attributes:
-        id: NAOqi's number.
-        name: NAOqi's name.
         most_fps: The most frames a second, for each camera; 0 where it cannot be had.
     """
 
@@ -56,13 +54,7 @@ class Resolution:
 
 @dataclass(frozen=True)
 class ColorSpace:
-    """A way to write pixels as bytes.
-
-    Attributes:
-        id: NAOqi's number.
-        name: NAOqi's name.
-        layers: Bytes a pixel; 0 where only a depth camera has it.
-    """
+    """A way to write pixels as bytes, `layers` of them a pixel (0 where only a depth camera has it)."""
 
     id: int
     name: str
@@ -71,12 +63,7 @@ class ColorSpace:
 
 @dataclass(frozen=True)
 class CameraParameter:
-    """A setting of a camera.
-
-    Attributes:
-        id: NAOqi's number.
-        name: NAOqi's name.
-    """
+    """A setting of a camera, with NAOqi's number and name."""
 
     id: int
     name: str
@@ -107,7 +94,7 @@ class SensorModel:
 
 @dataclass(frozen=True)
 class CameraTables:
-    """What the cameras of one robot version can do.
+    """What the cameras of one robot version can do. What is asked for and is not there is a BadValue.
 
     Attributes:
         model_id: NAOqi's number of the camera model.
@@ -131,29 +118,17 @@ class CameraTables:
         return {parameter.id: parameter.default for parameter in self.parameters.values()}
 
     def camera(self, index: Any) -> int:
-        """`index`, if there is such a camera.
-
-        Raises:
-            BadValue: There is none.
-        """
+        """`index`, if there is such a camera."""
         _known("camera", index, dict(zip(CAMERAS, ("top", "bottom"))), str)
         return int(index)
 
     def resolution(self, number: Any) -> Resolution:
-        """The resolution with this id.
-
-        Raises:
-            BadValue: There is none.
-        """
+        """The resolution with this id."""
         _known("resolution", number, self.resolutions, lambda r: f"{r.width}x{r.height}")
         return self.resolutions[number]
 
     def color_space(self, number: Any) -> ColorSpace:
-        """The colour space with this id.
-
-        Raises:
-            BadValue: There is none, or the camera does not have it.
-        """
+        """The colour space with this id, which the camera must have."""
         colored = {space.id: space for space in self.color_spaces.values() if space.layers}
         if number in self.color_spaces and number not in colored:
             space = self.color_spaces[number]
@@ -164,20 +139,12 @@ class CameraTables:
         return colored[number]
 
     def parameter(self, number: Any) -> CameraParameter:
-        """The parameter with this id.
-
-        Raises:
-            BadValue: The camera has none.
-        """
+        """The parameter with this id."""
         _known("parameter", number, self.parameters, lambda p: p.name)
         return self.parameters[number]
 
     def check_rate(self, camera: int, resolution: Resolution, fps: Any) -> None:
-        """Make sure that a camera has pictures of this size, and that a number is a frame rate.
-
-        Raises:
-            BadValue: It is not so.
-        """
+        """Make sure that a camera has pictures of this size, and that a number is a frame rate."""
         if not resolution.most_fps[camera]:
             allowed = ", ".join(str(r.id) for r in self.resolutions.values() if r.most_fps[camera])
             raise BadValue("resolution", resolution.id, f"one of {allowed} with camera {camera}")
@@ -230,16 +197,9 @@ def parse_cameras(content: Mapping[str, Any], version: str) -> CameraTables:
         parameters[entry["id"]] = CameraParameter(
             entry["id"], name, least, most, entry["default"], bool(entry.get("read_only", False))
         )
-    return CameraTables(
-        version,
-        model["model_id"],
-        content["most_fps"],
-        content["same_name"],
-        resolutions,
-        spaces,
-        parameters,
-        section(SensorModel, model["sensor"], f"{where}.sensor"),
-    )
+    sensor = section(SensorModel, model["sensor"], f"{where}.sensor")
+    general = (model["model_id"], content["most_fps"], content["same_name"])
+    return CameraTables(version, *general, resolutions, spaces, parameters, sensor)
 
 
 def _listed(table: Mapping[str, Any], name: str, count: int, where: str) -> Any:

@@ -30,13 +30,7 @@ OFF = "led_off"
 
 @dataclass(frozen=True)
 class LampFigure:
-    """How a lamp looks.
-
-    Attributes:
-        lamp: The lamp.
-        link: Name of the link that carries it.
-        shape: In the frame of the link.
-    """
+    """How a lamp looks: the link that carries it, and its shape in the frame of the link."""
 
     lamp: Lamp
     link: str

@@ -30,12 +30,7 @@ def sensor_places(model: RobotModel) -> dict[str, Place]:
 
 @dataclass(frozen=True)
 class Frame:
-    """A frame fixed to a link.
-
-    Attributes:
-        link: Name of the link.
-        offset: (4, 4) pose in the frame of the link.
-    """
+    """A frame fixed to a link: its (4, 4) pose in the frame of the link."""
 
     link: str
     offset: np.ndarray
@@ -58,12 +53,7 @@ def frame_of(model: RobotModel, name: str) -> Frame:
 
 @dataclass(frozen=True)
 class Placement:
-    """Where the links are, and where the torso is in the world frame.
-
-    Attributes:
-        links: Link name to (4, 4) pose in the torso frame.
-        torso_in_world: (4, 4).
-    """
+    """Where the links are in the torso frame, by name, and where the torso is in the world frame, (4, 4) each."""
 
     links: Mapping[str, np.ndarray]
     torso_in_world: np.ndarray

@@ -91,34 +91,18 @@ def front_and_rest(mesh: Mesh) -> tuple[Mesh, Mesh]:
 
 def superellipsoid(half_axes: tuple[float, ...], exponent: float, around: int = AROUND) -> Mesh:
     """An ellipsoid (exponent 1) or, the smaller the exponent, the more of a box."""
-    latitude = np.linspace(-math.pi / 2, math.pi / 2, around // 2 + 1)[:, None]
-    longitude = np.linspace(-math.pi, math.pi, around + 1)[None, :]
+    latitude = np.linspace(-math.pi / 2, math.pi / 2, around // 2 + 1)
     axes = np.array(half_axes)
-
-    def surface(power: float) -> np.ndarray:
-        cl, sl = _power(np.cos(latitude), power), _power(np.sin(latitude), power)
-        co, so = _power(np.cos(longitude), power), _power(np.sin(longitude), power)
-        return np.stack([cl * co, cl * so, sl * np.ones_like(co)], axis=-1).reshape(-1, 3)
-
-    normals = surface(2.0 - exponent) / axes
+    normals = _surface(latitude, around, 2.0 - exponent) / axes
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return Mesh(surface(exponent) * axes, normals, _grid_faces(around // 2, around))
+    return Mesh(_surface(latitude, around, exponent) * axes, normals, _grid_faces(around // 2, around))
 
 
 def capsule(radius: float, length: float, around: int = AROUND) -> Mesh:
     """A cylinder along Z with half spheres at its ends; `length` is that of the straight part."""
     quarter = np.linspace(0.0, math.pi / 2, around // 4 + 1)
     # The equator is there twice, pulled apart by the straight part.
-    latitude = np.concatenate([-quarter[::-1], quarter])[:, None]
-    longitude = np.linspace(-math.pi, math.pi, around + 1)[None, :]
-    normals = np.stack(
-        [
-            np.cos(latitude) * np.cos(longitude),
-            np.cos(latitude) * np.sin(longitude),
-            np.sin(latitude) * np.ones_like(longitude),
-        ],
-        axis=-1,
-    ).reshape(-1, 3)
+    normals = _surface(np.concatenate([-quarter[::-1], quarter]), around, 1.0)
     half = np.repeat([-0.5, 0.5], (around // 4 + 1) * (around + 1)) * length
     vertices = radius * normals + np.outer(half, (0.0, 0.0, 1.0))
     return Mesh(vertices, normals, _grid_faces(2 * (around // 4) + 1, around))
@@ -191,8 +175,14 @@ def _grid_faces(rows: int, columns: int) -> np.ndarray:
     )
 
 
-def _power(values: np.ndarray, exponent: float) -> np.ndarray:
-    return np.sign(values) * np.abs(values) ** exponent
+def _surface(latitude: np.ndarray, around: int, exponent: float) -> np.ndarray:
+    """(n, 3) points of a unit superellipsoid, row by row of (rows,) latitudes, in `around` steps of longitude."""
+    longitude = np.linspace(-math.pi, math.pi, around + 1)
+    cl, sl, co, so = (
+        np.sign(values) * np.abs(values) ** exponent
+        for values in (np.cos(latitude), np.sin(latitude), np.cos(longitude), np.sin(longitude))
+    )
+    return np.stack([np.outer(cl, co), np.outer(cl, so), np.outer(sl, np.ones_like(co))], axis=-1).reshape(-1, 3)
 
 
 def stl_bytes(mesh: Mesh) -> bytes:

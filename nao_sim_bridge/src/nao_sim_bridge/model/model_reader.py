@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -45,6 +45,10 @@ SONAR_KEYS = (
     "frame_note transducers_doc2x parent_link frequency_kHz cone_deg update_period_s range_m resolution_m "
     "alsonar_threshold_m"
 ).split()
+FEET_NOTES = (
+    "sole_contour_note foot_body_outline_left_bbox_m almotion_foot_box_left_xy_m "
+    "almotion_foot_box_right_xy_m foot_box_note robocup_dimension"
+).split()
 CAMERA_SECTION_OF = {"V6": "V6", "V5": "V5_V4"}
 
 
@@ -80,16 +84,8 @@ class ModelReader:
         tables = self.tables
         joints = self.joints()
         links = self.links()
-        feet = check_keys(
-            tables["feet"],
-            at("feet"),
-            ("sole_height_below_ankle_m", "sole_contour_left_xy_m"),
-            (
-                "sole_contour_note foot_body_outline_left_bbox_m almotion_foot_box_left_xy_m "
-                "almotion_foot_box_right_xy_m foot_box_note robocup_dimension"
-            ).split(),
-        )
-        imu = check_keys(tables["imu"], at("imu"), ("accelerometer", "gyrometer"), ("note",))
+        feet = self.section("feet", ("sole_height_below_ankle_m", "sole_contour_left_xy_m"), FEET_NOTES)
+        imu = self.section("imu", ("accelerometer", "gyrometer"), ("note",))
         sensor_extra = ("range", "unit")
         return RobotModel(
             version=self.version,
@@ -122,9 +118,12 @@ class ModelReader:
             total_mass=sum(link.mass for link in links),
         )
 
+    def section(self, name: str, required: Iterable[str], optional: Iterable[str] = ()) -> Mapping[str, Any]:
+        return check_keys(self.tables[name], at(name), required, optional)
+
     def links(self) -> tuple[Link, ...]:
         """The links, with the head of the version asked for."""
-        differences = check_keys(self.tables["V5_link_differences"], at("V5_link_differences"), ("note", "links"))
+        differences = self.section("V5_link_differences", ("note", "links"))
         changed = {entry["name"]: entry for entry in differences["links"]} if self.version == "V5" else {}
         links = []
         for index, entry in enumerate(self.tables["links"]):
@@ -210,8 +209,7 @@ class ModelReader:
 
     def frames(self, name: str, described: Iterable[str]) -> tuple[Place, ...]:
         """The frames of a section that has them, and other keys which are not read."""
-        section = check_keys(self.tables[name], at(name), ("frames",), described)
-        return read_places(section["frames"], at(f"{name}.frames"))
+        return read_places(self.section(name, ("frames",), described)["frames"], at(f"{name}.frames"))
 
     def cameras(self) -> tuple[Camera, ...]:
         """The two cameras with the field of view of the version."""
@@ -225,12 +223,8 @@ class ModelReader:
         return tuple(cameras)
 
     def fingers(self) -> tuple[Finger, ...]:
-        section = check_keys(
-            self.tables["fingers"],
-            at("fingers"),
-            "per_hand parent_link base_xyz_m base_rpy_rad phalanx_length_m phalanx_travel_rad axis".split(),
-            ("source", "relation", "axis_note"),
-        )
+        keys = "per_hand parent_link base_xyz_m base_rpy_rad phalanx_length_m phalanx_travel_rad axis".split()
+        section = self.section("fingers", keys, ("source", "relation", "axis_note"))
         fingers = []
         for name, phalanges in section["per_hand"].items():
             first = phalanges[0]
@@ -250,7 +244,7 @@ class ModelReader:
     def simulated_hand(self) -> SimulatedHand:
         where = at("simulated_hand")
         keys = "note origin_xyz_m axis mass_kg com_xyz_m inertia_kg_m2 travel_rad phalanx_mass_kg".split()
-        section = check_keys(self.tables["simulated_hand"], where, keys)
+        section = self.section("simulated_hand", keys)
         return SimulatedHand(
             origin=vector(section["origin_xyz_m"], f"{where}.origin_xyz_m"),
             axis=vector(section["axis"], f"{where}.axis"),
@@ -263,9 +257,8 @@ class ModelReader:
 
     def collision_shapes(self) -> tuple[CollisionShape, ...]:
         """Spheres and cylinders of the self-collision model."""
-        section = check_keys(self.tables["collision_shapes"], at("collision_shapes"), ("note", "shapes"))
         shapes = []
-        for index, entry in enumerate(section["shapes"]):
+        for index, entry in enumerate(self.section("collision_shapes", ("note", "shapes"))["shapes"]):
             where = at(f"collision_shapes.shapes[{index}]")
             place = read_place(entry, where, ("shape", "radius_m", "length_m"))
             if entry["shape"] not in ("sphere", "cylinder"):
@@ -275,9 +268,8 @@ class ModelReader:
 
     def motors(self) -> tuple[Motor, ...]:
         """Motor types with the gear ratio of each kind of joint."""
-        section = check_keys(self.tables["motors"], at("motors"), ("types",), ("source", "position_sensor"))
         motors = []
-        for index, entry in enumerate(section["types"]):
+        for index, entry in enumerate(self.section("motors", ("types",), ("source", "position_sensor"))["types"]):
             required = "type model no_load_rpm stall_torque_mNm nominal_torque_mNm_max gear_ratio_A joints_A".split()
             check_keys(entry, at(f"motors.types[{index}]"), required, ("gear_ratio_B", "joints_B"))
             ratios = {
@@ -297,10 +289,7 @@ class ModelReader:
 
 
 def load_model(version: str = "V6") -> RobotModel:
-    """The model of one robot version, read once.
-
-    Args:
-        version: `V6` (NAOqi 2.8) or `V5` (NAOqi 2.1), which differ in head, cameras and left-eye numbering.
+    """The model of a robot version, read once: `V6` (NAOqi 2.8) or `V5` (NAOqi 2.1), with another head and cameras.
 
     Raises:
         ConfigError: If the version is unknown or the file has a wrong, unknown or missing entry.

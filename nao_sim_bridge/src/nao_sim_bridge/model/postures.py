@@ -39,12 +39,7 @@ class Posture:
 
 @dataclass(frozen=True, eq=False)
 class Postures:
-    """All postures the robot knows.
-
-    Attributes:
-        by_name: Posture name to posture.
-        families: Names of all families, also of those without a predefined posture.
-    """
+    """All postures the robot knows, by name, and all families, also those without a predefined posture."""
 
     by_name: Mapping[str, Posture]
     families: tuple[str, ...]

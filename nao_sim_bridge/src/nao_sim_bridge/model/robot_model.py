@@ -178,14 +178,7 @@ class SimulatedHand:
 
 @dataclass(frozen=True, eq=False)
 class CollisionShape:
-    """A sphere or a cylinder (axis along Z) of the published self-collision model.
-
-    Attributes:
-        place: Centre and orientation on its link.
-        shape: `sphere` or `cylinder`.
-        radius: m.
-        length: m; None for a sphere.
-    """
+    """A `sphere` (length None) or a `cylinder` (axis along Z) of the published self-collision model, m."""
 
     place: Place
     shape: str

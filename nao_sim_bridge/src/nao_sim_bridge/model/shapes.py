@@ -40,6 +40,9 @@ class Shape:
     rpy: tuple[float, float, float] = (0.0, 0.0, 0.0)
     material: str = ""
 
+    def moved(self, way: Sequence[float]) -> Shape:
+        return replace(self, xyz=_floats(np.add(self.xyz, way)))
+
     def mirrored(self) -> Shape:
         """The same shape on the other side of the XZ plane; exact, as all kinds are symmetric themselves."""
         (x, y, z), (roll, pitch, yaw) = self.xyz, self.rpy

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import cv2
 import numpy as np
 
 from nao_sim_bridge.render.scene.view import View
@@ -141,15 +142,7 @@ class Shadow:
 
 def blur(image: np.ndarray, radius: int, passes: int = 2) -> np.ndarray:
     """An (h, w) or (h, w, c) image averaged over squares of 2 radius + 1 pixels, `passes` times."""
-    if radius < 1:
-        return image
-    width = 2 * radius + 1
-    for axis in (0, 1) * passes:
-        padding = [(0, 0)] * image.ndim
-        padding[axis] = (radius + 1, radius)
-        sums = np.cumsum(np.pad(image, padding, mode="edge"), axis=axis, dtype=np.float32)
-        ends = [slice(None)] * image.ndim
-        starts = list(ends)
-        ends[axis], starts[axis] = slice(width, None), slice(None, -width)
-        image = (sums[tuple(ends)] - sums[tuple(starts)]) / np.float32(width)
+    edges = (2 * radius + 1,) * 2
+    for _ in range(passes):
+        image = cv2.blur(image, edges, borderType=cv2.BORDER_REPLICATE)
     return image

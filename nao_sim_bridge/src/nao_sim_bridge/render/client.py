@@ -57,6 +57,9 @@ class Renderer:
         engine: What draws: "opengl"; "builtin", which is slower and needs nothing of the computer; or "auto" for
             OpenGL where it can be had.
 
+    Attributes:
+        engine: What draws, in words; None before the process has been started.
+
     Raises:
         UnknownName: There is no such engine.
     """
@@ -67,7 +70,7 @@ class Renderer:
         self._world_name = world_name
         self._version = version
         self._asked = engine
-        self._engine: str | None = None
+        self.engine: str | None = None
         self._worker: ChildProcess | None = None
         self._sender = StateSender()
         self._proven = False  # the process has made a picture
@@ -80,11 +83,6 @@ class Renderer:
         worker = self._worker
         return worker.process.pid if worker is not None else None
 
-    @property
-    def engine(self) -> str | None:
-        """What draws, in words; None before the process has been started."""
-        return self._engine
-
     def start(self) -> Renderer:
         """Start the process now and wait until it is ready; else the first picture does.
 
@@ -96,13 +94,7 @@ class Renderer:
         return self
 
     def render(self, state: RenderState, camera: Camera, timeout: float = 10.0) -> np.ndarray:
-        """Make a picture.
-
-        Args:
-            timeout: Longest time to wait for the picture, s; starting the process does not count.
-
-        Returns:
-            (h, w, 3) uint8 RGB picture.
+        """Make a (h, w, 3) uint8 RGB picture within `timeout` s; starting the process does not count.
 
         Raises:
             RenderError: If the process dies, is late, or cannot draw this.
@@ -111,18 +103,7 @@ class Renderer:
         return np.frombuffer(pixels, dtype=np.uint8).reshape(shape)
 
     def capture(self, state: RenderState, shot: Shot, timeout: float = 10.0) -> bytes:
-        """Make what a camera in the robot's head gives.
-
-        Args:
-            shot: From where, in which colour space, and with which settings of the camera.
-            timeout: Longest time to wait, s; starting the process does not count.
-
-        Returns:
-            What `cameras.photograph` makes of it: read it with `read_photograph`.
-
-        Raises:
-            RenderError: If the process dies, is late, or cannot draw this.
-        """
+        """Make what a camera in the robot's head gives, as `render` does: `read_photograph` reads it."""
         return self._ask("capture", state, shot, timeout)[1]
 
     def close(self) -> None:
@@ -143,11 +124,10 @@ class Renderer:
         with self._lock:
             try:
                 return self._ask_once(kind, state, subject, timeout)
-            except PictureRefused:
-                raise
             except RenderError as error:
                 # One that dies of its first picture would do so again; one that is late has had its time.
-                if not self._proven or self._worker is not None or self._late:
+                hopeless = not self._proven or self._worker is not None or self._late
+                if hopeless or isinstance(error, PictureRefused):
                     raise
                 log.warning("%s; it is started again", error)
             return self._ask_once(kind, state, subject, timeout)
@@ -165,31 +145,26 @@ class Renderer:
 
     def _ensure_worker(self) -> ChildProcess:
         if self._worker is None:
-            worker, engine, complaint = self._start_worker()
-            if self._engine is None:
+            worker, (engine, complaint) = self._start_worker()
+            if self.engine is None:
                 if complaint:
                     log.warning("%s", complaint)
                 log.info("pictures are drawn by %s", engine)
-            self._worker, self._engine, self._sender = worker, engine, StateSender()
+            self._worker, self.engine, self._sender = worker, engine, StateSender()
             self._proven = False
         return self._worker
 
-    def _start_worker(self) -> tuple[ChildProcess, str, str | None]:
+    def _start_worker(self) -> tuple[ChildProcess, tuple[str, str | None]]:
         """A process that is ready, what draws in it, and what is to be complained of."""
+        place = (self._world_name, self._version, "starting")
         try:
-            return self._start_with(self._asked)
-        except PictureRefused:
-            raise
+            return _started(f"pictures:{self._asked}", *place)
         except RenderError as error:
-            if self._asked != "auto":
+            if self._asked != "auto" or isinstance(error, PictureRefused):
                 raise
             # A driver may take its process with it.
-            worker, engine, _ = self._start_with("builtin")
-            return worker, engine, f"pictures are drawn slowly, for with OpenGL there is an error: {error}"
-
-    def _start_with(self, engine: str) -> tuple[ChildProcess, str, str | None]:
-        worker, told = _started(f"pictures:{engine}", self._world_name, self._version, "starting")
-        return (worker, *told)
+            worker, (engine, _) = _started("pictures:builtin", *place)
+            return worker, (engine, f"pictures are drawn slowly, for with OpenGL there is an error: {error}")
 
 
 class Viewer:

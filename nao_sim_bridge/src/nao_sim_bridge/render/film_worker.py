@@ -30,80 +30,70 @@ def main(arguments: list[str]) -> int:
     pipe = pipe_to_parent(descriptor, completes=True)
     os.nice(NICENESS)
     try:
-        film, name = _open(engine, world_name, version, Path(file), view, (int(width), int(height)))
+        film, kinds, name = _open(engine, world_name, version, Path(file), view, (int(width), int(height)))
     except Exception as error:
         pipe.send(("error", error_text(error)))
         return 1
     pipe.send(("ready", name))
     try:
-        _serve(pipe, film)
+        _serve(pipe, film, kinds)
     except (BrokenPipeError, ConnectionResetError):
         pass  # the parent is gone
     return 0
 
 
-class _Film:
-    """What is drawn goes into the file."""
-
-    def __init__(self, drawing: Any, camera: Any, file: Any) -> None:
-        from nao_sim_bridge.world.render_state import StateReceiver
-
-        self.file = file
-        self._drawing = drawing
-        self._camera = camera
-        self._states = StateReceiver()
-
-    def frame(self, content: Any) -> None:
-        from nao_sim_bridge.render.scene.view import View
-
-        time, packed = content
-        state = self._states.unpack(packed)
-        self.file.picture(self._drawing.draw(state, View.of_camera(self._camera.at(time, state))), time)
-
-    def sound(self, content: Any) -> None:
-        import numpy as np
-
-        first, samples = content
-        self.file.sound(np.frombuffer(samples, np.int16).reshape(-1, 2), first)
-
-    def caption(self, text: str) -> None:
-        self.file.caption = text
-
-
 def _open(
     engine: str, world_name: str, version: str, file: Path, view: str, size: tuple[int, int]
-) -> tuple[_Film, str]:
+) -> tuple[Any, dict[str, Callable[[Any], None]], str]:
+    """The file, what becomes of each kind of request, and what draws."""
     quiet_import()
+    import numpy as np
+
     from nao_sim_bridge.base.samples import RATE
     from nao_sim_bridge.model.model_reader import load_model
     from nao_sim_bridge.render.engines import open_engine
     from nao_sim_bridge.render.film_camera import FilmCamera
     from nao_sim_bridge.render.film_file import FilmFile
+    from nao_sim_bridge.render.scene.view import View
     from nao_sim_bridge.world.reader import load_world
+    from nao_sim_bridge.world.render_state import StateReceiver
 
     drawing, _ = open_engine(engine, load_world(world_name), version)
     camera = FilmCamera(view, load_model(version), *size, SHARPNESS)
-    return _Film(drawing, camera, FilmFile(file, *size, RATE)), drawing.name
+    film, states = FilmFile(file, *size, RATE), StateReceiver()
+
+    def frame(content: Any) -> None:
+        time, packed = content
+        state = states.unpack(packed)
+        film.picture(drawing.draw(state, View.of_camera(camera.at(time, state))), time)
+
+    def sound(content: Any) -> None:
+        first, samples = content
+        film.sound(np.frombuffer(samples, np.int16).reshape(-1, 2), first)
+
+    def caption(text: str) -> None:
+        film.caption = text
+
+    return film, {"frame": frame, "sound": sound, "caption": caption}, drawing.name
 
 
-def _serve(pipe: Connection, film: _Film) -> None:
-    kinds: dict[str, Callable[[Any], None]] = {"frame": film.frame, "sound": film.sound, "caption": film.caption}
+def _serve(pipe: Connection, film: Any, kinds: dict[str, Callable[[Any], None]]) -> None:
     wrong = ""
     while True:
         try:
             kind, content = pipe.recv()
         except (EOFError, OSError):  # it may be closed in the middle of a message; nobody wants to know how it ends
-            film.file.close()
+            film.close()
             return
         try:
             if kind == "end":
-                film.file.close()
+                film.close()
             elif not wrong:
                 kinds[kind](content)
         except Exception as error:
             wrong = wrong or error_text(error)
         if kind == "end":
-            pipe.send(("error", wrong) if wrong else ("ended", (film.file.frames, film.file.duration)))
+            pipe.send(("error", wrong) if wrong else ("ended", (film.frames, film.duration)))
             return
 
 

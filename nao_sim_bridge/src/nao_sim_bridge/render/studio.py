@@ -45,7 +45,7 @@ class Studio:
         self._backdrop = Backdrop(world)
         self._gone: frozenset[str] | None = None
         self._shadow: Shadow | None = None
-        self._shadow_of: tuple = ()
+        self._shadow_of: RenderState | None = None
 
     def close(self) -> None:
         pybullet.disconnect(physicsClientId=self._client)
@@ -151,15 +151,7 @@ class Studio:
 
     def _floor_shadow(self, state: RenderState) -> Shadow:
         """The shadow of everything, drawn again only when something has moved."""
-        key = (
-            state.base_position,
-            state.base_orientation,
-            state.joint_positions,
-            tuple(state.objects.items()),
-            state.placed,
-            state.gone,
-            state.others,
-        )
+        key = replace(state, led_values=(), objects=dict(state.objects))
         if self._shadow is None or key != self._shadow_of:
             self._shadow, self._shadow_of = self._cast_shadow(state), key
         return self._shadow
@@ -196,6 +188,5 @@ class Studio:
         angle = 2.0 * math.degrees(math.atan(reach / LAMP_DISTANCE))
         projection = pybullet.computeProjectionMatrixFOV(angle, 1.0, LAMP_DISTANCE - 5.0, LAMP_DISTANCE + 5.0)
         _, bodies = self._capture(pixels, pixels, view, projection, client, shadow=0)
-        matrices = (np.array(m).reshape(4, 4).T for m in (projection, view))
-        to_clip, to_lamp = matrices
+        to_clip, to_lamp = (np.array(m).reshape(4, 4).T for m in (projection, view))
         return Shadow(bodies >= 0, to_clip @ to_lamp, center[:2], reach)

@@ -26,12 +26,7 @@ PERIOD = 1.0 / 30.0
 
 
 class Ray(NamedTuple):
-    """A line of sight.
-
-    Attributes:
-        eye: Where it begins, m, in world.
-        direction: Unit vector, in world.
-    """
+    """A line of sight: where it begins, m, and its unit vector, in world."""
 
     eye: Vector3
     direction: Vector3

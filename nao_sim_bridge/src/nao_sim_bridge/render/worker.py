@@ -56,21 +56,31 @@ def _open_pictures(pipe: Connection, engine: str, world_name: str, version: str)
     quiet_import()
     import cv2
 
+    from nao_sim_bridge.cameras.sensor import photograph
     from nao_sim_bridge.render.engines import open_engine
+    from nao_sim_bridge.render.scene.view import View
     from nao_sim_bridge.world.reader import load_world
     from nao_sim_bridge.world.render_state import StateReceiver
 
     cv2.setNumThreads(1)  # the other cores are for physics
     drawing, complaint = open_engine(engine, load_world(world_name), version)
     states = StateReceiver()
-    answers = {"render": _render, "capture": _capture}
+
+    def render(state: Any, camera: Any) -> tuple[tuple, Any]:
+        picture = drawing.draw(state, View.of_camera(camera))
+        return picture.shape, picture.tobytes()
+
+    def capture(state: Any, shot: Any) -> tuple[None, Any]:
+        return None, photograph(drawing.draw(state, View.of_shot(shot)), shot)
+
+    answers = {"render": render, "capture": capture}
 
     def serve() -> None:
         while True:
             kind, (packed, subject) = pipe.recv()
             state = states.unpack(packed)
             try:
-                told, pixels = answers[kind](drawing, state, subject)
+                told, pixels = answers[kind](state, subject)
             except Exception as error:
                 pipe.send(("error", error_text(error)))
                 continue
@@ -78,22 +88,6 @@ def _open_pictures(pipe: Connection, engine: str, world_name: str, version: str)
             pipe.send_bytes(pixels)
 
     return serve, (drawing.name, complaint)
-
-
-def _render(drawing: Any, state: Any, camera: Any) -> tuple[tuple, Any]:
-    """Shape and pixels of a picture from outside."""
-    from nao_sim_bridge.render.scene.view import View
-
-    picture = drawing.draw(state, View.of_camera(camera))
-    return picture.shape, picture.tobytes()
-
-
-def _capture(drawing: Any, state: Any, shot: Any) -> tuple[None, Any]:
-    """What a camera of the robot makes of what it sees."""
-    from nao_sim_bridge.cameras.sensor import photograph
-    from nao_sim_bridge.render.scene.view import View
-
-    return None, photograph(drawing.draw(state, View.of_shot(shot)), shot)
 
 
 def _open_window(pipe: Connection, world_name: str, version: str) -> Any:

@@ -3,48 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Callable
+from typing import Any
 
 import rospy
 from geometry_msgs.msg import Point, Quaternion, Twist, Vector3
 from nav_msgs.msg import Odometry
-from std_srvs.srv import SetBool, SetBoolRequest, SetBoolResponse
+from std_srvs.srv import SetBool
 
-from nao_library_msgs.srv import (
-    GetTruepose,
-    GetTrueposeRequest,
-    GetTrueposeResponse,
-    PressSensors,
-    PressSensorsRequest,
-    PressSensorsResponse,
-    PushRobot,
-    PushRobotRequest,
-    PushRobotResponse,
-    ReleaseSensors,
-    ReleaseSensorsRequest,
-    ReleaseSensorsResponse,
-    SetFloat,
-    SetFloatRequest,
-    SetFloatResponse,
-    TakePicture,
-    TakePictureRequest,
-    TakePictureResponse,
-    TouchSensors,
-    TouchSensorsRequest,
-    TouchSensorsResponse,
-)
+from nao_library_msgs import srv
 from nao_sim_bridge.base.record_dir import unused
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.whole_file import write_whole
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.ros.services import checked, success, success_of, success_service
+from nao_sim_bridge.ros.services import checked, success_of, success_service
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 TRUTH_PERIOD = 0.02
 PICTURE = "picture.png"
 WORLD_FRAME, TORSO_FRAME = "world", "torso"
 SENT_AWAY = "the hand was sent away"
-STOPPED = "it was stopped"
 
 
 class RosRobot:
@@ -53,8 +30,8 @@ class RosRobot:
     ROS API (relative names; of several robots those of `nao2` are `nao2/ground_truth/odom`, `nao2/nao_sim/push`...):
         Publishes `ground_truth/odom` (nav_msgs/Odometry): true pose of the torso in world, velocity in torso; 50 Hz of
         simulated time.
-        Services `~push`, `~press`, `~picture` (nao_library_msgs), `get_truepose` (nao_library_msgs/GetTruepose),
-        and those of `RosHealth` and `RosHand`.
+        Services `~push`, `~press`, `~touch`, `~release`, `~picture`, `~set_battery` (nao_library_msgs; SetFloat, 0..1),
+        `~plug_charger` (std_srvs/SetBool), `get_truepose` (nao_library_msgs/GetTruepose).
 
     Args:
         server: Of the robot.
@@ -69,14 +46,14 @@ class RosRobot:
         self._next_truth = 0.0
         public, private = (f"{name}/", f"{name}/nao_sim/") if name else ("", "~")
         self._truth = rospy.Publisher(f"{public}ground_truth/odom", Odometry, queue_size=5)
-        self._services = [
-            rospy.Service(f"{private}push", PushRobot, self._on_push),
-            rospy.Service(f"{private}press", PressSensors, self._on_press),
-            rospy.Service(f"{private}picture", TakePicture, self.on_picture),
-            rospy.Service(f"{public}get_truepose", GetTruepose, self._on_true_pose),
-        ]
-        self._health = RosHealth(server, private)
-        self._hand = RosHand(server, private, self._stamp)
+        success_service(f"{private}push", srv.PushRobot, self._push)
+        success_service(f"{private}press", srv.PressSensors, lambda r: server.press(r.sensors))
+        rospy.Service(f"{private}touch", srv.TouchSensors, self._on_touch)
+        success_service(f"{private}release", srv.ReleaseSensors, lambda r: server.hands.release(r.sensors), SENT_AWAY)
+        success_service(f"{private}plug_charger", SetBool, lambda r: server.health.plug_charger(r.data))
+        success_service(f"{private}set_battery", srv.SetFloat, lambda r: server.health.set_battery_charge(r.data))
+        rospy.Service(f"{private}picture", srv.TakePicture, self.on_picture)
+        rospy.Service(f"{public}get_truepose", srv.GetTruepose, self._on_true_pose)
 
     @property
     def listened(self) -> bool:
@@ -91,7 +68,7 @@ class RosRobot:
             if self.listened:
                 self._truth.publish(self._odometry(snapshot, now))
 
-    def on_picture(self, request: TakePictureRequest) -> TakePictureResponse:
+    def on_picture(self, request: srv.TakePictureRequest) -> srv.TakePictureResponse:
         """Take a picture; one without a name replaces none."""
         size = (request.width or 640, request.height or 480)
         path = Path()
@@ -104,8 +81,8 @@ class RosRobot:
             path = path if request.file else unused(path)
             write_whole(path, picture)
 
-        taken, message = success(take)
-        return TakePictureResponse(taken, message, str(path) if taken else "")
+        taken, message = success_of(take)
+        return srv.TakePictureResponse(taken, message, str(path) if taken else "")
 
     def _odometry(self, snapshot: Snapshot, now: float) -> Odometry:
         message = Odometry()
@@ -122,47 +99,11 @@ class RosRobot:
             return rospy.Time.from_sec(now)
         return rospy.Time.now() - rospy.Duration.from_sec(self._server.now[1] - now)
 
-    def _on_push(self, request: PushRobotRequest) -> PushRobotResponse:
+    def _push(self, request: srv.PushRobotRequest) -> None:
         force = (request.force.x, request.force.y, request.force.z)
+        self._server.push(force, request.time.to_sec(), request.link or TORSO_FRAME)
 
-        def push() -> None:
-            checked(request)
-            self._server.push(force, request.time.to_sec(), request.link or TORSO_FRAME)
-
-        return PushRobotResponse(*success(push))
-
-    def _on_press(self, request: PressSensorsRequest) -> PressSensorsResponse:
-        return PressSensorsResponse(*success(lambda: self._server.press(checked(request).sensors)))
-
-    def _on_true_pose(self, _request: GetTrueposeRequest) -> GetTrueposeResponse:
-        snapshot, now = self._server.now
-        answer = GetTrueposeResponse()
-        answer.pose.header.stamp = self._stamp(now)
-        answer.pose.header.frame_id = WORLD_FRAME
-        answer.pose.pose.pose.position = Point(*snapshot.torso.position)
-        answer.pose.pose.pose.orientation = Quaternion(*snapshot.torso.orientation)
-        return answer
-
-
-class RosHand:
-    """Lets hands touch the robot.
-
-    ROS API: services `~touch`, `~release` (nao_library_msgs).
-
-    Args:
-        private: What the names of its services begin with.
-        stamp: ROS time of a time of the server's `now`, s.
-    """
-
-    def __init__(self, server: SimulatorServer, private: str, stamp: Callable[[float], rospy.Time]) -> None:
-        self._server = server
-        self._stamp = stamp
-        self._services = [
-            rospy.Service(f"{private}touch", TouchSensors, self._on_touch),
-            success_service(f"{private}release", ReleaseSensors, ReleaseSensorsResponse, self._release, SENT_AWAY),
-        ]
-
-    def _on_touch(self, request: TouchSensorsRequest) -> TouchSensorsResponse:
+    def _on_touch(self, request: srv.TouchSensorsRequest) -> dict[str, Any]:
         contacts: list[float | None] = []
 
         def begin() -> Task:
@@ -172,30 +113,16 @@ class RosHand:
 
         began = self._server.began
         touched, message = success_of(begin, SENT_AWAY)
-        response = TouchSensorsResponse(success=touched, message=message)
+        answer = {"success": touched, "message": message}
         if contacts and contacts[0] is not None:
-            response.contact = self._stamp(began + contacts[0])
-        return response
+            answer["contact"] = self._stamp(began + contacts[0])
+        return answer
 
-    def _release(self, request: ReleaseSensorsRequest) -> Task:
-        return self._server.hands.release(request.sensors)
-
-
-class RosHealth:
-    """Plugs the charger and sets the charge.
-
-    ROS API: services `~plug_charger` (std_srvs/SetBool), `~set_battery` (nao_library_msgs/SetFloat; 0..1).
-    """
-
-    def __init__(self, server: SimulatorServer, private: str = "~") -> None:
-        self._server = server
-        self._services = [
-            success_service(f"{private}plug_charger", SetBool, SetBoolResponse, self._plug, STOPPED),
-            success_service(f"{private}set_battery", SetFloat, SetFloatResponse, self._set, STOPPED),
-        ]
-
-    def _plug(self, request: SetBoolRequest) -> Task:
-        return self._server.health.plug_charger(request.data)
-
-    def _set(self, request: SetFloatRequest) -> Task:
-        return self._server.health.set_battery_charge(request.data)
+    def _on_true_pose(self, _request: srv.GetTrueposeRequest) -> srv.GetTrueposeResponse:
+        snapshot, now = self._server.now
+        answer = srv.GetTrueposeResponse()
+        answer.pose.header.stamp = self._stamp(now)
+        answer.pose.header.frame_id = WORLD_FRAME
+        answer.pose.pose.pose.position = Point(*snapshot.torso.position)
+        answer.pose.pose.pose.orientation = Quaternion(*snapshot.torso.orientation)
+        return answer

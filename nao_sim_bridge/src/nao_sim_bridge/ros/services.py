@@ -12,6 +12,7 @@ from nao_sim_bridge.naoqi.binding.limits import check_sizes
 
 ERRORS = (RuntimeError, ValueError, OSError)
 """What a call to the server fails with; a service answers their text."""
+STOPPED = "it was stopped"
 
 
 def checked(request: Any) -> Any:
@@ -34,44 +35,32 @@ def _plain(value: Any) -> Any:
     return value if slots is None else [_plain(getattr(value, slot)) for slot in slots]
 
 
-def success_service(
-    name: str, kind: Any, answer: Callable[..., Any], begin: Callable[[Any], Task], when_killed: str
-) -> rospy.Service:
-    """Offer a service that answers when what it begins has ended.
+def success_service(name: str, kind: Any, begin: Callable[[Any], object], when_killed: str = STOPPED) -> None:
+    """Offer a service that answers with `success` and `message`; whatever else its answer has keeps its default.
 
     Args:
-        answer: Class of its answer, which has `success` and `message`; whatever else it has keeps its default.
-        begin: Starts what a request asks for.
-        when_killed: What to say when that was ended before its time.
+        begin: Does what a request asks for, or starts a task that does; see `success_of`.
     """
 
-    def handle(request: Any) -> Any:
+    def handle(request: Any) -> dict[str, Any]:
         success, message = success_of(lambda: begin(checked(request)), when_killed)
-        return answer(success=success, message=message)
+        return {"success": success, "message": message}
 
-    return rospy.Service(name, kind, handle)
+    rospy.Service(name, kind, handle)
 
 
-def success_of(begin: Callable[[], Task], when_killed: str) -> tuple[bool, str]:
-    """Wait for what `begin` starts, and for what that leads to; (True, ""), or (False, what was wrong).
+def success_of(begin: Callable[[], object], when_killed: str = STOPPED) -> tuple[bool, str]:
+    """Wait for what `begin` does or starts, and for what that leads to; (True, ""), or (False, what was wrong).
 
     Args:
-        begin: Starts a task, whose result may be another one.
+        begin: May start a task, whose result may be another one.
         when_killed: What to say of a task that was ended before its time.
     """
+    ended = None
     try:
-        task: Any = begin()
+        task = begin()
         while isinstance(task, Task):
             ended, task = task, task.result()
     except ERRORS as error:
         return False, str(error)
-    return (False, when_killed) if ended.killed else (True, "")
-
-
-def success(action: Callable[[], object]) -> tuple[bool, str]:
-    """Run `action`; (True, "") or (False, what was wrong)."""
-    try:
-        action()
-    except ERRORS as error:
-        return False, str(error)
-    return True, ""
+    return (False, when_killed) if ended is not None and ended.killed else (True, "")

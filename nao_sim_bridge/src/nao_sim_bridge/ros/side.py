@@ -4,36 +4,19 @@ from __future__ import annotations
 
 import threading
 import time
-from typing import Callable, Mapping, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 
-from nao_library_msgs.srv import (
-    AdvanceTime,
-    AdvanceTimeRequest,
-    AdvanceTimeResponse,
-    CaptionFilm,
-    CaptionFilmRequest,
-    CaptionFilmResponse,
-    ResetWorld,
-    ResetWorldRequest,
-    ResetWorldResponse,
-    StartFilm,
-    StartFilmRequest,
-    StartFilmResponse,
-    StopFilm,
-    StopFilmRequest,
-    StopFilmResponse,
-    TakePicture,
-)
+from nao_library_msgs import srv
 from nao_sim_bridge.base.guard import Failure
 from nao_sim_bridge.base.record_dir import world_of_client
 from nao_sim_bridge.ros.robot import RosRobot
-from nao_sim_bridge.ros.services import ERRORS, checked, success
-from nao_sim_bridge.ros.things import RosSounds, RosThings
+from nao_sim_bridge.ros.services import ERRORS, checked, success_service
+from nao_sim_bridge.ros.things import offer_sounds, offer_things
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 # The clock is published at most this often, in s of wall time: every message wakes every node.
@@ -50,8 +33,9 @@ class RosSide:
     ROS API (relative names):
         Publishes `/clock` (rosgraph_msgs/Clock) when asked to.
         Services `~advance` (nao_library_msgs), `~reset`, `~factory_reset`, `~pause`, `~resume` (std_srvs/Empty),
-        `~reset_world` (nao_library_msgs/ResetWorld), with more than one robot `~picture` (nao_library_msgs),
-        which shows the first one, and those of `RosRobot` for each robot, `RosSounds`, `RosThings` and `RosFilm`.
+        `~reset_world`, `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs), with more than one robot
+        `~picture` (nao_library_msgs), which shows the first one, and those of `RosRobot` for each robot, `offer_sounds`
+        and `offer_things`.
         Publishes `/diagnostics`, see `RosDiagnostics`.
 
     Time in ROS goes on when a factory reset begins that of the robot anew.
@@ -67,19 +51,19 @@ class RosSide:
         self._server = server
         self._robots = [RosRobot(one, publish_clock, name) for name, one in (several or {"": server}).items()]
         self._clock = rospy.Publisher("/clock", Clock, queue_size=1) if publish_clock else None
-        self._services = [
-            rospy.Service("~advance", AdvanceTime, self._on_advance),
-            rospy.Service("~reset", Empty, self._empty(server.reset)),
-            rospy.Service("~factory_reset", Empty, self._empty(server.factory_reset)),
-            rospy.Service("~reset_world", ResetWorld, self._on_reset_world),
-            rospy.Service("~pause", Empty, self._empty(lambda: server.runner.pause())),
-            rospy.Service("~resume", Empty, self._empty(lambda: server.runner.resume())),
-        ]
+        rospy.Service("~advance", srv.AdvanceTime, self._on_advance)
+        rospy.Service("~reset", Empty, _empty(server.reset))
+        rospy.Service("~factory_reset", Empty, _empty(server.factory_reset))
+        success_service("~reset_world", srv.ResetWorld, self._reset_world)
+        rospy.Service("~pause", Empty, _empty(lambda: server.runner.pause()))
+        rospy.Service("~resume", Empty, _empty(lambda: server.runner.resume()))
         if several:
-            self._services.append(rospy.Service("~picture", TakePicture, self._robots[0].on_picture))
-        self._sounds = RosSounds(server)
-        self._things = RosThings(server)
-        self._film = RosFilm(server)
+            rospy.Service("~picture", srv.TakePicture, self._robots[0].on_picture)
+        offer_sounds(server)
+        offer_things(server)
+        rospy.Service("~film/start", srv.StartFilm, self._on_film_start)
+        success_service("~film/caption", srv.CaptionFilm, lambda request: server.film.caption(request.text))
+        rospy.Service("~film/stop", srv.StopFilm, self._on_film_stop)
         self._diagnostics = RosDiagnostics(server)
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._publish, name="ros publisher", daemon=True)
@@ -112,24 +96,39 @@ class RosSide:
     def _tell_time(self) -> None:
         self._clock.publish(rospy.Time.from_sec(self._server.now[1]))
 
-    def _on_advance(self, request: AdvanceTimeRequest) -> AdvanceTimeResponse:
+    def _on_advance(self, request: srv.AdvanceTimeRequest) -> srv.AdvanceTimeResponse:
         snapshot = self._server.runner.advance(checked(request).time.to_sec()).result()
-        return AdvanceTimeResponse(rospy.Time.from_sec(self._server.began + snapshot.time))
+        return srv.AdvanceTimeResponse(rospy.Time.from_sec(self._server.began + snapshot.time))
 
-    def _on_reset_world(self, request: ResetWorldRequest) -> ResetWorldResponse:
-        def reset() -> None:
-            server = self._server
-            server.factory_reset(world_of_client(checked(request).world, server.files, server.options.scene.world))
+    def _reset_world(self, request: srv.ResetWorldRequest) -> None:
+        server = self._server
+        server.factory_reset(world_of_client(request.world, server.files, server.options.scene.world))
 
-        return ResetWorldResponse(*success(reset))
+    def _on_film_start(self, request: srv.StartFilmRequest) -> dict[str, Any]:
+        try:
+            checked(request)
+            film = self._server.film.start(
+                request.file, request.view, request.width, request.height, request.frame_rate
+            )
+            return {"success": True, "path": film.result()}
+        except ERRORS as error:
+            return {"success": False, "message": str(error)}
 
-    @staticmethod
-    def _empty(action: Callable[[], object]) -> Callable[[EmptyRequest], EmptyResponse]:
-        def call(_request: EmptyRequest) -> EmptyResponse:
-            action()
-            return EmptyResponse()
+    def _on_film_stop(self, _request: srv.StopFilmRequest) -> dict[str, Any]:
+        try:
+            film = self._server.film.stop().result()
+        except ERRORS as error:
+            return {"success": False, "message": str(error)}
+        length = rospy.Duration.from_sec(film.duration)
+        return {"success": True, "path": str(film.path), "frames": film.frames, "length": length}
 
-        return call
+
+def _empty(action: Callable[[], object]) -> Callable[[EmptyRequest], EmptyResponse]:
+    def call(_request: EmptyRequest) -> EmptyResponse:
+        action()
+        return EmptyResponse()
+
+    return call
 
 
 class RosDiagnostics:
@@ -172,39 +171,3 @@ def status_of(failures: Sequence[Failure]) -> DiagnosticStatus:
         times = "once" if failure.count == 1 else f"{failure.count} times"
         status.values.append(KeyValue(failure.culprit, f"{times}: {failure.error}"))
     return status
-
-
-class RosFilm:
-    """Begins and ends films.
-
-    ROS API: services `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs).
-    """
-
-    def __init__(self, server: SimulatorServer) -> None:
-        self._server = server
-        self._services = [
-            rospy.Service("~film/start", StartFilm, self._on_start),
-            rospy.Service("~film/caption", CaptionFilm, self._on_caption),
-            rospy.Service("~film/stop", StopFilm, self._on_stop),
-        ]
-
-    def _on_start(self, request: StartFilmRequest) -> StartFilmResponse:
-        try:
-            checked(request)
-            film = self._server.film.start(
-                request.file, request.view, request.width, request.height, request.frame_rate
-            )
-            path = film.result()
-        except ERRORS as error:
-            return StartFilmResponse(success=False, message=str(error))
-        return StartFilmResponse(True, "", path)
-
-    def _on_caption(self, request: CaptionFilmRequest) -> CaptionFilmResponse:
-        return CaptionFilmResponse(*success(lambda: self._server.film.caption(checked(request).text)))
-
-    def _on_stop(self, _request: StopFilmRequest) -> StopFilmResponse:
-        try:
-            film = self._server.film.stop().result()
-        except ERRORS as error:
-            return StopFilmResponse(success=False, message=str(error))
-        return StopFilmResponse(True, "", str(film.path), film.frames, rospy.Duration.from_sec(film.duration))

@@ -6,29 +6,7 @@ from typing import Any
 
 from geometry_msgs.msg import Point, Pose
 
-from nao_library_msgs.srv import (
-    MoveObject,
-    MoveObjectRequest,
-    MoveObjectResponse,
-    MoveSound,
-    MoveSoundRequest,
-    MoveSoundResponse,
-    PersonSays,
-    PersonSaysRequest,
-    PersonSaysResponse,
-    PlaceObject,
-    PlaceObjectRequest,
-    PlaceObjectResponse,
-    PlaceSound,
-    PlaceSoundRequest,
-    PlaceSoundResponse,
-    RemoveObject,
-    RemoveObjectRequest,
-    RemoveObjectResponse,
-    RemoveSound,
-    RemoveSoundRequest,
-    RemoveSoundResponse,
-)
+from nao_library_msgs import srv
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.rotations import roll_pitch_yaw
 from nao_sim_bridge.base.tasks import Task
@@ -47,66 +25,46 @@ KILLED = "it was stopped on its way"
 SILENCED = "it was silenced before its end"
 
 
-class RosThings:
-    """Places, moves and removes things.
+def offer_things(server: SimulatorServer) -> None:
+    """Services that place, move and remove things: `~place_object`, `~move_object`, `~remove_object`."""
 
-    ROS API: services `~place_object`, `~move_object`, `~remove_object` (nao_library_msgs).
-    """
-
-    def __init__(self, server: SimulatorServer) -> None:
-        self._server = server
-        self._services = [
-            success_service("~place_object", PlaceObject, PlaceObjectResponse, self._place, KILLED),
-            success_service("~move_object", MoveObject, MoveObjectResponse, self._move, KILLED),
-            success_service("~remove_object", RemoveObject, RemoveObjectResponse, self._remove, KILLED),
-        ]
-
-    def _place(self, request: PlaceObjectRequest) -> Task:
+    def place(request: srv.PlaceObjectRequest) -> Task:
         if not request.description:
-            return self._server.things.place(entry_of(request))
+            return server.things.place(entry_of(request))
         if request.kind or request.name:
             raise BadValue("description", request.description[:40], "empty when there is a name or a kind")
-        return self._server.things.place_described(request.description)
+        return server.things.place_described(request.description)
 
-    def _move(self, request: MoveObjectRequest) -> Task:
+    def move(request: srv.MoveObjectRequest) -> Task:
         position, turn = _listed(request.pose.position), _turn(request.pose)
-        return self._server.things.move(request.name, position, turn, request.time.to_sec(), request.wait)
+        return server.things.move(request.name, position, turn, request.time.to_sec(), request.wait)
 
-    def _remove(self, request: RemoveObjectRequest) -> Task:
-        return self._server.things.remove(request.name)
+    success_service("~place_object", srv.PlaceObject, place, KILLED)
+    success_service("~move_object", srv.MoveObject, move, KILLED)
+    success_service("~remove_object", srv.RemoveObject, lambda request: server.things.remove(request.name), KILLED)
 
 
-class RosSounds:
-    """Places sounds and lets persons speak.
+def offer_sounds(server: SimulatorServer) -> None:
+    """Services for sounds and persons who speak: `~place_sound`, `~move_sound`, `~remove_sound`, `~person_says`."""
 
-    ROS API: services `~place_sound`, `~move_sound`, `~remove_sound`, `~person_says` (nao_library_msgs).
-    """
-
-    def __init__(self, server: SimulatorServer) -> None:
-        self._server = server
-        self._services = [
-            success_service("~place_sound", PlaceSound, PlaceSoundResponse, self._place, SILENCED),
-            success_service("~move_sound", MoveSound, MoveSoundResponse, self._move, SILENCED),
-            success_service("~remove_sound", RemoveSound, RemoveSoundResponse, self._remove, SILENCED),
-            success_service("~person_says", PersonSays, PersonSaysResponse, self._person_says, SILENCED),
-        ]
-
-    def _place(self, request: PlaceSoundRequest) -> Task:
+    def place(request: srv.PlaceSoundRequest) -> Task:
         position, level = _listed(request.position), float(request.level_db)
-        return self._server.sounds.add(request.name, request.sound, position, level, request.loop)
+        return server.sounds.add(request.name, request.sound, position, level, request.loop)
 
-    def _move(self, request: MoveSoundRequest) -> Task:
-        return self._server.sounds.move(request.name, _listed(request.position))
+    def move(request: srv.MoveSoundRequest) -> Task:
+        return server.sounds.move(request.name, _listed(request.position))
 
-    def _remove(self, request: RemoveSoundRequest) -> Task:
-        return self._server.sounds.remove(request.name)
-
-    def _person_says(self, request: PersonSaysRequest) -> Task:
+    def person_says(request: srv.PersonSaysRequest) -> Task:
         position, level = _listed(request.position), float(request.level_db)
-        return self._server.sounds.person_says(request.text, position, request.voice, level)
+        return server.sounds.person_says(request.text, position, request.voice, level)
+
+    success_service("~place_sound", srv.PlaceSound, place, SILENCED)
+    success_service("~move_sound", srv.MoveSound, move, SILENCED)
+    success_service("~remove_sound", srv.RemoveSound, lambda request: server.sounds.remove(request.name), SILENCED)
+    success_service("~person_says", srv.PersonSays, person_says, SILENCED)
 
 
-def entry_of(request: PlaceObjectRequest) -> dict[str, Any]:
+def entry_of(request: srv.PlaceObjectRequest) -> dict[str, Any]:
     """The entry of a world file that the fields of a request stand for."""
     kinds = [*SHAPES, *(kind for kind in THINGS if kind not in (*SHAPES, "parts"))]  # parts have no content in a text
     if request.kind not in kinds:

@@ -36,9 +36,6 @@ class GoalRun:
     Attributes:
         feedback: (simulated time in s, feedback message) of each feedback.
         sent: Simulated time at which the goal was sent, s.
-
-    Args:
-        client: Client of a server that is there.
     """
 
     def __init__(self, client: actionlib.SimpleActionClient, goal: Any) -> None:

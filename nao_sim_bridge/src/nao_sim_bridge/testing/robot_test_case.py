@@ -39,12 +39,7 @@ class RobotTestCase(unittest.TestCase):
         self.robot.reset()
 
     def send(self, *functions: Any, **fields: Any) -> GoalRun:
-        """Send a chain of function messages to the server and return at once.
-
-        Args:
-            functions: Function messages, in order.
-            fields: Other fields of the goal.
-        """
+        """Send a chain of function messages, and other fields of the goal, to the server and return at once."""
         goal = self.server[1]().action_goal.goal
         return send(self.client, type(goal)(list(functions), **fields))
 

@@ -110,9 +110,7 @@ class SimulatedRobot:
         if not world:
             self._factory_reset()
             return
-        answer = self._reset_world(world)
-        if not answer.success:
-            raise ValueError(answer.message)
+        _succeeded(self._reset_world(world))
 
     def advance(self, seconds: float) -> float:
         """Let simulated time pass as fast as possible; returns the time after it, s."""
@@ -148,24 +146,17 @@ class SimulatedRobot:
 
     def push(self, force: Sequence[float], seconds: float, link: str = "torso") -> None:
         """Push a link with `force` (x, y, z in N, in world) for a while."""
-        answer = self._push(link, Vector3(*force), rospy.Duration.from_sec(seconds))
-        if not answer.success:
-            raise ValueError(answer.message)
+        _succeeded(self._push(link, Vector3(*force), rospy.Duration.from_sec(seconds)))
 
     def press(self, sensors: Iterable[str]) -> None:
         """Simulated fingers on these touch sensors and on no others."""
-        answer = self._press(list(sensors))
-        if not answer.success:
-            raise ValueError(answer.message)
+        _succeeded(self._press(list(sensors)))
 
     # --- looking --------------------------------------------------------------------------------------------------
 
     def picture(self, view: str = "three_quarter", file: str = "picture.png") -> Path:
         """Take a picture; returns where it is."""
-        answer = self._picture(view, 0, 0, file)
-        if not answer.success:
-            raise ValueError(answer.message)
-        return Path(answer.path)
+        return Path(_succeeded(self._picture(view, 0, 0, file)).path)
 
     def true_pose(self) -> Pose:
         """Where the torso really is, in world: position in m, orientation as a quaternion."""
@@ -211,6 +202,12 @@ class SimulatedRobot:
 
     def _service(self, name: str, kind: type, limit: float) -> rospy.ServiceProxy:
         return wait_for_service(self._name(name), kind, limit)
+
+
+def _succeeded(answer: Any) -> Any:
+    if not answer.success:
+        raise ValueError(answer.message)
+    return answer
 
 
 def _ping_goal(action: type) -> Any:

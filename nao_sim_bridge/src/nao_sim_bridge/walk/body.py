@@ -18,12 +18,7 @@ LegPose = Tuple[float, LegAngles, LegAngles]
 
 
 class WalkingBody:
-    """Legs, and whatever is above them.
-
-    Attributes:
-        legs: Their kinematics.
-        mass: Of the robot, kg.
-    """
+    """Legs, and whatever is above them; `mass` is that of the robot, kg."""
 
     def __init__(self, model: RobotModel) -> None:
         self.legs = Legs(model)
@@ -46,11 +41,7 @@ class WalkingBody:
         return self._upper.moment(angles)
 
     def center_of_mass(self, upper: Vector, pose: LegPose) -> tuple[Vector, Sequence[tuple[Vector, Matrix]]]:
-        """Of the whole robot in the torso frame, m, and ankle place and foot rotation of the left and right leg.
-
-        Args:
-            upper: As `upper_moment`.
-        """
+        """Of the whole robot in the torso frame, m, and ankle place and foot rotation of the left and right leg."""
         hip, left, right = pose
         l_moment, l_ankle, l_foot = self.legs.state(LEFT, hip, left)
         r_moment, r_ankle, r_foot = self.legs.state(RIGHT, hip, right)

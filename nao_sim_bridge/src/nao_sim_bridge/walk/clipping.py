@@ -54,9 +54,7 @@ def step_limits() -> StepLimits:
 def clip_step(placement: FootPose, side: int, limits: StepLimits) -> FootPose:
     """The nearest placement that the legs can step, as NAOqi's walk clips: box, ellipse, then the overlap of the feet.
 
-    Args:
-        placement: Of the foot that steps, in the frame of the other one.
-        side: Of the foot that steps, 1 left, -1 right.
+    It is that of the foot that steps, 1 left, -1 right, in the frame of the other one.
     """
     x = min(max(placement.x, limits.min_x), limits.max_x)
     aside = min(max(side * placement.y, limits.min_y), limits.max_y)

@@ -37,16 +37,12 @@ class Step(NamedTuple):
 
 
 class Course(ABC):
-    """See the module.
+    """See the module; `rate` is that at which the robot walks already.
 
     Attributes:
         frame: Where the plan's frame lies in the world.
-        rate: Way of the robot in the step that it took last.
         reached: Whether it came to its end by itself.
         haste: Share of its speed that a course may use, 0..1: a body that is off its plan comes back best on the spot.
-
-    Args:
-        rate: At which the robot walks already.
     """
 
     def __init__(self, settings: WalkSettings, gait: FeetGait, rate: Rate = STANDSTILL) -> None:

@@ -19,13 +19,7 @@ SHOWN_STEPS = 4
 
 @dataclass(frozen=True)
 class PlannedStep:
-    """A step to come.
-
-    Attributes:
-        leg: "LLeg" or "RLeg".
-        time: From now to its landing, s.
-        placement: In the frame of the other foot.
-    """
+    """A step to come of "LLeg" or "RLeg": `time` s from now it lands, `placement` is in the frame of the other foot."""
 
     leg: str
     time: float
@@ -34,14 +28,7 @@ class PlannedStep:
 
 @dataclass(frozen=True)
 class FootstepPlan:
-    """Feet and the steps to come.
-
-    Attributes:
-        left: Left foot in the world.
-        right: Right foot in the world.
-        fixed: Steps that nothing can change any more.
-        clearable: Steps after them.
-    """
+    """Feet in the world, the steps that nothing can change any more, and those after them."""
 
     left: FootPose
     right: FootPose

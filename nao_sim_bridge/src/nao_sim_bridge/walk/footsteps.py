@@ -10,13 +10,7 @@ ASIDE, PARALLEL = 0.01, 0.03
 
 
 class FootPose(NamedTuple):
-    """A foot, or the robot, on the ground.
-
-    Attributes:
-        x: m.
-        y: m.
-        yaw: rad.
-    """
+    """A foot, or the robot, on the ground: m, m, rad."""
 
     x: float
     y: float
@@ -49,25 +43,16 @@ def middle(first: FootPose, second: FootPose) -> FootPose:
 
 
 class FootInAir(NamedTuple):
-    """A foot on its way.
-
-    Attributes:
-        pose: Over the ground.
-        height: Of the sole over the ground, m.
-    """
+    """A foot on its way, the sole at a height over the ground, m."""
 
     pose: FootPose
     height: float
 
 
 def swing(start: FootPose, end: FootPose, share: float, lift: float) -> FootInAir:
-    """Where the foot is.
+    """Where the foot is after a share 0..1 of its time in the air; `lift` is the peak, m.
 
     It goes forward with the least jerk and up and down as a cosine, at rest at both ends.
-
-    Args:
-        share: Of its time in the air, 0..1.
-        lift: Peak, m.
     """
     u = min(max(share, 0.0), 1.0)
     s = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u)

@@ -26,14 +26,7 @@ FIELDS = {
 
 @dataclass(frozen=True)
 class Parameter:
-    """One gait parameter; SI units, frequencies 0..1.
-
-    Attributes:
-        default: Its value when nobody says otherwise.
-        minimum: Least allowed.
-        maximum: Largest allowed.
-        settable: Whether a move may change it.
-    """
+    """One gait parameter; SI units, frequencies 0..1. A move may change one that is `settable`."""
 
     default: float
     minimum: float
@@ -97,13 +90,7 @@ class Gait:
 
 @dataclass(frozen=True)
 class FeetGait:
-    """How both feet step.
-
-    Attributes:
-        left: Of the left foot.
-        right: Of the right foot.
-        frequency: Share 0..1 of the top frequency.
-    """
+    """How both feet step, at a share 0..1 of the top frequency."""
 
     left: Gait = field(default_factory=Gait)
     right: Gait = field(default_factory=Gait)
@@ -119,10 +106,7 @@ class FeetGait:
 
 
 def feet_gait(values: Mapping[str, float]) -> FeetGait:
-    """The gait that a move's configuration asks for.
-
-    Args:
-        values: By NAOqi's names, for one foot with `Left` or `Right` before them; `Frequency` for both.
+    """The gait that values by NAOqi's names ask for, for one foot with `Left` or `Right` before them.
 
     Raises:
         UnknownName: There is no such parameter.

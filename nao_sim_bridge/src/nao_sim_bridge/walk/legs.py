@@ -32,12 +32,7 @@ ENOUGH = 5e-4
 
 @dataclass(frozen=True)
 class Sole:
-    """Where a sole is, or is to be.
-
-    Attributes:
-        position: Point below the ankle, m.
-        rotation: Of the foot.
-    """
+    """Where a sole is, or is to be: the point below the ankle, m, and the rotation of the foot."""
 
     position: Vector
     rotation: Matrix
@@ -76,10 +71,7 @@ class Legs:
         With the torso's pose given, each foot asks for a HipYawPitch of its own; the one in the middle leaves both
         feet turned off by the same small angle.
 
-        Args:
-            torso: Position of the torso, m.
-            left: Left sole, in the same frame as the torso.
-            hip_yaw: HipYawPitch to begin with, rad: that of the last tick.
+        Soles are in the same frame as the torso, m; `hip_yaw` is HipYawPitch to begin with, rad: that of the last tick.
         """
         l_ankle, l_turn = self._in_torso(torso, rotation, left)
         r_ankle, r_turn = self._in_torso(torso, rotation, right)
@@ -105,8 +97,6 @@ class Legs:
         """One leg for a given HipYawPitch.
 
         Args:
-            side: LEFT or RIGHT.
-            hip_yaw: rad.
             ankle: In the torso frame, m.
             foot: Rotation of the foot in the torso frame.
 

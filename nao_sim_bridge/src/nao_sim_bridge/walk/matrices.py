@@ -11,12 +11,6 @@ Vector = Tuple[float, float, float]
 IDENTITY: Matrix = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
-def about_x(angle: float) -> Matrix:
-    """Rotation by `angle` rad about X."""
-    c, s = cos(angle), sin(angle)
-    return (1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c)
-
-
 def about_y(angle: float) -> Matrix:
     """Rotation by `angle` rad about Y."""
     c, s = cos(angle), sin(angle)

@@ -14,13 +14,7 @@ Point = Tuple[float, float]
 
 
 class Segment(NamedTuple):
-    """The zero moment point moves in a straight line.
-
-    Attributes:
-        duration: s.
-        start: m.
-        end: m.
-    """
+    """The zero moment point moves in a straight line, m, for a duration, s."""
 
     duration: float
     start: Point
@@ -75,13 +69,7 @@ class PendulumObserver:
         self.place, self.speed = place, speed
 
     def update(self, measured: float, pressure: float, dt: float) -> None:
-        """Take in a measurement.
-
-        Args:
-            measured: Place of the centre of mass, m.
-            pressure: Place of the zero moment point that is planned, m.
-            dt: Since the last measurement, s.
-        """
+        """Take in a place of the centre of mass, measured `dt` s after the last one, and the planned `pressure`, m."""
         acceleration = self._omega * self._omega * (self.place - pressure)
         self.place += dt * (self.speed + 0.5 * dt * acceleration)
         self.speed += dt * acceleration

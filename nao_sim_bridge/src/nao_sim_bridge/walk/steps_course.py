@@ -13,13 +13,7 @@ from nao_sim_bridge.walk.settings import WalkSettings
 
 
 class Placement(NamedTuple):
-    """A step that somebody else has planned.
-
-    Attributes:
-        side: Of the foot that moves, 1 left, -1 right.
-        beside: Where it lands, in the frame of the other foot.
-        period: Time of the step, s.
-    """
+    """A step of a foot (1 left, -1 right) that lands `beside` the other one, in its frame, after `period` s."""
 
     side: int
     beside: FootPose

@@ -64,7 +64,7 @@ class TargetCourse(Course):
         centre = support.moved(0.0, side * self._half)
         goal = state.goal
         way = self._way(goal, centre)
-        while goal < len(self._goals) - 1 and self._steps_for(way, 1.0) <= 1.0:
+        while goal < len(self._goals) - 1 and self._steps_for(way, ahead=True) <= 1.0:
             goal += 1
             way = self._way(goal, centre)
         if goal == len(self._goals) - 1 and max(abs(way.x), abs(way.y)) < ARRIVED and abs(way.yaw) < ARRIVED_TURN:
@@ -78,20 +78,17 @@ class TargetCourse(Course):
         """From the robot to a goal, in the frame of the robot."""
         return self._goals[goal].seen_from(self.frame.moved(*centre))
 
-    def _steps_for(self, way: FootPose, ahead: float) -> float:
+    def _steps_for(self, way: FootPose, ahead: bool) -> float:
         """How many steps a way takes at full speed, braking to its end when nothing comes after it."""
-        limits = rate_limits(self._gait, way.x >= 0.0)
-        changes = self._settings.change
-        counts = []
-        for part, most, change in zip(way, limits, changes):
-            distance = abs(part)
-            fastest = most if ahead else min(most, braking(distance, change))
-            counts.append(distance / max(fastest, ROUNDING))
-        return sqrt(sum(count * count for count in counts))
+        squares = 0.0
+        for part, most, change in zip(way, rate_limits(self._gait, way.x >= 0.0), self._settings.change):
+            fastest = most if ahead else min(most, braking(abs(part), change))
+            squares += (abs(part) / max(fastest, ROUNDING)) ** 2
+        return sqrt(squares)
 
     def _towards(self, way: FootPose, goal: int) -> Rate:
         last = goal == len(self._goals) - 1
-        count = max(self._steps_for(way, 0.0 if last else 1.0), float(self._steps), 1.0)
+        count = max(self._steps_for(way, ahead=not last), float(self._steps), 1.0)
         share = self.haste / count
         return (share * way.x, share * way.y, share * way.yaw)
 

@@ -11,10 +11,8 @@ class WalkWaits:
     """Tasks of callers that a walk settles. Simulation thread only.
 
     Attributes:
-        goal: What the walk that goes on is for; None when it is for nothing that has an end.
-
-    Args:
-        dropped: Called when somebody has cancelled what the walk was for.
+        goal: What the walk that goes on is for, None when it is for nothing that has an end; `dropped` hears that
+            somebody has cancelled it.
     """
 
     def __init__(self, task_ids: TaskIds, dropped: Callable[[], None]) -> None:

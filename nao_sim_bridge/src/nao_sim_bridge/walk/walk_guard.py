@@ -22,12 +22,7 @@ LIFTED_SHARE = 0.1
 
 
 class Obstacle(NamedTuple):
-    """Something in the way.
-
-    Attributes:
-        cause: In words.
-        place: In the world of the robot's odometry, m.
-    """
+    """Something in the way: what, in words, and where, in the world of the robot's odometry, m."""
 
     cause: str
     place: Vector3

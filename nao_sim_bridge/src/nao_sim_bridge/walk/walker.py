@@ -12,7 +12,6 @@ from nao_sim_bridge.walk.legs import LEFT, RIGHT, Sole
 from nao_sim_bridge.walk.matrices import (
     Matrix,
     Vector,
-    about_x,
     about_y,
     about_z,
     product,
@@ -49,13 +48,9 @@ class Readings(NamedTuple):
 
 
 class _Stance(NamedTuple):
-    """How a robot stands on flat feet, seen from the middle between them.
+    """How a robot stands on flat feet, left and right, seen from the middle between them.
 
-    Attributes:
-        feet: Left and right.
-        com: Of the whole robot.
-        height: Of the centre of mass over the ground, m.
-        turn: Roll, pitch and yaw of the torso, rad.
+    `height` is that of the centre of mass over the ground, m, `turn` roll, pitch and yaw of the torso, rad.
     """
 
     feet: tuple[FootPose, FootPose]
@@ -72,7 +67,6 @@ class Walker:
         feedback: What is done about where they are not.
 
     Args:
-        gravity: m/s2.
         commands: (26,) commanded angles to start from, rad.
     """
 
@@ -96,9 +90,7 @@ class Walker:
     def tick(self, readings: Readings, commands: Sequence[float], dt: float) -> Dict[int, float]:
         """Advance by one tick of `dt` s; joint index to command, rad, of both legs.
 
-        Args:
-            readings: Of the last tick.
-            commands: (26,) commanded angles, rad: where arms and head are.
+        Readings are those of the last tick; the (26,) commanded angles, rad, tell where arms and head are.
         """
         plan, body = self.plan, self._body
         if commands is not self._upper_of:
@@ -197,7 +189,7 @@ def _stance(body: WalkingBody, upper: Vector, angles: Sequence[float]) -> _Stanc
     com, legs = body.center_of_mass(upper, body.leg_pose(angles))
     up = [legs[0][1][i] + legs[1][1][i] for i in (2, 5, 8)]
     roll, pitch = atan2(up[1], up[2]), atan2(-up[0], hypot(up[1], up[2]))
-    level = product(about_y(pitch), about_x(roll))
+    level = then_about_x(about_y(pitch), roll)
     feet = [product(level, foot) for _, foot in legs]
     yaws = [atan2(foot[3], foot[0]) for foot in feet]
     soles = []

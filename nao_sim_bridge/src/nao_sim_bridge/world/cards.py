@@ -16,7 +16,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.entries import Kind, Made, color, number, picture, truth
 from nao_sim_bridge.world.painting.known_landmarks import load_landmarks
-from nao_sim_bridge.world.pictures import WorldPicture, aspect
+from nao_sim_bridge.world.pictures import aspect
 from nao_sim_bridge.world.world import Part, WorldError
 
 THICKNESS = 0.006
@@ -28,25 +28,20 @@ SIZES = {"qr": 0.15, "barcode": 0.20, "face": 0.22, "poster": 0.50, "image": 0.4
 
 
 def _make(kind: str, entry: Mapping[str, Any], where: str, files: Callable[[str], Path]) -> Made:
-    shown = _picture(kind, entry[kind], f"{where}.{kind}", files)
+    content, place = entry[kind], f"{where}.{kind}"
+    shown = picture("file", str(files(str(content))), place) if kind == "image" else picture(kind, content, place)
     default = load_landmarks().diameter if kind == "landmark" else SIZES[kind]
     size = number(entry, "size", where, default, SMALLEST, LARGEST)
     width = size * (1.0 + load_landmarks().margin) if kind == "landmark" else size
     try:
         height = width / aspect(shown)
     except BadValue as error:
-        raise WorldError(f"{where}.{kind}", str(error)) from error
+        raise WorldError(place, str(error)) from error
     card = Shape("box", (THICKNESS, width, height), (0.0, 0.0, 0.0))
     parts = (Part(card, color(entry, "color", where, CARD), shown),)
     if truth(entry, "stand", where):
         parts += _stand(entry, where, height)
     return Made(parts)
-
-
-def _picture(kind: str, content: Any, where: str, files: Callable[[str], Path]) -> WorldPicture:
-    if kind != "image":
-        return picture(kind, content, where)
-    return picture("file", str(files(str(content))), where)
 
 
 def _stand(entry: Mapping[str, Any], where: str, height: float) -> tuple[Part, ...]:

@@ -72,6 +72,13 @@ def picture(kind: str, content: Any, where: str) -> WorldPicture:
         raise WorldError(where, str(error)) from error
 
 
+def name_of(entry: Mapping, where: str) -> str:
+    name = entry["name"]
+    if not isinstance(name, str) or not name:
+        raise WorldError(f"{where}.name", f"is {name!r}, not a name")
+    return name
+
+
 def truth(entry: Mapping, key: str, where: str) -> bool:
     """A switch of an entry, off unless it says otherwise."""
     value = entry.get(key, False)

@@ -25,7 +25,7 @@ from nao_sim_bridge.base.rotations import vector3
 from nao_sim_bridge.model.kinematics import rpy_matrix
 from nao_sim_bridge.model.shapes import KINDS, Shape, read_shape
 from nao_sim_bridge.world.cards import CARDS
-from nao_sim_bridge.world.entries import GREY, Kind, Made, check_bounds, color, entries, number, picture
+from nao_sim_bridge.world.entries import GREY, Kind, Made, check_bounds, color, entries, name_of, number, picture
 from nao_sim_bridge.world.people import PERSON
 from nao_sim_bridge.world.robots import NAO
 from nao_sim_bridge.world.world import MOST_PARTS, Part, WorldError, WorldObject
@@ -89,8 +89,7 @@ def read_object(entry: Any, where: str, files: Callable[[str], Path]) -> WorldOb
 def _read(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
     known = dict.fromkeys(key for kind in THINGS.values() for key in kind.options)
     check_keys(entry, where, ("name", "position"), dict.fromkeys([*THINGS, *known, *COMMON]), WorldError)
-    if not isinstance(entry["name"], str) or not entry["name"]:
-        raise WorldError(f"{where}.name", f"is {entry['name']!r}, not a name")
+    title = name_of(entry, where)
     called = [key for key in THINGS if key in entry]
     name = "parts" if "parts" in called else called[0] if len(called) == 1 else ""
     if not name:
@@ -103,7 +102,7 @@ def _read(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
     rpy = _rpy(entry, where)
     parts, body, middle = _centred(made)
     return WorldObject(
-        name=entry["name"],
+        name=title,
         position=vector3(position + rpy_matrix(rpy) @ middle),
         rpy=vector3(rpy),
         parts=parts,
@@ -140,13 +139,9 @@ def _centred(made: Made) -> tuple[tuple[Part, ...], tuple[Shape, ...] | None, np
     touched = [part.shape for part in made.parts] if made.body is None else made.body
     volumes = np.array([_volume(shape) for shape in touched])
     middle = volumes @ np.array([shape.xyz for shape in touched]) / volumes.sum()
-    parts = tuple(replace(part, shape=_moved(part.shape, middle)) for part in made.parts)
-    body = None if made.body is None else tuple(_moved(shape, middle) for shape in made.body)
+    parts = tuple(replace(part, shape=part.shape.moved(-middle)) for part in made.parts)
+    body = None if made.body is None else tuple(shape.moved(-middle) for shape in made.body)
     return parts, body, middle
-
-
-def _moved(shape: Shape, middle: np.ndarray) -> Shape:
-    return replace(shape, xyz=vector3(np.array(shape.xyz) - middle))
 
 
 def _volume(shape: Shape) -> float:

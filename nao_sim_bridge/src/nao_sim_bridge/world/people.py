@@ -54,30 +54,28 @@ def _make(entry: Mapping[str, Any], where: str, _files: object) -> Made:
 
 def _trunk(scale: float, clothes: Color, trousers: Color, skin: Color) -> tuple[list[Part], list[Shape]]:
     """Everything below the neck: what is to be seen, and what is to be felt."""
+
+    def solid(kind: str, size: tuple, place: tuple) -> Shape:
+        return Shape(kind, tuple(edge * scale for edge in size), tuple(way * scale for way in place))
+
     parts, body = [], []
     for side in (-1.0, 1.0):
         hip, knee, ankle = ((x * scale, side * y * scale, z * scale) for x, y, z in _LEG)
-        shoe = Shape("pillow", _scaled((0.25, 0.10, 0.09), scale), _scaled((0.045, side * 0.10, 0.045), scale))
-        parts += [
-            Part(shoe, SHOES),
-            Part(_rod(0.062 * scale, ankle, knee), trousers),
-            Part(_rod(0.078 * scale, knee, hip), trousers),
-        ]
-        body.append(_rod(0.075 * scale, (0.0, side * 0.10 * scale, 0.076 * scale), hip))
         shoulder, elbow, wrist = ((x * scale, side * y * scale, z * scale) for x, y, z in _ARM)
         parts += [
+            Part(solid("pillow", (0.25, 0.10, 0.09), (0.045, side * 0.10, 0.045)), SHOES),
+            Part(_rod(0.062 * scale, ankle, knee), trousers),
+            Part(_rod(0.078 * scale, knee, hip), trousers),
             Part(_rod(0.052 * scale, shoulder, elbow), clothes),
             Part(_rod(0.042 * scale, elbow, wrist), clothes),
-            Part(
-                Shape("ellipsoid", _scaled((0.035, 0.022, 0.065), scale), _scaled((0.045, side * 0.232, 0.76), scale)),
-                skin,
-            ),
+            Part(solid("ellipsoid", (0.035, 0.022, 0.065), (0.045, side * 0.232, 0.76)), skin),
         ]
+        body.append(_rod(0.075 * scale, (0.0, side * 0.10 * scale, 0.076 * scale), hip))
         body.append(_rod(0.045 * scale, shoulder, wrist))
     parts += [
-        Part(Shape("ellipsoid", _scaled((0.115, 0.170, 0.130), scale), _scaled((0.0, 0.0, 0.90), scale)), trousers),
-        Part(Shape("pillow", _scaled((0.23, 0.34, 0.46), scale), _scaled((0.0, 0.0, 1.12), scale)), clothes),
-        Part(Shape("ellipsoid", _scaled((0.095, 0.195, 0.085), scale), _scaled((-0.01, 0.0, 1.31), scale)), clothes),
+        Part(solid("ellipsoid", (0.115, 0.170, 0.130), (0.0, 0.0, 0.90)), trousers),
+        Part(solid("pillow", (0.23, 0.34, 0.46), (0.0, 0.0, 1.12)), clothes),
+        Part(solid("ellipsoid", (0.095, 0.195, 0.085), (-0.01, 0.0, 1.31)), clothes),
     ]
     body.append(_rod(0.14 * scale, (0.0, 0.0, 0.95 * scale), (0.0, 0.0, 1.25 * scale)))
     return parts, body
@@ -123,10 +121,6 @@ def _hair(look: FaceLook, half_axes: tuple[float, float, float], middle: float) 
 
 def _rod(radius: float, start: tuple, end: tuple) -> Shape:
     return rod("capsule", radius, np.array(start, dtype=float), np.array(end, dtype=float))
-
-
-def _scaled(values: tuple, scale: float) -> tuple:
-    return tuple(value * scale for value in values)
 
 
 PERSON = Kind(("height", "clothes", "trousers", "nod"), _make)

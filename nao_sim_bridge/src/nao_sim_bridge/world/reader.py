@@ -23,7 +23,7 @@ import numpy as np
 import yaml
 
 from nao_sim_bridge.base.config import LARGEST_FILE, array, check_keys, read_bounded, vector, world_directory
-from nao_sim_bridge.base.errors import BadValue, ConfigError, did_you_mean
+from nao_sim_bridge.base.errors import BadValue, did_you_mean
 from nao_sim_bridge.base.yaml_values import load_yaml
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.entries import GREY, check_bounds, color, entries, number
@@ -52,13 +52,7 @@ def read_world(content: Any, name: str, where: str, folder: Path | None = None) 
     check_keys(content, where, ("floor",), SECTIONS, WorldError)
     check_bounds(content, where)
     beside = lambda file: (folder or Path()) / file  # noqa: E731
-    try:
-        objects = tuple(read_object(entry, place, beside) for place, entry in entries(content, "objects", where))
-        floor = _read_floor(content["floor"], f"{where}: floor")
-    except WorldError:
-        raise
-    except ConfigError as error:
-        raise WorldError(error.where, error.problem) from error
+    objects = tuple(read_object(entry, place, beside) for place, entry in entries(content, "objects", where))
     names = [FLOOR, *(thing.name for thing in objects)]
     for index, thing in enumerate(objects):
         if thing.name in names[: index + 1]:
@@ -67,7 +61,7 @@ def read_world(content: Any, name: str, where: str, folder: Path | None = None) 
     return World(
         name=name,
         description=str(content.get("description", "")),
-        floor=floor,
+        floor=_read_floor(content["floor"], f"{where}: floor"),
         light=_read_light(content.get("light", {}), f"{where}: light"),
         background=_read_background(content.get("background", {}), f"{where}: background"),
         objects=objects,

@@ -130,24 +130,16 @@ def preset_camera(
         raise UnknownName("view", name, PRESETS)
     view = PRESETS[name]
     base = transform(quaternion_matrix(state.base_orientation), state.base_position)
-    frame = base @ link_transforms(model, state.joint_positions)["HeadPitch"] if view.follows == "head" else base
-    if view.follows == "body":
+    if view.follows == "head":
+        frame = base @ link_transforms(model, state.joint_positions)["HeadPitch"]
+    elif view.follows == "body":
         frame = _upright(base)
-    if view.follows == "world":
-        frame = np.eye(4)
-    if view.follows == "robots":
-        frame = _around_all(state)
+    else:
+        frame = np.eye(4) if view.follows == "world" else _around_all(state)
     eye, target = (frame @ np.append(point, 1.0) for point in (view.eye, view.target))
     up = frame[:3, 2] if view.follows == "head" else np.array((0.0, 0.0, 1.0))
-    return Camera(
-        eye=vector3(eye[:3]),
-        target=vector3(target[:3]),
-        up=vector3(up),
-        fov=math.radians(view.fov_deg),
-        width=width,
-        height=height,
-        supersampling=supersampling,
-    )
+    places = (vector3(eye[:3]), vector3(target[:3]), vector3(up))
+    return Camera(*places, math.radians(view.fov_deg), width, height, supersampling)
 
 
 def _around_all(state: RenderState) -> np.ndarray:
@@ -189,11 +181,9 @@ class StateSender:
         self._sent: Placed = ()
 
     def pack(self, state: RenderState) -> Packed:
-        placed = state.placed
-        if placed is self._sent:
-            return replace(state, placed=()), None
-        self._sent = placed
-        return replace(state, placed=()), placed
+        news = None if state.placed is self._sent else state.placed
+        self._sent = state.placed
+        return replace(state, placed=()), news
 
 
 class StateReceiver:

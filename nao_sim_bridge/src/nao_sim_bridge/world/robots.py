@@ -61,7 +61,7 @@ def _figure(name: str) -> tuple[tuple[Shape, ...], tuple[Shape, ...], tuple[Shap
                 shapes += [_put(shape, poses[joint.parent_link] @ pose) for shape in looks.phalanx]
     lamps = [_put(lamp.shape, poses[lamp.link]) for lamp in looks.lamps]
     lowest = min(tessellate(shape).placed(shape).vertices[:, 2].min() for shape in shapes)
-    lift = lambda listed: tuple(_lifted(shape, -lowest) for shape in listed)  # noqa: E731
+    lift = lambda listed: tuple(shape.moved((0.0, 0.0, -lowest)) for shape in listed)  # noqa: E731
     return lift(shapes), lift(lamps), lift(_body(poses))
 
 
@@ -80,11 +80,6 @@ def _put(shape: Shape, pose: np.ndarray) -> Shape:
     """A shape of a link's frame in the frame that the pose is in."""
     place = pose @ transform(rpy_matrix(shape.rpy), shape.xyz)
     return replace(shape, xyz=tuple(place[:3, 3].tolist()), rpy=matrix_rpy(place[:3, :3]))
-
-
-def _lifted(shape: Shape, height: float) -> Shape:
-    x, y, z = shape.xyz
-    return replace(shape, xyz=(x, y, float(z + height)))
 
 
 NAO = Kind(("color", "leds"), _make)

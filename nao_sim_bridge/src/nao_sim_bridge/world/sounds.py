@@ -10,14 +10,13 @@ end).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Sequence
 
 from nao_sim_bridge.base.config import check_keys, vector
 from nao_sim_bridge.base.errors import did_you_mean
-from nao_sim_bridge.world.entries import number
+from nao_sim_bridge.world.entries import name_of, number, truth
 from nao_sim_bridge.world.world import Content, WorldError, WorldSound
 
 KINDS = ("file", "tone", "noise", "say")
@@ -32,13 +31,7 @@ LONGEST = 3600.0
 def read_sounds(
     entries: Sequence[tuple[str, Any]], objects: Sequence[str], folder: Path | None
 ) -> tuple[WorldSound, ...]:
-    """The sounds of a world.
-
-    Args:
-        entries: Entries of the section, each with its place for error texts.
-        objects: Names of the world's objects.
-        folder: Where the world file is; None when it is none.
-    """
+    """The sounds of a world with these objects, whose file is in `folder`, from the entries of its file."""
     sounds: list[WorldSound] = []
     for where, entry in entries:
         sound = _read_sound(entry, where, objects, folder)
@@ -53,8 +46,7 @@ def _read_sound(entry: Any, where: str, objects: Sequence[str], folder: Path | N
         # YAML reads the bare word "on" as true.
         entry = {"on" if key is True else key: value for key, value in entry.items()}
     check_keys(entry, where, ("name",), OPTIONS, WorldError)
-    if not isinstance(entry["name"], str) or not entry["name"]:
-        raise WorldError(f"{where}.name", f"is {entry['name']!r}, not a name")
+    name = name_of(entry, where)
     kind, content = _read_content(entry, where, folder)
     on = entry.get("on")
     if on is None and "position" not in entry:
@@ -70,20 +62,18 @@ def _read_sound(entry: Any, where: str, objects: Sequence[str], folder: Path | N
     lasting = kind in ("tone", "noise")
     if "duration" in entry and not lasting:
         raise WorldError(f"{where}.duration", f"is for tones and noises; a {kind} is as long as it is")
-    loop = entry.get("loop", False)
-    if not isinstance(loop, bool):
-        raise WorldError(f"{where}.loop", f"is {loop!r}, allowed is true or false")
+    loop = truth(entry, "loop", where)
     if "pause" in entry and not loop:
         raise WorldError(f"{where}.pause", "is for what is repeated: it needs 'loop: true'")
     return WorldSound(
-        name=entry["name"],
+        name=name,
         kind=kind,
         content=content,
         position=tuple(vector(entry.get("position", (0.0, 0.0, 0.0)), f"{where}.position", 3, WorldError).tolist()),
         on=on,
         voice=entry.get("voice", ""),
         level_db=number(entry, "level_db", where, TALK_DB, -20.0, LOUDEST),
-        start=number(entry, "start", where, 0.0, 0.0, math.inf),
+        start=number(entry, "start", where, 0.0),
         loop=loop,
         pause=number(entry, "pause", where, 0.0, 0.0, LONGEST),
         duration=number(entry, "duration", where, 1.0, 0.01, LONGEST) if "duration" in entry else None,

@@ -32,14 +32,7 @@ class WorldError(ConfigError):
 
 @dataclass(frozen=True)
 class Rug:
-    """A rectangle of another colour, too thin to be felt.
-
-    Attributes:
-        center: (x, y) in the frame of the floor, m.
-        size: Edge lengths, m.
-        yaw: rad.
-        color: (r, g, b) in 0..1.
-    """
+    """A rectangle of another colour, too thin to be felt; centre and edges in the frame of the floor, m, yaw in rad."""
 
     center: tuple[float, float]
     size: tuple[float, float]
@@ -206,13 +199,7 @@ class WorldSound:
 
 @dataclass(frozen=True)
 class World:
-    """A world.
-
-    Attributes:
-        name: File name without ending.
-        description: One line for people.
-        robots: Where the robots start, the first one first; others stand where they are told to.
-    """
+    """A world: its file's name without ending, a line for people, what it has, and where the first robots start."""
 
     name: str
     description: str

@@ -11,7 +11,7 @@ import pytest
 
 import vision_definitions
 from nao_sim_bridge.cameras import settings as names
-from nao_sim_bridge.cameras.color_spaces import encode
+from nao_sim_bridge.cameras.color_spaces import encoded
 from nao_sim_bridge.cameras.optics import CameraOptics, Optics
 from nao_sim_bridge.cameras.sensor import Shot, develop
 from nao_sim_bridge.cameras.settings import load_cameras
@@ -144,7 +144,7 @@ RED, GREEN, BLUE, WHITEST, GREY, DARK = (255, 0, 0), (0, 255, 0), (0, 0, 255), (
     + [(22, WHITEST, [255, 128, 128] * 2), (25, WHITEST, [255, 0])],
 )
 def test_known_colors(space, color, expected):
-    values = list(encode(np.array([[color, color]], np.uint8), space))
+    values = encoded(np.array([[color, color]], np.uint8), space).ravel().tolist()
     assert values[: len(expected)] == pytest.approx(expected, abs=1)
 
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from seen import MODEL, STATE, shot
 
-from nao_sim_bridge.render import PRESETS, preset_camera
 from nao_sim_bridge.render.film_camera import CALM, EYE_LEVEL, FilmCamera
 from nao_sim_bridge.render.opengl.scene_block import projection, world_constants
 from nao_sim_bridge.render.opengl.shaders import constants
 from nao_sim_bridge.render.scene.view import View
 from nao_sim_bridge.world.reader import load_world, world_names
+from nao_sim_bridge.world.render_state import PRESETS, preset_camera
 
 
 def test_views_follow_the_robot_wherever_it_is_but_that_of_the_room_stays():

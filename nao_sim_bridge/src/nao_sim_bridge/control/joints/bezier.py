@@ -37,12 +37,9 @@ CURVED = (Interpolation.SMOOTH, Interpolation.BEZIER)
 
 @dataclass(frozen=True)
 class Handle:
-    """A control point beside a key point.
+    """A control point beside a key point, and what the curve does on this side of it.
 
-    Attributes:
-        kind: What the curve does on this side of the point.
-        time: Offset from the key point, in s; negative before it, positive after it.
-        angle: Offset from the key point, in rad.
+    Its time, s, and angle, rad, are offsets from the key point; the time is negative before it, positive after it.
     """
 
     kind: Interpolation = Interpolation.LINEAR
@@ -52,14 +49,7 @@ class Handle:
 
 @dataclass(frozen=True)
 class KeyPoint:
-    """A point that the joint passes.
-
-    Attributes:
-        time: In s.
-        angle: In rad.
-        before: Handle of the curve that comes in.
-        after: Handle of the curve that goes on.
-    """
+    """A point that the joint passes at a time, s, and an angle, rad; handles of the curves that come in and go on."""
 
     time: float
     angle: float

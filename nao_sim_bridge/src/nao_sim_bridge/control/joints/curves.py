@@ -12,13 +12,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Ramp:
-    """One joint moving at constant speed.
-
-    Attributes:
-        start: Angle at time zero, in rad (hands: 0..1).
-        target: Angle at the end, in rad.
-        speed: Magnitude of the velocity, in rad/s, always positive.
-    """
+    """One joint that moves from start to target, rad (hands: 0..1), at a constant speed, rad/s, always positive."""
 
     start: float
     target: float

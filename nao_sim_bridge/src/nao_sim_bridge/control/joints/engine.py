@@ -248,16 +248,14 @@ class MotionEngine:
                 job.task.finish()
 
     def _is_over(self, job: _Job, now: float) -> bool:
-        if any(now - job.started < curve.duration - ROUNDING for curve in job.curves.values()):
-            return False
-        return job.stiffness or self._commands_reached(job)
-
-    def _commands_reached(self, job: _Job) -> bool:
-        """False while a motor's speed limit still keeps a command from the end of its curve.
+        """Whether all curves have ended, and no motor's speed limit still keeps a command from the end of its curve.
 
         A command that something else keeps from there, an arm before a collision for example, is as far as it gets.
         """
-        return all(self._arrived(i, curve.value(curve.duration), job.curves) for i, curve in job.curves.items())
+        if any(now - job.started < curve.duration - ROUNDING for curve in job.curves.values()):
+            return False
+        ends = ((i, curve.value(curve.duration)) for i, curve in job.curves.items())
+        return job.stiffness or all(self._arrived(i, end, job.curves) for i, end in ends)
 
     def _arrived(self, index: int, goal: float, moved: Container[int]) -> bool:
         """Whether a joint, moved together with `moved`, has got as near to its goal (rad) as it gets."""

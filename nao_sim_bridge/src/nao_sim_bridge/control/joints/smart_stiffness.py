@@ -19,13 +19,10 @@ ALL: tuple[float, ...] = ()
 
 
 class SmartStiffness:
-    """Watches whether the robot keeps still.
+    """Watches whether the robot keeps still; the motors have (26,) `max_torques`, N m.
 
     Attributes:
         enabled: Whether the torque of a static posture is limited.
-
-    Args:
-        max_torques: (26,) full torque of the motors, N m.
     """
 
     def __init__(self, max_torques: Sequence[float]) -> None:
@@ -38,13 +35,12 @@ class SmartStiffness:
     def shares(
         self, commanded: bool, positions: Sequence[float], torques: Sequence[float], dt: float
     ) -> tuple[float, ...]:
-        """Share of the full torque that each motor may give at this tick; empty for all of it.
+        """Share of the full torque that each motor may give at this tick of `dt` s; empty for all of it.
 
         Args:
             commanded: Whether the motors were told to move in the last tick.
             positions: (26,) measured, rad.
             torques: (26,) measured, N m.
-            dt: Length of a tick, s.
         """
         if commanded or not self.enabled:
             self._still, self._shares = 0.0, ALL

@@ -22,14 +22,7 @@ BASE = "Torso"
 
 @dataclass(frozen=True, eq=False)
 class EffectorMove:
-    """One effector on its way.
-
-    Attributes:
-        name: A chain or `Torso`.
-        space: Frame of the poses: `TORSO`, `WORLD` or `ROBOT`.
-        mask: Which axes count.
-        pose_at: Time in s to (4, 4) pose in the frame.
-    """
+    """One effector (a chain or `Torso`) on its way: a time in s to its (4, 4) pose in `TORSO`, `WORLD` or `ROBOT`."""
 
     name: str
     space: int

@@ -142,12 +142,7 @@ class SolvedPath:
 
 @dataclass(frozen=True, eq=False)
 class SolvedCurve:
-    """One joint of a solved path.
-
-    Attributes:
-        path: The path of all joints.
-        index: The joint.
-    """
+    """One joint of a solved path."""
 
     path: SolvedPath
     index: int

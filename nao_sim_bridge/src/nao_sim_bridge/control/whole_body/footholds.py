@@ -49,12 +49,7 @@ class BalanceRegion:
 
 
 def sole_corners(model: RobotModel, foot: str, pose: np.ndarray) -> np.ndarray:
-    """(n, 2) outline on the ground, m, of what counts of the sole of `LLeg` or `RLeg`.
-
-    Args:
-        foot: `LLeg` or `RLeg`.
-        pose: (4, 4) of the effector under the foot.
-    """
+    """(n, 2) outline on the ground, m, of what counts of the sole of `LLeg` or `RLeg`, whose effector has a `pose`."""
     outline = np.minimum(model.sole_polygon(foot[0]), (FRONT, np.inf))
     corners = np.column_stack((outline, np.zeros(len(outline)), np.ones(len(outline))))
     return (pose @ corners.T)[:2].T

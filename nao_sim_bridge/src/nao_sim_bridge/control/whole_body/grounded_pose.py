@@ -14,12 +14,7 @@ TORSO = Frame("Torso", np.eye(4))
 
 @dataclass(frozen=True, eq=False)
 class Footing:
-    """A foot that does not move.
-
-    Attributes:
-        foot: The frame of its sole.
-        pose: (4, 4) where it is in the frame that is called the ground.
-    """
+    """A foot, by the frame of its sole, that stays at a (4, 4) pose in the frame that is called the ground."""
 
     foot: Frame
     pose: np.ndarray

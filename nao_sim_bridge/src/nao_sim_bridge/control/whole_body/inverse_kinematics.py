@@ -101,7 +101,6 @@ def solve(
         indices: Joints that may move; one HipYawPitch stands for both.
         start: (26,) angles to begin at, rad; what may not move stays there.
         footing: The foot that stands; without one the torso stays where it is.
-        iterations: At most so many.
     """
     moving = np.zeros(len(start), dtype=bool)
     moving[list(indices)] = True
@@ -121,11 +120,8 @@ def solve(
 def soft_knees(body: BodyKinematics, angles: np.ndarray, moving: np.ndarray) -> np.ndarray:
     """(26,) `angles` with knees that are stretched or bent backwards a little forwards; the same array if none is.
 
-    A knee can be bent backwards by a few degrees, up to its limit: no small step shortens such a leg.
-
-    Args:
-        angles: (26,) rad.
-        moving: (26,) which joints may move.
+    A knee can be bent backwards by a few degrees, up to its limit: no small step shortens such a leg. Joints that
+    may not move, by the (26,) `moving`, stay.
     """
     softened = angles
     for side in "LR":

@@ -23,13 +23,7 @@ log = logging.getLogger("nao_sim.whole_body")
 
 @dataclass(frozen=True, eq=False)
 class LedJoint:
-    """Stands for a joint's curve while whole body control moves the joint: it has no wish of its own.
-
-    Attributes:
-        joints: Whose commands.
-        index: Of the joint.
-        duration: s.
-    """
+    """Stands for a joint's curve while whole body control moves the joint: it has no wish of its own."""
 
     joints: JointCommands
     index: int
@@ -75,11 +69,9 @@ def go_to_balance(
 def start_paths(
     whole_body: WholeBody, owner: object, moves: Sequence[EffectorMove], durations: Sequence[float], placed: Placement
 ) -> None:
-    """Lead effectors along paths from now on; `owner` holds their joints until `end_paths`.
+    """Lead effectors along paths of durations in s, from where the commands have `placed` the robot now.
 
-    Args:
-        durations: Of each move, s.
-        placed: Where the commands put the robot now.
+    `owner` holds their joints until `end_paths`.
     """
     whole_body.hold(owner, moving_joints(whole_body.model, [move.name for move in moves]))
     for move, duration in zip(moves, durations):

@@ -86,13 +86,10 @@ def mesh_files(appearance: Appearance) -> dict[str, bytes]:
 def frames(model: RobotModel) -> Iterator[tuple[str, Place]]:
     """Frames that only mark a place, by the names that clients of NAO drivers use."""
     yield "gaze", GAZE
-    for effector, frame in (
-        ("LLeg", "l_sole"),
-        ("RLeg", "r_sole"),
-        ("LArm", "l_gripper"),
-        ("RArm", "r_gripper"),
-    ):
-        yield frame, model.effectors[effector]
+    for side in "LR":
+        yield f"{side.lower()}_sole", model.effectors[f"{side}Leg"]
+    for side in "LR":
+        yield f"{side.lower()}_gripper", model.effectors[f"{side}Arm"]
     for camera in model.cameras:
         yield f"{camera.name}_frame", camera.place
     for sensor in model.fsr:

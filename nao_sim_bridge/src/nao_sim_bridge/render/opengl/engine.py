@@ -13,7 +13,7 @@ from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.render.opengl.geometry import POSITION_FORMAT, VERTEX_FORMAT, VERTEX_NAMES
 from nao_sim_bridge.render.opengl.items import Items, spheres_in_sight
 from nao_sim_bridge.render.opengl.looks import STEPS
-from nao_sim_bridge.render.opengl.resources import Canvases, Textures, describe, open_context
+from nao_sim_bridge.render.opengl.resources import Canvases, Textures, open_context
 from nao_sim_bridge.render.opengl.scene_block import BLOCK, camera_block, world_constants
 from nao_sim_bridge.render.opengl.shaders import sources
 from nao_sim_bridge.render.opengl.shadow_map import ShadowMap
@@ -50,7 +50,7 @@ class OpenGLEngine:
         self._world = world
         self._model, self._appearance = load_model(version), load_appearance(version)
         self._context = context = open_context()
-        self.name = describe(context)
+        self.name = f"OpenGL: {context.info['GL_RENDERER']}"
         constants = world_constants(world)
         self._normal, lamp = constants["UP"], constants["LAMP"]
         self._still = ShadowMap(context, STILL_PIXELS, lamp)

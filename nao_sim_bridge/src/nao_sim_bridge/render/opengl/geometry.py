@@ -19,14 +19,9 @@ COMMAND = np.dtype([("count", "u4"), ("instances", "u4"), ("first", "u4"), ("bas
 
 @dataclass(frozen=True)
 class Piece:
-    """Where a mesh is in the buffers.
+    """Where a mesh is in the buffers: count and first of its vertex indices, number of its first vertex.
 
-    Attributes:
-        count: Number of its vertex indices.
-        first: Of its vertex indices.
-        base: Number of its first vertex.
-        center: Of a sphere around it, m, in its own frame.
-        radius: Of that sphere, m.
+    Centre and radius, m, are those of a sphere around it in its own frame.
     """
 
     count: int

@@ -30,23 +30,15 @@ def open_context() -> Any:
 
     Raises:
         SimulationError: OpenGL cannot be had here.
-        ImportError: The Python package is not installed.
     """
     # Mesa tells on the standard error what it would have liked better than what it takes.
     os.environ.setdefault("EGL_LOG_LEVEL", "fatal")
     # In software: threads beside this one, which mostly waits for them. A core is left for the simulation.
     os.environ.setdefault("LP_NUM_THREADS", str(max(1, min(MOST_THREADS, (os.cpu_count() or 1) - 1))))
-    import moderngl
-
     try:
         return moderngl.create_context(standalone=True, require=VERSION, backend="egl", **LIBRARIES)
     except Exception as error:  # the package raises bare Exception
         raise SimulationError(str(error) or "no context") from error
-
-
-def describe(context: Any) -> str:
-    """What draws, for people."""
-    return f"OpenGL: {context.info['GL_RENDERER']}"
 
 
 class Canvas:

@@ -58,36 +58,30 @@ class Figure:
         self._parts = self._build_links()
         self.lamp_bodies = tuple(self._build_lamps())
         self.lamp_light = np.zeros((len(self.lamp_bodies), 3))
-        self._shown: RobotLook | None = None
-        self._headless = False
+        self._posed: tuple = ()
+        self._lit: Sequence[float] = ()
 
     def hide(self) -> None:
         for part in self._parts:
             self._put(part, FAR_AWAY, UNTURNED)
         self.lamp_light = np.zeros_like(self.lamp_light)
-        self._shown = None
+        self._posed = self._lit = ()
 
     def show(self, state: RobotLook, headless: bool = False) -> None:
         """Put all bodies where the state says; what has not changed is left alone."""
-        shown = self._shown
-        if headless != self._headless:
-            shown, self._headless = None, headless
-        same_joints = shown is not None and shown.joint_positions == state.joint_positions
-        same_base = shown is not None and (shown.base_position, shown.base_orientation) == (
-            state.base_position,
-            state.base_orientation,
-        )
-        if not (same_joints and same_base):
-            self._place(state)
-        if shown is None or shown.led_values != state.led_values:
+        pose = (state.base_position, state.base_orientation, state.joint_positions, headless)
+        if pose != self._posed:
+            self._place(state, headless)
+            self._posed = pose
+        if state.led_values != self._lit:
             self._light(state.led_values)
-        self._shown = state
+            self._lit = state.led_values
 
-    def _place(self, state: RobotLook) -> None:
+    def _place(self, state: RobotLook, headless: bool) -> None:
         poses = frames_in_world(self._model, state)
         placed = {name: (pose[:3, 3].tolist(), matrix_quaternion(pose[:3, :3])) for name, pose in poses.items()}
         for part in self._parts:
-            hidden = self._headless and part.frame in HEAD
+            hidden = headless and part.frame in HEAD
             self._put(part, *((FAR_AWAY, UNTURNED) if hidden else placed[part.frame]))
 
     def _put(self, part: _Part, position: Sequence[float], orientation: Sequence[float]) -> None:

@@ -6,18 +6,9 @@ import zlib
 
 import numpy as np
 
+from nao_sim_bridge.world.painting import face_features as features
+from nao_sim_bridge.world.painting import face_hair as hair
 from nao_sim_bridge.world.painting.canvas import Canvas
-from nao_sim_bridge.world.painting.face_features import (
-    SIDES,
-    face_outline,
-    paint_brows,
-    paint_eyes,
-    paint_folds,
-    paint_mouth,
-    paint_nose,
-    paint_skin,
-)
-from nao_sim_bridge.world.painting.face_hair import paint_back_hair, paint_beard, paint_glasses, paint_hair
 from nao_sim_bridge.world.painting.known_faces import HEAD_HALF_HEIGHT, FaceLook, load_faces
 
 UNIT = 112
@@ -43,35 +34,35 @@ def paint_portrait(name: str) -> np.ndarray:
     origin = (width / 2.0, height * 0.44)
     canvas = Canvas(width, height, UNIT, origin, BACKGROUNDS[seed % len(BACKGROUNDS)])
     canvas.shade(canvas.ellipse(0.6, -0.6, 2.2, 2.2, soft=1.0), 1.06)
-    paint_back_hair(canvas, look, seed + 1)
+    hair.paint_back_hair(canvas, look, seed + 1)
     neck = canvas.inside(0.52 - np.abs(canvas.x), 0.03) * canvas.inside(-canvas.y - 0.6)
     canvas.lay(neck, look.skin)
     canvas.shade(neck * canvas.inside(-canvas.y - 0.8, 0.9), (0.70, 0.65, 0.63))
     shoulders = canvas.ellipse(0.0, -2.75, 1.75, 1.0, soft=0.02)
     collar = canvas.ellipse(0.0, -1.72, 0.56, 0.30, soft=0.05)
     canvas.lay(shoulders * (1.0 - collar), look.clothes)
-    for sign in SIDES:
+    for sign in features.SIDES:
         ear = canvas.ellipse(sign * 1.0, -0.10, 0.13, 0.27, soft=0.1)
         if look.hair_style not in ("long", "fringe"):
             canvas.lay(ear, look.skin)
             canvas.shade(ear, 0.80)
     face = Canvas(width, height, UNIT, origin, look.skin)
     _paint_face(face, look, seed)
-    mask = canvas.inside(face_outline(canvas, look), 0.02)[..., None]
+    mask = canvas.inside(features.face_outline(canvas, look), 0.02)[..., None]
     canvas.rgb += mask * (face.rgb - canvas.rgb)
     return canvas.pixels()
 
 
 def _paint_face(canvas: Canvas, look: FaceLook, seed: int) -> None:
-    paint_skin(canvas, look)
-    paint_folds(canvas, look)
-    paint_mouth(canvas, look)
-    paint_nose(canvas, look)
-    paint_eyes(canvas, look)
-    paint_beard(canvas, look, seed + 3)
-    paint_brows(canvas, look)
-    paint_hair(canvas, look, seed)
-    paint_glasses(canvas, look)
+    features.paint_skin(canvas, look)
+    features.paint_folds(canvas, look)
+    features.paint_mouth(canvas, look)
+    features.paint_nose(canvas, look)
+    features.paint_eyes(canvas, look)
+    hair.paint_beard(canvas, look, seed + 3)
+    features.paint_brows(canvas, look)
+    hair.paint_hair(canvas, look, seed)
+    hair.paint_glasses(canvas, look)
 
 
 def _seed(name: str) -> int:

@@ -80,10 +80,10 @@ def paint_glasses(canvas: Canvas, look: FaceLook) -> None:
     """A frame around the eyes, with some light on the glass."""
     if look.glasses == "none":
         return
-    power = 2.0 if look.glasses == "round" else 5.0
-    half_width, half_height = (0.30, 0.27) if look.glasses == "round" else (0.33, 0.23)
-    color = (0.48, 0.26, 0.20) if look.glasses == "round" else NEARLY_BLACK
-    thick = 0.022 if look.glasses == "round" else 0.042
+    if look.glasses == "round":
+        power, half_width, half_height, thick, color = 2.0, 0.30, 0.27, 0.022, (0.48, 0.26, 0.20)
+    else:
+        power, half_width, half_height, thick, color = 5.0, 0.33, 0.23, 0.042, NEARLY_BLACK
     for sign in SIDES:
         dx = np.abs(canvas.x - sign * (look.eyes[0] + 0.01)) / half_width
         dy = np.abs(canvas.y + 0.02) / half_height
@@ -96,11 +96,8 @@ def paint_glasses(canvas: Canvas, look: FaceLook) -> None:
 
 
 def _lay_hair(canvas: Canvas, mask: np.ndarray, look: FaceLook, seed: int, light: float = 1.0) -> None:
-    strands = grain(mask.shape, seed, STRANDS)
-    if look.hair_style == "curly":
-        strands = grain(mask.shape, seed, (5, 5))
+    strands = grain(mask.shape, seed, (5, 5) if look.hair_style == "curly" else STRANDS)
     shine = np.exp(-(((canvas.y - 1.05 * HEAD_HALF_HEIGHT * 0.78 + 0.15 * np.abs(canvas.x)) / 0.14) ** 2))
     level = light * (0.92 + 0.22 * strands + 0.35 * shine)
-    share = mask[..., None]
     color = np.asarray(look.hair, np.float32) * level[..., None]
-    canvas.rgb += share * (color - canvas.rgb)
+    canvas.rgb += mask[..., None] * (color - canvas.rgb)
