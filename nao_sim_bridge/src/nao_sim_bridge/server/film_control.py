@@ -44,8 +44,7 @@ class FilmControl:
             file: Name inside the folder for recordings, ending with .mp4; one that is there is replaced. Empty for
                 film.mp4, or film-2.mp4, ...: the first one that is not there.
             view: A view of pictures; empty for three_quarter.
-            width: Pixels, even; 0 for 480.
-            height: Likewise.
+            width, height: Pixels, even; 0 for 480.
             frame_rate: Pictures a second of simulated time; 0 for 20.
 
         Raises:
@@ -78,9 +77,7 @@ class FilmControl:
     def caption(self, text: str) -> None:
         """Write a text into the film from now on; empty for none.
 
-        Raises:
-            BadValue: It is too long.
-            NotAllowed: Nothing is filmed.
+        A BadValue when it is too long, a NotAllowed when nothing is filmed.
         """
         longest = load_sizes().film.caption_characters
         if len(text) > longest:

@@ -60,10 +60,8 @@ class Pictures:
     def png(self, view: str, width: int, height: int) -> bytes:
         """A PNG picture of the robot from a named view.
 
-        Raises:
-            UnknownName: There is no such view.
-            BadValue: The size is out of range.
-            RenderError: The picture process failed.
+        An UnknownName when there is no such view, a BadValue when the size is out of range, a RenderError when the
+        picture process failed.
         """
         whole = isinstance(width, int) and isinstance(height, int)
         if not whole or not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
@@ -78,8 +76,7 @@ class Pictures:
     def open_window(self) -> None:
         """Show the simulation in a window from now on; a click on a robot touches the sensor that is there.
 
-        Raises:
-            RenderError: There is no display.
+        A RenderError when there is no display.
         """
         self._viewer = Viewer(self._simulation.scene.world, self._simulation.scene.version).start()
         self._viewer.on_pointer = self._on_pointer

@@ -49,13 +49,7 @@ log = logging.getLogger("nao_sim.robot")
 
 
 class Workers:
-    """Programs and threads that work for a robot and know nothing of it; they take long to start.
-
-    Attributes:
-        voice: Makes the robot's speech.
-        persons: Makes the speech of persons: they may speak while the robot does.
-        vision: Where detectors look at pictures.
-    """
+    """Programs and threads that work for a robot and know nothing of it; they take long to start."""
 
     def __init__(self) -> None:
         self.voice = Studio()
@@ -74,25 +68,12 @@ class Workers:
 
 
 class RobotModules:
-    """The modules of one robot, and what only a simulator can do to it.
+    """The modules of one robot at time 0, and what only a simulator can do to it.
 
     Attributes:
         simulation: Touched in the simulation thread only; replaced by a factory reset, with everything else in here.
         runner: That thread, for this simulation.
         began: What `SimulatorServer.now` says at time 0 of the simulation, s.
-        memory: What ALMemory keeps.
-        files: Where clients may have files written to and read from.
-        speech: The robot's voice.
-        vision: What it recognises in its pictures.
-        sounds, things: Of the world.
-        hands: What touches the robot.
-        health: Charger, temperatures, broken devices.
-
-    Args:
-        simulation: The robot and its world, at time 0.
-        runner: The thread that it runs in, or will.
-        broker: Finds modules of clients.
-        system: What ALSystem makes of the memory and the time zone.
     """
 
     def __init__(
@@ -146,11 +127,7 @@ class RobotModules:
         }
 
     def begin(self) -> None:
-        """Have a look at every tick; before time passes.
-
-        Raises:
-            SimulationError: A sound of the world cannot be had.
-        """
+        """Have a look at every tick; before time passes. A SimulationError when a sound of the world cannot be had."""
         simulation, memory = self.simulation, self.memory
         if simulation is simulation.shared.robots[0]:
             self.sounds.begin()

@@ -54,8 +54,6 @@ class SimulatorServer:
     and the programs that work for it stay.
 
     Attributes:
-        broker: The libqi side.
-        pictures: Drawings of the robot.
         ended: Set when a client shut the robot down or the simulation failed.
 
     Args:
@@ -122,9 +120,8 @@ class SimulatorServer:
     def start(self) -> None:
         """Listen, register the modules and let time pass.
 
-        Raises:
-            RuntimeError: The address cannot be had.
-            SimulationError: The sound card, the file for sound, or a sound of the world cannot be had.
+        A RuntimeError when the address cannot be had; a SimulationError when the sound card, the file for sound, or a
+        sound of the world cannot be had.
         """
         self.prepare()
         self.runner.start()
@@ -221,8 +218,7 @@ class SimulatorServer:
     def take(self, robot: RobotModules, began: float) -> Callable[[], None]:
         """Be another robot from now on; simulation thread, which has just taken its simulation.
 
-        Returns:
-            To be called outside the thread: closes what was left behind, but for what draws.
+        What it returns is to be called outside the thread: it closes what was left behind, but for what draws.
         """
         former, robot.began = self._robot, began
         former.runner.leave_behind()

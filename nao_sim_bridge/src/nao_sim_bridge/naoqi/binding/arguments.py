@@ -51,8 +51,7 @@ def one_of(value: Any, field: str, allowed: Collection[Any]) -> Any:
 def known(name: Any, kind: str, names: Collection[str]) -> Any:
     """`name`, which has to be one of `names`.
 
-    Raises:
-        UnknownName: It is none of them, of which `kind` says what they name.
+    An UnknownName when it is none of them, of which `kind` says what they name.
     """
     if name not in names:
         raise UnknownName(kind, name, names)

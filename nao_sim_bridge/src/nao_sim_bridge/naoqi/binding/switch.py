@@ -57,12 +57,7 @@ class Switch(ABC):
 
 
 class SwitchModule:
-    """Methods that NAOqi's extractors with ears or eyes have in common. No other methods are public.
-
-    Args:
-        switch: The ears or eyes.
-        setters: What takes the value of a parameter, by its name.
-    """
+    """What NAOqi's extractors with ears or eyes have in common, and nothing else; `setters` take parameters by name."""
 
     def __init__(self, switch: Switch, setters: Mapping[str, Callable[[Any], Any]]) -> None:
         self._switch = switch

@@ -30,11 +30,7 @@ MOST_FPS, MOST_FPS_VGA, ABOVE_FPS_MJPG = 30.0, 15.0, 2.0
 
 
 class PictureSettings:
-    """Settings that pictures and films have.
-
-    Args:
-        settings: The first settings: a dataclass with `camera`, `resolution` and `color_space`, NAOqi's numbers.
-    """
+    """The settings that photos and films have in common."""
 
     def __init__(self, tables: CameraTables, settings: Any) -> None:
         self._tables = tables

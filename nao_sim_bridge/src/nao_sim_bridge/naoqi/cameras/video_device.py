@@ -159,11 +159,7 @@ def _all(frames: list[Frame]) -> list[tuple]:
 
 
 def _whole_numbers(values: Any, field: str, count: int | None = None) -> list[int]:
-    """A list of whole numbers, `count` of them if that is given.
-
-    Raises:
-        BadValue: It is something else.
-    """
+    """A list of whole numbers, `count` of them if that is given; a BadValue for anything else."""
     right = isinstance(values, (list, tuple)) and all(isinstance(v, int) and not isinstance(v, bool) for v in values)
     if not right or (count is not None and len(values) != count):
         allowed = "a list of whole numbers" if count is None else f"a list of {count} whole numbers, one a camera"

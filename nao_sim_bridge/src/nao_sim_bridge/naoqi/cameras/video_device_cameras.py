@@ -25,10 +25,9 @@ def of_active(method: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class CameraStates:
-    """The cameras' states. A camera is open and runs by itself while somebody looks; any thread.
+    """The cameras' states; any thread. A camera is open and runs by itself while somebody looks.
 
-    Args:
-        fail: Called with a camera and a reason when there will be no frames.
+    `fail` is called with a camera and a reason when there will be no frames.
     """
 
     def __init__(self, cameras: Cameras, fail: Callable[[int, str], None]) -> None:
@@ -57,11 +56,7 @@ class CameraStates:
             self._stop(camera, "closed: openCamera and startCamera")
 
     def start(self, camera: int) -> None:
-        """Let it take pictures.
-
-        Raises:
-            NaoqiError: It is closed.
-        """
+        """Let it take pictures; a NaoqiError when it is closed."""
         with self._lock:
             if self._closed[camera]:
                 raise NaoqiError(f"camera {camera} is closed; open it with openCamera first")
@@ -84,11 +79,7 @@ class CameraStates:
             self.use(camera)
 
     def check(self, camera: int) -> None:
-        """Make sure that a camera has pictures for somebody who looks.
-
-        Raises:
-            NaoqiError: It is closed or stopped.
-        """
+        """Make sure that a camera has pictures for somebody who looks; a NaoqiError when it is closed or stopped."""
         with self._lock:
             if self._closed[camera]:
                 raise NaoqiError(_no_pictures(camera, "closed: openCamera and startCamera"))

@@ -32,25 +32,15 @@ NOBODY = -1
 
 @dataclass(frozen=True)
 class Settings:
-    """Parameters under NAOqi's names.
+    """Parameters under NAOqi's names."""
 
-    Attributes:
-        LookStimulusSpeed: How fast it looks where something happens, share of the top speed.
-        LookBackSpeed: How fast it looks back, share of the top speed.
-        NobodyFoundTimeOut: How long it looks for somebody where something happened, s.
-        MinTimeTracking: How long it follows somebody at least before something else may interest it, s.
-        TimeOutResetHead: After so long without anything it looks ahead again, s.
-        AmplitudeYawTracking: How far the head turns to follow, deg to both sides together.
-        BodyRotationThresholdNao: From which HeadYaw on the body turns, too, deg.
-    """
-
-    LookStimulusSpeed: float = 0.5
-    LookBackSpeed: float = 0.3
-    NobodyFoundTimeOut: float = 2.0
-    MinTimeTracking: float = 2.0
-    TimeOutResetHead: float = 10.0
-    AmplitudeYawTracking: float = 90.0
-    BodyRotationThresholdNao: float = 30.0
+    LookStimulusSpeed: float = 0.5  # how fast it looks where something happens, share of the top speed
+    LookBackSpeed: float = 0.3  # how fast it looks back, share of the top speed
+    NobodyFoundTimeOut: float = 2.0  # how long it looks for somebody where something happened, s
+    MinTimeTracking: float = 2.0  # how long it follows somebody at least before something else may interest it, s
+    TimeOutResetHead: float = 10.0  # after so long without anything it looks ahead again, s
+    AmplitudeYawTracking: float = 90.0  # how far the head turns to follow, deg to both sides together
+    BodyRotationThresholdNao: float = 30.0  # from which HeadYaw on the body turns, too, deg
 
 
 RANGES = {
@@ -66,16 +56,11 @@ PARAMETERS = tuple(field.name for field in fields(Settings))
 
 
 class Awareness:
-    """Looks at people, and where something happens.
+    """Looks at people, and where something happens, unless somebody else has the head: `busy` tells.
 
     Attributes:
-        enabled: Whether it is switched on.
-        paused: Whether it does nothing all the same.
         engagement: How easily it turns away from a person: one of `ENGAGEMENTS`.
         tracking: What moves: one of `TRACKINGS`.
-
-    Args:
-        busy: Whether somebody else has the head now.
     """
 
     def __init__(
@@ -123,9 +108,7 @@ class Awareness:
     def set_parameter(self, name: str, value: Any) -> None:
         """Change a parameter.
 
-        Raises:
-            UnknownName: There is no such parameter.
-            BadValue: It is out of its range.
+        An UnknownName when there is no such parameter, a BadValue when it is out of its range.
         """
         if name not in PARAMETERS:
             raise UnknownName("parameter", name, PARAMETERS)

@@ -25,10 +25,7 @@ Fact = Callable[[Snapshot], Any]
 class Launchpad:
     """Part of ALAutonomousLife: writes the keys while it monitors and the robot lives.
 
-    Simulation thread only, but for NAOqi's methods.
-
-    Args:
-        tracked: Number of the person who is followed, -1 for nobody.
+    Simulation thread only, but for NAOqi's methods. `tracked` gives the person who is followed, -1 for nobody.
     """
 
     def __init__(

@@ -36,11 +36,7 @@ CLOSE, CLOSED, OPEN = 0.06, 0.05, 0.1
 
 
 class BackgroundMovement:
-    """What chains do that nobody moves: they breathe, or go back to the posture of the robot, or nothing.
-
-    Attributes:
-        strategy: One of `STRATEGIES`: what they do while they do not breathe.
-    """
+    """What chains do that nobody moves: they breathe, or else follow the strategy, one of `STRATEGIES`."""
 
     def __init__(self, simulation: Any) -> None:
         self.strategy = NONE
@@ -83,11 +79,7 @@ class SpeakingMovement:
 
 
 class ListeningMovement:
-    """Nods when somebody speaks to the robot, which speech recognition tells while it runs.
-
-    Attributes:
-        enabled: Whether it does so when it is switched on.
-    """
+    """Nods, if enabled, when somebody speaks to the robot, which speech recognition tells while it runs."""
 
     def __init__(self, simulation: Any, runner: SimulationRunner, memory: MemoryStore, animator: Animator) -> None:
         self.enabled = True

@@ -23,11 +23,7 @@ CRITICAL = 2
 
 
 class Safeguards:
-    """Part of ALAutonomousLife: watches over a life.
-
-    Args:
-        rest: Has the robot rest; its task may end with a further task.
-    """
+    """Part of ALAutonomousLife: watches over a life."""
 
     def __init__(self, life: Life, runner: SimulationRunner, memory: MemoryStore, rest: Callable[[], Task]) -> None:
         self._enabled = dict.fromkeys(SAFEGUARDS, True)

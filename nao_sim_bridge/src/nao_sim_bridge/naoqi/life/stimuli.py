@@ -44,13 +44,9 @@ TOUCHER_DISTANCE, TOUCHER_HEIGHT = 0.6, 1.0
 
 
 class Stimuli:
-    """Listens for what interests the robot.
+    """Listens for what interests the robot, which stands `offset` m over the floor that people stand on.
 
-    Attributes:
-        offset: Height of what the robot stands on over the floor that people stand on, m.
-
-    Args:
-        react: Called in the simulation thread with a stimulus and where it is, places in FRAME_ROBOT, the first first.
+    `react` is called in the simulation thread with a stimulus and where it is, in FRAME_ROBOT, the first first.
     """
 
     def __init__(
@@ -72,19 +68,13 @@ class Stimuli:
         self.enable_all()
 
     def enabled(self, stimulus: str) -> bool:
-        """Whether a stimulus interests the robot.
-
-        Raises:
-            UnknownName: There is no such stimulus.
-        """
+        """Whether a stimulus interests the robot; an UnknownName when there is no such stimulus."""
         return self._enabled[_known(stimulus)]
 
     def enable(self, stimulus: str, enabled: bool) -> None:
         """Have a stimulus interest the robot or not; `listen` puts it to work.
 
-        Raises:
-            UnknownName: There is no such stimulus.
-            NaoqiError: A NAO has no sense for it.
+        An UnknownName when there is no such stimulus, a NaoqiError when a NAO has no sense for it.
         """
         check(stimulus, enabled)
         self._enabled[stimulus] = enabled
@@ -143,12 +133,7 @@ class Stimuli:
 
 
 def check(stimulus: str, enabled: bool) -> None:
-    """Whether a stimulus can be enabled, or disabled.
-
-    Raises:
-        UnknownName: There is no such stimulus.
-        NaoqiError: A NAO has no sense for it; to have it disabled is right.
-    """
+    """Refuse what is no stimulus (UnknownName), and to enable one that a NAO has no sense for (NaoqiError)."""
     if _known(stimulus) in MISSING and enabled:
         raise NaoqiError(f"{stimulus}: {MISSING[stimulus]}")
 

@@ -64,8 +64,7 @@ def key_prefix() -> str:
 def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_values: Callable[[], tuple]) -> dict:
     """Key -> function without arguments that reads its present value.
 
-    Raises:
-        ConfigError: The file names a key that nothing can read.
+    A ConfigError when the file names a key that nothing can read.
     """
     readers: dict[str, Callable[[], Any]] = {}
     for key, read in _snapshot_keys(model).items():

@@ -22,9 +22,8 @@ LISTS = {"Default": attrgetter("default"), "Min": attrgetter("minimum"), "Max": 
 def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:
     """The gait of a move; `frequency` is a share 0..1 of the top one, when it is an argument of its own.
 
-    Raises:
-        UnknownName: There is no such parameter.
-        BadValue: The list has another shape, or a value is out of its range.
+    An UnknownName when there is no such parameter; a BadValue when the list has another shape, or a value is out of its
+    range.
     """
     values = _pairs(config, FIELD)
     if frequency is not None:
@@ -35,9 +34,8 @@ def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:
 def gait_of_feet(left: Any, right: Any, frequency: float) -> FeetGait:
     """The gait of a move whose feet have a configuration each, with names that say no foot.
 
-    Raises:
-        UnknownName: There is no such parameter of a foot.
-        BadValue: A list has another shape, or a value is out of its range.
+    An UnknownName when there is no such parameter of a foot; a BadValue when a list has another shape, or a value is
+    out of its range.
     """
     values: dict[str, float] = {FREQUENCY: frequency}
     for side, config in (("Left", left), ("Right", right)):

@@ -17,14 +17,7 @@ from nao_sim_bridge.naoqi.motion.arguments import joint_indices, space_of
 
 
 class MotionPart:
-    """A part of ALMotion.
-
-    Names that begin with an underscore are not published.
-
-    Args:
-        simulation: Whose joints these are; touched in the simulation thread only.
-        runner: That thread.
-    """
+    """A part of ALMotion; its joints are touched in the simulation thread only."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation

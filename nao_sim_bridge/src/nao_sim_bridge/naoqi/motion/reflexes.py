@@ -26,12 +26,7 @@ LIMITS = {"Bpm": BPM, "Amplitude": AMPLITUDE}
 
 
 def _switch(call: str, path: str) -> tuple[Callable[[MotionPart], bool], Callable[[MotionPart, bool], Task]]:
-    """The two methods that read and set a switch of the robot.
-
-    Args:
-        call: NAOqi's name of the one that sets it.
-        path: Attributes that lead from the robot to the switch.
-    """
+    """The two methods that read and set the switch at `path` of the robot; `call` is NAOqi's name of the second."""
     owner, _, name = path.rpartition(".")
 
     def read(part: MotionPart) -> bool:

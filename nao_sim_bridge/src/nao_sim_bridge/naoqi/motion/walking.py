@@ -223,8 +223,7 @@ def _share(value: Any, field: str, least: float) -> float:
 def _placed(legs: Any, steps: Any) -> list[tuple[int, FootPose]]:
     """Side and place of each step.
 
-    Raises:
-        BadValue: A leg has another name, a step other numbers, there is not one step for each leg, or too many are.
+    A BadValue when a leg has another name, a step other numbers, there is not one step for each leg, or too many are.
     """
     if isinstance(steps, (list, tuple)):
         require_few("footSteps", len(steps), "steps")

@@ -114,11 +114,7 @@ class WholeBody(MotionPart):
         return self._while_on(call, start)
 
     def _while_on(self, call: str, change: Callable[[Control], Any]) -> Task:
-        """Run `change` in the simulation thread.
-
-        Raises:
-            NaoqiError: In the task: whole body control is off.
-        """
+        """Run `change` in the simulation thread; the task ends with a NaoqiError when whole body control is off."""
 
         def run() -> Any:
             control = self._robot.whole_body

@@ -34,9 +34,7 @@ def _energy_of(side: str) -> Callable[[MicrophoneEnergy], float]:
 class MicrophoneEnergy:
     """Part of ALAudioDevice: root mean square of the newest block of 170 ms, 0 to 32768; 0 while it is not computed.
 
-    Args:
-        ears: `listen(name, callback, wants)` of the sound world.
-        sides: For left, right, front and rear: the channels of a block that are on that side.
+    `sides` are the channels of a block that are left, right, front and rear.
     """
 
     def __init__(self, ears: Any, sides: Mapping[str, Sequence[int]]) -> None:
@@ -84,11 +82,7 @@ class MicrophoneEnergy:
 
 
 class ALAudioDevice:
-    """ALAudioDevice as the simulated robot offers it.
-
-    Args:
-        simulation: Whose loudspeakers and microphones these are; touched in the simulation thread only.
-    """
+    """ALAudioDevice as the simulated robot offers it."""
 
     def __init__(
         self,

@@ -24,12 +24,7 @@ TIMES = "NaoSimulation/SoundTimes"
 
 
 class ALAudioPlayer:
-    """ALAudioPlayer as the simulated robot offers it. Playing takes simulated time: a call ends with its sound.
-
-    Args:
-        simulation: Whose loudspeakers these are; touched in the simulation thread only.
-        allow_private_streams: Whether streams may come from this computer and from private networks.
-    """
+    """ALAudioPlayer as the simulated robot offers it. Playing takes simulated time: a call ends with its sound."""
 
     def __init__(
         self,

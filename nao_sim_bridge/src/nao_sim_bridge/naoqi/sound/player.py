@@ -21,29 +21,17 @@ SHOWN = 5
 
 @dataclass
 class LoadedSound:
-    """A sound that has a number; everything but its name and sound is touched in the simulation thread only.
+    """A sound that has a number; everything but its name and sound is touched in the simulation thread only."""
 
-    Attributes:
-        number: What clients call it by.
-        name: Name of the file as it was given.
-        sound: As it was read.
-        volume: 0 to 1.
-        pan: -1 left to 1 right.
-        begins: Where it begins when it is played next, s.
-        altered: At another pitch; as long as `sound`.
-        temporary: Forgotten when it has been played.
-        run: What plays it now.
-    """
-
-    number: int
-    name: str
-    sound: Sound
-    volume: float = 1.0
-    pan: float = 0.0
-    begins: float = 0.0
-    altered: Sound | None = None
-    temporary: bool = False
-    run: Run | None = None
+    number: int  # what clients call it by
+    name: str  # name of the file as it was given
+    sound: Sound  # as it was read
+    volume: float = 1.0  # 0 to 1
+    pan: float = 0.0  # -1 left to 1 right
+    begins: float = 0.0  # where it begins when it is played next, s
+    altered: Sound | None = None  # at another pitch; as long as `sound`
+    temporary: bool = False  # forgotten when it has been played
+    run: Run | None = None  # what plays it now
 
     @property
     def size(self) -> int:
@@ -57,26 +45,18 @@ class LoadedSound:
 
 @dataclass
 class Run:
-    """One time that a sound is played.
+    """One time that a sound is played."""
 
-    Attributes:
-        task: For who waits for its end; it outlives a change of the sound.
-        playing: What sounds.
-        loop: Whether it begins again at its end.
-        begun: Simulated time of its first sample, s.
-    """
-
-    task: Task
-    playing: Any
-    loop: bool
-    begun: float
+    task: Task  # for who waits for its end; it outlives a change of the sound
+    playing: Any  # what sounds
+    loop: bool  # whether it begins again at its end
+    begun: float  # simulated time of its first sample, s
 
 
 class Player:
-    """Loaded sounds and how they are played.
+    """Loaded sounds and how they are played; the loudspeakers are touched in the simulation thread only.
 
     Args:
-        simulation: Whose loudspeakers these are; touched in the simulation thread only.
         on_end: Told the simulated times of first and last sample, s, when a sound has been played.
         largest: Answers how many bytes all sounds may take together.
         elsewhere: Names and bytes of other sounds that count with them.
@@ -106,11 +86,7 @@ class Player:
     # --- from any thread ------------------------------------------------------------------------------------------
 
     def load(self, name: str, sound: Sound, temporary: bool = False) -> LoadedSound:
-        """Give a sound a number.
-
-        Raises:
-            NaoqiError: There is no room for it.
-        """
+        """Give a sound a number; a NaoqiError when there is no room for it."""
         self.check_room(name, sound.samples.nbytes)
         loaded = LoadedSound(next(self._numbers), name, sound, temporary=temporary)
         with self._lock:
@@ -118,11 +94,7 @@ class Player:
         return loaded
 
     def check_room(self, name: str, size: int) -> None:
-        """Raise an error unless there is room for a sound of so many bytes.
-
-        Raises:
-            NaoqiError: There is none; it names what takes the most.
-        """
+        """Raise a NaoqiError that names what takes the most, unless there is room for a sound of so many bytes."""
         largest = self._largest()
         kept = [(loaded.name, loaded.size) for loaded in self.loaded()] + self._elsewhere()
         if sum(each for _, each in kept) + size <= largest:
@@ -140,11 +112,7 @@ class Player:
             return list(self._sounds.values())
 
     def find(self, number: int) -> LoadedSound:
-        """The sound of a number.
-
-        Raises:
-            NaoqiError: There is none.
-        """
+        """The sound of a number; a NaoqiError when there is none."""
         with self._lock:
             if number not in self._sounds:
                 known = ", ".join(map(str, self._sounds)) or "none"
@@ -165,15 +133,10 @@ class Player:
     def play_when_there(
         self, fetch: Callable[[Wanted], Sound], play: Callable[[Sound], Task], name: str, may_take_long: bool = False
     ) -> Task:
-        """Play what takes its time to get.
+        """Play what takes its time to get, so long that simulated time should not wait for it if it `may_take_long`.
 
-        Args:
-            fetch: Gets the sound; it may ask its argument whether anybody still wants it.
-            play: Begins to play it, in the simulation thread.
-            may_take_long: It may take so long that simulated time should not wait for it.
-
-        Returns:
-            A task that leads to the task of the playing; it ends when nobody wants it any more.
+        `fetch` gets the sound, and may ask its argument whether anybody still wants it; `play` begins to play it, in
+        the simulation thread. Returns a task that leads to that of the playing, and ends when nobody wants it any more.
         """
 
         def work(wanted: Wanted) -> Task:

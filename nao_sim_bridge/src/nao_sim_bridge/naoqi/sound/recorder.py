@@ -27,17 +27,11 @@ KINDS: dict[str, Callable[[Path, int, int], Any]] = {"wav": WavFile, "ogg": OggF
 
 @dataclass(frozen=True)
 class RecordingOrder:
-    """What is to be recorded.
+    """What is to be recorded."""
 
-    Attributes:
-        name: File name as it was given.
-        kind: "wav" or "ogg".
-        heard: Rate and channels.
-    """
-
-    name: str
-    kind: str
-    heard: MicrophoneFormat
+    name: str  # file name as it was given
+    kind: str  # "wav" or "ogg"
+    heard: MicrophoneFormat  # rate and channels
 
 
 class FilesInUse:
@@ -48,11 +42,7 @@ class FilesInUse:
         self._paths: set[Path] = set()
 
     def take(self, path: Path, name: str) -> None:
-        """Take a file, called `name` in errors.
-
-        Raises:
-            NaoqiError: It is written to already.
-        """
+        """Take a file, called `name` in errors; a NaoqiError when it is written to already."""
         with self._lock:
             if path in self._paths:
                 raise NaoqiError(f"{name!r} is being written to by another recording")
@@ -64,11 +54,7 @@ class FilesInUse:
 
 
 class Recorder:
-    """One recording at a time.
-
-    Args:
-        in_use: Shared by all recorders.
-    """
+    """One recording at a time; all recorders share the files that are `in_use`."""
 
     def __init__(self, simulation: Any, runner: SimulationRunner, files: ClientFiles, in_use: FilesInUse) -> None:
         self._simulation = simulation
@@ -81,10 +67,8 @@ class Recorder:
     def start(self, order: RecordingOrder) -> Task:
         """Begin at the present moment of simulated time; the task ends when it has begun.
 
-        Raises:
-            NaoqiError: A recording is under way.
-            FileTrouble: The file cannot be written.
-            ValueError: The file is not inside the folder for recordings.
+        A NaoqiError when a recording is under way, a FileTrouble when the file cannot be written, a ValueError when the
+        file is not inside the folder for recordings.
         """
         path = self._files.to_write(order.name)
         with self._lock:
@@ -140,12 +124,7 @@ class Recorder:
 
 
 class _Recording:
-    """A file that grows with every block that the ears hear.
-
-    Attributes:
-        name: Name of the file as it was given.
-        until: Simulated time at which it ends, s; known once it is stopped.
-    """
+    """A file that grows with every block that the ears hear, until a simulated time, s, known once it is stopped."""
 
     def __init__(self, order: RecordingOrder, path: Path) -> None:
         self.name, self.path = order.name, path
@@ -161,11 +140,7 @@ class _Recording:
         self._listener = ears.listen(f"recording {self.name}", self._on_block, wants, channel, exact=True)
 
     def end(self) -> None:
-        """Hear what is left, and end the file.
-
-        Raises:
-            NaoqiError: The file could not be written.
-        """
+        """Hear what is left, and end the file; a NaoqiError when the file could not be written."""
         if self._listener is not None:
             self._listener.close()
         try:
@@ -188,11 +163,7 @@ class _Recording:
 
 
 def kind_of(name: str) -> str:
-    """Wav or ogg, by the ending of a file name.
-
-    Raises:
-        BadValue: It has another ending.
-    """
+    """Wav or ogg, by the ending of a file name; a BadValue when it has another ending."""
     ending = Path(name).suffix.lower().lstrip(".")
     if ending not in KINDS:
         raise BadValue("filename", name, "a name that ends in .wav or .ogg")

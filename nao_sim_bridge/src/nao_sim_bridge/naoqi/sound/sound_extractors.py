@@ -38,8 +38,7 @@ Hear = Callable[[MicrophoneBlock], None]
 class Listening(Switch):
     """Opens and closes the ears of one module. Any thread.
 
-    Args:
-        begin: Called each time that listening begins; what it returns gets the blocks, four channels of 48 kHz.
+    What `begin` returns each time that listening begins gets the blocks, four channels of 48 kHz.
     """
 
     def __init__(self, ears: Ears, name: str, begin: Callable[[], Hear]) -> None:
@@ -64,12 +63,8 @@ class Listening(Switch):
 class SoundExtractor(SwitchModule):
     """An extractor that listens while somebody is subscribed. Only NAOqi methods are public, and `parts`.
 
-    Who inherits it writes `_hear`, which gets the blocks, four channels of 48 kHz.
-
-    Args:
-        events: Names of the events that it raises.
-        detector: Makes what looks through the blocks, anew each time that listening begins; it has a `sensitivity`.
-        setters: What takes the value of a parameter, by its name, beside the sensitivity.
+    Who inherits it writes `_hear`, which gets the blocks, four channels of 48 kHz. `detector` makes what looks through
+    them, anew each time that listening begins; it has a `sensitivity`. `setters` take other parameters.
     """
 
     def __init__(
@@ -129,17 +124,11 @@ class ALSoundDetection(SoundExtractor):
 
 @dataclass(frozen=True)
 class HeadPose:
-    """The head at one time.
+    """The head at one time."""
 
-    Attributes:
-        up: Unit vector upwards in the world, in the frame of the head.
-        in_torso: x, y, z in m, wx, wy, wz in rad, in FRAME_TORSO.
-        in_robot: The same in FRAME_ROBOT.
-    """
-
-    up: tuple[float, float, float]
-    in_torso: list[float]
-    in_robot: list[float]
+    up: tuple[float, float, float]  # unit vector upwards in the world, in the frame of the head
+    in_torso: list[float]  # x, y, z in m, wx, wy, wz in rad, in FRAME_TORSO
+    in_robot: list[float]  # the same in FRAME_ROBOT
 
 
 class HeadTrack:

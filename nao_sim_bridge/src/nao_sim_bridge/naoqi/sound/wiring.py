@@ -29,12 +29,7 @@ log = logging.getLogger("nao_sim.speech")
 
 
 class AudioModules:
-    """ALAudioPlayer, ALAudioDevice and ALAudioRecorder of one robot.
-
-    Args:
-        sounds: Reads sound files of clients, from where they may have files read from and written to.
-        broker: Finds modules of clients: `service(name)`.
-    """
+    """ALAudioPlayer, ALAudioDevice and ALAudioRecorder of one robot; the broker finds modules of clients."""
 
     def __init__(
         self,
@@ -73,11 +68,7 @@ class AudioModules:
 
 
 class SpeechModules:
-    """ALTextToSpeech and ALAnimatedSpeech of one robot.
-
-    Args:
-        broker: Finds modules that a text calls: `service(name)`.
-    """
+    """ALTextToSpeech and ALAnimatedSpeech of one robot; the broker finds modules that a text calls."""
 
     def __init__(
         self,

@@ -24,12 +24,7 @@ BLUE = (0.0, 0.0, 1.0)
 
 
 class ListeningExpression:
-    """Bips and lights. Any thread.
-
-    Attributes:
-        visual: Whether it shows lights.
-        mode: Which lights, a key of `MODES`.
-    """
+    """Bips and lights, those of a key of `MODES`. Any thread."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation

@@ -30,11 +30,7 @@ PARAMETERS: Mapping[str, tuple[float, float, float]] = {"Sensitivity": (0.5, 0.0
 
 
 class ALSpeechRecognition:
-    """ALSpeechRecognition as the simulated robot offers it. Only NAOqi methods are published.
-
-    Args:
-        spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
-    """
+    """ALSpeechRecognition as the simulated robot offers it, with only NAOqi methods. `spare`: see `Recogniser`."""
 
     def __init__(
         self,
@@ -221,8 +217,7 @@ class ALSpeechRecognition:
     def _change(self, what: str, change: Callable[[], None]) -> None:
         """Change what is listened for; when it cannot be listened for, everything stays as it was.
 
-        Args:
-            what: What is changed, when that is refused while the engine listens; else empty.
+        `what` is changed, when that is refused while the engine listens; else it is empty.
         """
         with self._lock:
             if what:

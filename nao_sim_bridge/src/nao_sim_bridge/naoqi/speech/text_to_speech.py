@@ -25,11 +25,7 @@ PLAYED_FILE = "sayToFileAndPlay.wav"
 
 
 class ALTextToSpeech:
-    """ALTextToSpeech as the simulated robot offers it.
-
-    Args:
-        speaker: The robot's mouth; touched in the simulation thread only.
-    """
+    """ALTextToSpeech as the simulated robot offers it."""
 
     def __init__(
         self,

@@ -28,11 +28,7 @@ PREFERENCE_KEYS = ("language", "voice", "volume", "parameters")
 
 
 class VoiceSettings:
-    """Language, voice, parameters, volume and pronunciations. Any thread may call anything.
-
-    Args:
-        engine: Who says which voices can speak.
-    """
+    """Language, voice, parameters, volume and pronunciations; any thread. The engine says which voices can speak."""
 
     def __init__(self, engine: Engine, files: ClientFiles) -> None:
         self._voices = load_voices()
@@ -49,9 +45,7 @@ class VoiceSettings:
     def style(self, language: str | None = None) -> Style:
         """How a text is spoken from now on, in the chosen language or in another one.
 
-        Raises:
-            BadValue: There is no such language.
-            SpeechError: Its engine is missing.
+        A BadValue when there is no such language, a SpeechError when its engine is missing.
         """
         with self._lock:
             other = language is not None and language != self._language.name
@@ -190,8 +184,7 @@ class VoiceSettings:
     def loadVoicePreference(self, name: str) -> None:
         """Take language, voice, volume and parameters from a JSON file, each if it is there; all or nothing.
 
-        Raises:
-            NaoqiError: The file is not what it should be.
+        A NaoqiError when the file is not what it should be.
         """
         path = self._files.to_read(PREFERENCE.format(name))
         try:

@@ -18,9 +18,8 @@ NAME = "NaoSimulation"
 class NaoSimulation:
     """Control of the simulation over libqi; a real robot has no such service.
 
-    Args:
-        host: The server: its `broker`, `runner`, `sounds`, `things`, `hands`, `film`, `health`, `files`, `options`, and
-            its methods `push`, `press`, `picture`, `reset_task`, `factory_reset_task`.
+    The host is the server: its `broker`, `runner`, `sounds`, `things`, `hands`, `film`, `health`, `files`, `options`,
+    and its methods `push`, `press`, `picture`, `reset_task`, `factory_reset_task`.
     """
 
     def __init__(self, host: Any) -> None:

@@ -109,14 +109,9 @@ class Looking:
 
 
 def robot_position(seen: Sequence[Sequence[float]], known: Sequence[Sequence[float]]) -> list[float]:
-    """The pose that brings places seen from the robot onto their places in a world.
+    """The pose (x, y in m, heading in rad) that brings places seen from the robot onto their places in a world.
 
-    Args:
-        seen: x, y, ... of each in the frame of the robot, m.
-        known: x, y, ... of each in the world, m.
-
-    Returns:
-        x, y in m, heading in rad; empty for less than two.
+    Both are x, y, ... of each in m, in the frame of the robot and in the world. Empty for less than two.
     """
     if len(seen) < 2:
         return []

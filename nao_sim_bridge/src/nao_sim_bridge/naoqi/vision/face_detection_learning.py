@@ -41,13 +41,9 @@ class FaceLearner:
         self._closed = threading.Event()
 
     def look(self, learn: Callable[[np.ndarray], bool]) -> Task:
-        """Look at the face in view.
+        """Look at the face in view; a BadValue when too many calls wait for their turn.
 
-        Returns:
-            A task that ends with what `learn` answers, or with False when the pictures do not show exactly one face.
-
-        Raises:
-            BadValue: Too many calls wait for their turn.
+        The task ends with what `learn` answers, or with False when the pictures do not show exactly one face.
         """
         cancelled = threading.Event()
 

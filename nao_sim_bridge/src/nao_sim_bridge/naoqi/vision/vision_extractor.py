@@ -63,9 +63,8 @@ def extractor_parts(
 class Sight:
     """The event of one extractor. Used by its watching only, so in one thread at a time.
 
-    Args:
-        tell_end: Also tell subscribers when nothing is seen any more, with an empty list; else that is only written,
-            for those who read the key.
+    With `tell_end` subscribers are also told when nothing is seen any more, with an empty list; else that is only
+    written, for those who read the key.
     """
 
     def __init__(self, memory: MemoryStore, event: str, tell_end: bool) -> None:

@@ -49,14 +49,12 @@ class Watching(Switch):
     that come while it is busy are left out. Any thread may call.
 
     Args:
-        detector: Its detector in the vision process; closed whenever nobody wants results any more, so that it starts
-            afresh.
+        detector: Closed whenever nobody wants results any more, so that it starts afresh.
         on_result: Called in the thread with each picture and what was found in it.
         settings: Called in the thread with each picture for what the detector is to be told.
         on_stop: Called when nothing is looked at any more (nobody is subscribed, or paused), after the last result.
         camera: The camera at the start; None to look through the one that ALVideoDevice has active.
-        resolution: NAOqi's id of the resolution at the start.
-        fps: Pictures a second at the start.
+        resolution: NAOqi's id.
     """
 
     def __init__(
@@ -134,8 +132,7 @@ class Watching(Switch):
     def set_fps(self, fps: int, subscriber: str | None = None) -> None:
         """The most pictures a second, for everybody or for one subscriber.
 
-        Raises:
-            NaoqiError: There is no such subscriber.
+        A NaoqiError when there is no such subscriber.
         """
         with self._lock:
             if subscriber is None:

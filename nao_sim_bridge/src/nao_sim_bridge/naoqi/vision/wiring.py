@@ -57,25 +57,16 @@ def barcode_value(_frame: Frame, found: list[Barcode]) -> list[Any]:
 
 @dataclass(frozen=True)
 class Detection:
-    """An extractor that raises its event with each picture in which its detector finds something.
+    """An extractor that raises its event with each picture in which its detector finds something."""
 
-    Attributes:
-        module: NAOqi name.
-        detector: Name in the vision process.
-        tell_end: Whether the event is also raised, with an empty list, when nothing is seen any more; else that is
-            only its value then, and nobody is told.
-        fps: Pictures a second at the start.
-        camera: At the start; None: the one that ALVideoDevice has active.
-    """
-
-    module: str
+    module: str  # NAOqi name
     event: str
-    detector: str
+    detector: str  # name in the vision process
     value: Callable[[Frame, Any], list[Any]]
-    tell_end: bool
-    fps: int
+    tell_end: bool  # see `Sight`
+    fps: int  # pictures a second at the start
     resolution: int = QVGA
-    camera: int | None = TOP
+    camera: int | None = TOP  # at the start; None: the one that ALVideoDevice has active
 
     def watching(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> Watching:
         """Looks for it in the cameras of a robot."""
@@ -109,11 +100,7 @@ DETECTIONS = (
 
 
 class VisionModules:
-    """ALRedBallDetection, ALLandMarkDetection, ALBarcodeReader, ALFaceDetection and ALMovementDetection of one robot.
-
-    Args:
-        process: The vision process, which all detectors share; it starts when somebody is subscribed first.
-    """
+    """The modules that look through the cameras of one robot; their process starts with the first subscriber."""
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, files: ClientFiles, process: VisionProcess) -> None:
         self._memory = memory
