@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import logging
 import threading
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from PIL import Image
@@ -45,17 +46,7 @@ class Pictures:
     def state(self, simulation: Simulation | None = None) -> RenderState:
         """What is to be seen now."""
         simulation = simulation or self._simulation
-        snapshot = simulation.snapshot
-        return RenderState(
-            snapshot.torso.position,
-            snapshot.torso.orientation,
-            snapshot.positions,
-            simulation.robot.leds.values,
-            snapshot.objects,
-            snapshot.placed,
-            snapshot.gone,
-            simulation.shared.looks_beside(simulation),
-        )
+        return simulation.render_state(simulation.snapshot)
 
     def png(self, view: str, width: int, height: int) -> bytes:
         """A PNG picture of the robot from a named view.
@@ -94,10 +85,8 @@ class Pictures:
             for robot in self._simulation.shared.robots:
                 robot.robot.point_at(ray)
 
-        try:
+        with suppress(SimulationStopped):  # and with it all touches
             self._runner.execute(point, "point")
-        except SimulationStopped:
-            pass  # and with it all touches
 
     def _mirror(self, viewer: Viewer) -> None:
         while not self._closing.wait(WINDOW_PERIOD):

@@ -7,6 +7,7 @@ only, but for `SpeakingMovement`'s and `ListeningMovement`'s ears.
 from __future__ import annotations
 
 import random
+from contextlib import suppress
 from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue, SimulationStopped
@@ -96,10 +97,8 @@ class ListeningMovement:
     def _hear(self, voice: Any) -> None:
         if not (self._on and self.enabled and voice):
             return
-        try:
+        with suppress(SimulationStopped):
             self._runner.execute(self._nod, "listening")
-        except SimulationStopped:
-            pass
 
     def _nod(self) -> None:
         robot, now = self._simulation.robot, self._simulation.time

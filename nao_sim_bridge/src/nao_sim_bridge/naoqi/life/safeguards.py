@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import SimulationStopped, UnknownName
@@ -48,10 +49,8 @@ class Safeguards:
         return name
 
     def _do(self, command: Callable[[], Any]) -> None:
-        try:
+        with suppress(SimulationStopped):
             self._runner.execute(command, "life")
-        except SimulationStopped:
-            pass
 
     def _fallen(self) -> None:
         if self._enabled[FELL]:

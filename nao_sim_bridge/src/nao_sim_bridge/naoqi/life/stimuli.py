@@ -5,6 +5,7 @@ Events of the modules that see, hear and feel come in threads of their own and a
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import SimulationStopped, UnknownName
@@ -105,10 +106,8 @@ class Stimuli:
         """Any thread."""
         if not self._interests(stimulus):
             return
-        try:
+        with suppress(SimulationStopped):
             self._runner.execute(lambda: self._tell(stimulus, value), "awareness")
-        except SimulationStopped:
-            pass
 
     def _tell(self, stimulus: str, value: Any) -> None:
         if self._interests(stimulus):

@@ -9,11 +9,8 @@ from typing import Any, Callable
 
 from nao_sim_bridge.base.samples import Sound
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.background import Background, Wanted
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.sound.pitch import shifted
 
 SHOWN = 5
 """How many sounds a refusal names."""
@@ -65,8 +62,6 @@ class Player:
     def __init__(
         self,
         simulation: Simulation,
-        runner: SimulationRunner,
-        background: Background,
         on_end: Callable[[float, float], None],
         largest: Callable[[], int],
         elsewhere: Callable[[], list[tuple[str, int]]],
@@ -74,13 +69,11 @@ class Player:
         self._largest = largest
         self._elsewhere = elsewhere
         self._on_end = on_end
-        self._background = background
         self._simulation = simulation
-        self._runner = runner
         self._lock = threading.Lock()  # guards the table; the sounds in it belong to the simulation thread
         self._sounds: dict[int, LoadedSound] = {}
         self._numbers = itertools.count(1)
-        self._volume = 1.0
+        self.volume = 1.0
         self._panorama = 0.0
 
     # --- from any thread ------------------------------------------------------------------------------------------
@@ -118,49 +111,6 @@ class Player:
                 known = ", ".join(map(str, self._sounds)) or "none"
                 raise NaoqiError(f"no sound is loaded under the id {number}; ids in use: {known}")
             return self._sounds[number]
-
-    @property
-    def volume(self) -> float:
-        """Volume of the whole player, 0 to 1."""
-        return self._volume
-
-    def in_simulation(self, action: Callable[[], Any], name: str) -> Task:
-        return self._runner.execute(action, name)
-
-    def load_when_there(self, fetch: Callable[[], Sound], name: str) -> Task:
-        return self._background.in_turn(lambda _: self.load(name, fetch()).number, "loadFile")
-
-    def play_when_there(
-        self, fetch: Callable[[Wanted], Sound], play: Callable[[Sound], Task], name: str, may_take_long: bool = False
-    ) -> Task:
-        """Play what takes its time to get, so long that simulated time should not wait for it if it `may_take_long`.
-
-        `fetch` gets the sound, and may ask its argument whether anybody still wants it; `play` begins to play it, in
-        the simulation thread. Returns a task that leads to that of the playing, and ends when nobody wants it any more.
-        """
-
-        def work(wanted: Wanted) -> Task:
-            sound = fetch(wanted)
-            return self._runner.execute(lambda: play(sound) if wanted() else None, name)
-
-        return (self._background.beside if may_take_long else self._background.in_turn)(work, name)
-
-    def give_up_pending(self) -> None:
-        """Do not play what was asked for up to now and is still on its way."""
-        self._background.stop()
-
-    def change_pitch(self, number: int, factor: float) -> Task:
-        """Give a sound another pitch, 1 for its own; what plays goes on at the place where it is."""
-        loaded = self.find(number)
-        if factor != 1.0 and loaded.altered is None:
-            self.check_room(loaded.name, loaded.sound.samples.nbytes)
-
-        def work(_: Wanted) -> Task:
-            sound = loaded.sound
-            altered = None if factor == 1.0 else Sound(shifted(sound.samples, factor, sound.rate), sound.rate)
-            return self._runner.execute(lambda: self._exchange(loaded, altered), "setPitch")
-
-        return self._background.in_turn(work, "setPitch")
 
     # --- in the simulation thread ---------------------------------------------------------------------------------
 
@@ -204,7 +154,7 @@ class Player:
 
     def set_all(self, volume: float | None = None, panorama: float | None = None) -> None:
         """Volume 0 to 1 and panorama -1 to 1 of the whole player, on top of those of each sound."""
-        self._volume = self._volume if volume is None else volume
+        self.volume = self.volume if volume is None else volume
         self._panorama = self._panorama if panorama is None else panorama
         for loaded in self.loaded():
             self._adjust(loaded)
@@ -233,7 +183,7 @@ class Player:
         run = loaded.run
         pan = max(-1.0, min(1.0, loaded.pan + self._panorama))
         speakers = self._simulation.sound.loudspeakers
-        playing = speakers.play(loaded.heard, loaded.name, loaded.volume * self._volume, pan, position, run.loop)
+        playing = speakers.play(loaded.heard, loaded.name, loaded.volume * self.volume, pan, position, run.loop)
         run.playing = playing
         playing.task.add_done_callback(lambda done: self._ended(loaded, run, playing, done))
 
@@ -258,7 +208,8 @@ class Player:
             with self._lock:
                 self._sounds.pop(loaded.number, None)
 
-    def _exchange(self, loaded: LoadedSound, altered: Sound | None) -> None:
+    def exchange(self, loaded: LoadedSound, altered: Sound | None) -> None:
+        """Have a sound at another pitch, or as it was read; what plays goes on at the place where it is."""
         loaded.altered = altered
         run = loaded.run
         if run is None:
@@ -271,7 +222,7 @@ class Player:
 
     def _adjust(self, loaded: LoadedSound) -> None:
         if loaded.run is not None:
-            loaded.run.playing.set_volume(loaded.volume * self._volume)
+            loaded.run.playing.set_volume(loaded.volume * self.volume)
             loaded.run.playing.set_pan(max(-1.0, min(1.0, loaded.pan + self._panorama)))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.samples import RATE, Sound
+from nao_sim_bridge.base.samples import sine as tone
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.sound.files import SoundFileError
@@ -155,9 +156,7 @@ def sine(frequency: float, gain: float, duration: float) -> Sound:
     frames = round(number(duration, "duration", 0.0, LONGEST) * RATE)
     if frames == 0:
         raise BadValue("duration", duration, f"above 0 to {LONGEST:g}")
-    # Cycles are reduced to their fraction in double precision: long tones keep their phase.
-    cycles = (np.arange(frames) * (pitch / RATE)) % 1.0
-    samples = (amplitude * np.sin(2.0 * np.pi * cycles)).astype(np.float32)
+    samples = tone(pitch, frames / RATE, amplitude).samples[:, 0].copy()
     edge = min(round(EDGE * RATE), frames // 2)
     ramp = np.sin(0.5 * np.pi * np.arange(edge) / max(edge, 1)) ** 2
     samples[:edge] *= ramp

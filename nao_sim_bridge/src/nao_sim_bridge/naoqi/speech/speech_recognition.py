@@ -54,9 +54,8 @@ class ALSpeechRecognition:
         self._vocabularies: list[Grammar | None] = []
         self._parameters = {name: value for name, (value, _, _) in PARAMETERS.items()}
 
-    def modules(self) -> dict[str, list[Any]]:
-        """The module by name, as `make_service` wants it."""
-        return {NAME: [self, self._extractor]}
+    def parts(self) -> list[Any]:
+        return [self, self._extractor]
 
     def close(self) -> None:
         self._engine.close()

@@ -5,6 +5,7 @@ Calls of clients and events come in threads of their own; what they are about is
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
@@ -141,10 +142,8 @@ class Tracking:
         active = self._active
         if active is None or event not in (active.name, TARGETS[active.name].event if active.module else ""):
             return
-        try:
+        with suppress(SimulationStopped):
             self._runner.execute(lambda: self._see(active, value), "track")
-        except SimulationStopped:
-            pass
 
     def _see(self, active: _Active, value: Any) -> None:
         if active is not self._active:
