@@ -5,12 +5,13 @@ from __future__ import annotations
 import logging
 import threading
 
-from nao_sim_bridge.base.errors import BadValue, NotAllowed, UnknownName
+from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.record_dir import ClientFiles, unused
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task, TaskIds, worked_out
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.render.client import RenderError
 from nao_sim_bridge.server.film import END_LIMIT, Film, FilmReport
 from nao_sim_bridge.world.render_state import PRESETS
@@ -53,8 +54,7 @@ class FilmControl:
         """
         view, frame_rate = view or VIEW, frame_rate or FRAME_RATE
         size = (width or SIZE[0], height or SIZE[1])
-        if view not in PRESETS:
-            raise UnknownName("view", view, PRESETS)
+        known(view, "view", PRESETS)
         if not all(16 <= side <= MAX_SIZE and side % 2 == 0 for side in size):
             raise BadValue("film size", size, f"even numbers, 16 to {MAX_SIZE} pixels each way")
         if not 1.0 <= frame_rate <= MAX_FRAME_RATE:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any, Callable, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.temperatures import BATTERY, HEAD
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import known, number
 
 COLDEST, HOTTEST = -40.0, 200.0
 
@@ -67,8 +67,7 @@ class HealthControl:
         """
         wanted = number(celsius, "temperature", COLDEST, HOTTEST)
         joints = self._simulation.model.joint_index
-        if device not in (*joints, HEAD, BATTERY):
-            raise UnknownName("device", device, (*joints, HEAD, BATTERY))
+        known(device, "device", (*joints, HEAD, BATTERY))
 
         def warm_up() -> None:
             power = self._simulation.robot.power

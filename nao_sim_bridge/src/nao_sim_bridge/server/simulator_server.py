@@ -18,7 +18,7 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Scene, Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import number, vector
 from nao_sim_bridge.naoqi.binding.binding import Service
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.system.nao_simulation import NAME as NAO_SIMULATION
@@ -276,11 +276,9 @@ class SimulatorServer:
 
     def push(self, force: Sequence[float], duration: float, link: str) -> None:
         """Push a link with `force` (N, in world) for `duration` s of simulated time from now on."""
-        vector = tuple(numbers(force, "force"))
-        if len(vector) != 3:
-            raise BadValue("force", force, "[x, y, z] in N")
+        newtons = tuple(vector(force, "force", 3, "[x, y, z] in N"))
         lasting = number(duration, "duration", 0.0, MAX_PUSH)
-        self.runner.call(lambda: self.simulation.robot.push(vector, lasting, link))
+        self.runner.call(lambda: self.simulation.robot.push(newtons, lasting, link))
 
     def press(self, sensors: Sequence[str]) -> None:
         """Simulated fingers on these touch sensors and on no others."""

@@ -110,8 +110,6 @@ class ALFrameManager:
     def getMotionLength(self, number: str) -> float:
         return length_of(self._of(number).behavior.step)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _make(self, step: Step, path: str) -> str:
         most = load_sizes().behaviors.made
         with self._lock:

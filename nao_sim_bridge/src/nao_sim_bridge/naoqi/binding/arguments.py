@@ -65,6 +65,16 @@ def numbers(values: Any, field: str, low: float = -math.inf, high: float = math.
     return [number(v, f"{field}[{i}]", low, high) for i, v in enumerate(values)]
 
 
+def vector(
+    values: Any, field: str, count: int, allowed: str, low: float = -math.inf, high: float = math.inf
+) -> list[float]:
+    """A list of `count` finite numbers within [low, high], of which errors say that `allowed` are."""
+    listed = numbers(values, field, low, high)
+    if len(listed) != count:
+        raise BadValue(field, values, allowed)
+    return listed
+
+
 def per_item(value: Any, count: int, field: str, low: float = -math.inf, high: float = math.inf) -> list[float]:
     """One number for all of `count` items, or a list with one for each."""
     if not isinstance(value, (list, tuple)):

@@ -21,12 +21,12 @@ class Background:
         self._lock = threading.Lock()
         self._jobs: deque[Callable[[], None]] = deque()
         self._working = False
-        self._unfinished = 0
+        self.unfinished = 0  # jobs in turn that have not ended
         self._stops = 0
 
     def holds(self) -> bool:
         """Whether time that runs faster than the wall clock should wait, as for a robot the work takes next to none."""
-        return self._unfinished > 0
+        return self.unfinished > 0
 
     def stop(self) -> None:
         """Nobody wants what has been asked for up to now."""
@@ -40,14 +40,14 @@ class Background:
         wants it any more.
         """
         with self._lock:
-            self._unfinished += 1
+            self.unfinished += 1
         task, job = self._job(work, name, self._finished)
         with self._lock:
             self._jobs.append(job)
             if self._working:
                 return task
             self._working = True
-        threading.Thread(target=self._work, name="sound files", daemon=True).start()
+        threading.Thread(target=self._work, name=name, daemon=True).start()
         return task
 
     def beside(self, work: Work, name: str) -> Task:
@@ -96,7 +96,7 @@ class Background:
 
     def _finished(self) -> None:
         with self._lock:
-            self._unfinished -= 1
+            self.unfinished -= 1
         self._released()
 
 

@@ -66,7 +66,6 @@ class ALSonar:
         return list(self._filtered)
 
     def parts(self) -> list[Any]:
-        """The objects that together have the methods of ALSonar."""
         keys, events = [f"Device/SubDeviceList/US/{side}/Sensor/Value" for side in SIDES], [*DETECTED, *NOTHING]
         work = (self._start, self._stop)
         return [self, Extractor(NAME, self._memory, *work, events, keys, DEFAULT, self._changed, by_events=True)]

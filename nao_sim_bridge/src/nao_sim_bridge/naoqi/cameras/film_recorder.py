@@ -20,8 +20,6 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 log = logging.getLogger("nao_sim.films")
 
-LOOK_AGAIN = 1.0
-"""How long a wait for a frame lasts before the next one begins, s of wall time."""
 CLOSING = 10.0
 """How long the end of the simulator waits for a file, s of wall time."""
 
@@ -134,10 +132,7 @@ class _Recording:
     def _run(self) -> None:
         try:
             while True:
-                try:
-                    self._add(self._stream.take(LOOK_AGAIN))
-                except TimeoutError:
-                    continue
+                self._add(self._stream.take())
         except CameraClosed:
             self._complete()
         except Exception as error:
@@ -185,6 +180,7 @@ class Film:
         codec, pixels, letters = FORMATS[kind]
         self.frames = 0
         self._file = WholeFile(path)
+        self.path = self._file.path
         # Each frame goes to the file at once, so that it ends with a whole one.
         self._container = av.open(self._file, mode="w", format="avi", options={"flush_packets": "1"})
         fraction = Fraction(round(rate * RATE_STEPS), RATE_STEPS)
@@ -194,10 +190,6 @@ class Film:
         self._step = 1 / fraction
         if kind == "MJPG":
             self._stream.options = {"qmin": JPEG_QUANTISER, "qmax": JPEG_QUANTISER}
-
-    @property
-    def path(self) -> Path:
-        return self._file.path
 
     def write(self, picture: np.ndarray) -> None:
         """Append a frame, (height, width) grey or (height, width, 3) BGR, uint8.

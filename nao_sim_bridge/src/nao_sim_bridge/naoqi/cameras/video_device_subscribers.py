@@ -168,8 +168,6 @@ class VideoSubscribers:
         for each in waiting:
             each.fail(NaoqiError(reason))
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _open(self, subscriber: Subscriber) -> None:
         opened: list[CameraStream] = []
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Mapping
 
-from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.naoqi.binding.arguments import known
 
 BLINKING, BACKGROUND, AWARENESS, LISTENING, SPEAKING = NAMES = (
     "AutonomousBlinking",
@@ -48,9 +48,7 @@ class Abilities:
         """The ability of a name; "All": all of them. An UnknownName when there is no such ability."""
         if name == ALL:
             return list(self._abilities)
-        if name not in self._abilities:
-            raise UnknownName("autonomous ability", name, [*self._abilities, ALL])
-        return [name]
+        return [known(name, "autonomous ability", [*self._abilities, ALL])]
 
     def _update(self) -> None:
         for name, switch in self._abilities.items():

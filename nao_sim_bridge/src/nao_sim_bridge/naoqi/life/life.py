@@ -152,8 +152,6 @@ class Life:
         self._stacked.clear()
         self.stop_focus()
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _enter(self, state: str) -> None:
         before, self.state = self.state, state
         if state not in ALIVE:

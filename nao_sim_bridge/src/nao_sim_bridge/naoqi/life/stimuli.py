@@ -8,8 +8,9 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any, Callable, Mapping, Sequence
 
-from nao_sim_bridge.base.errors import SimulationStopped, UnknownName
+from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -70,7 +71,7 @@ class Stimuli:
 
     def enabled(self, stimulus: str) -> bool:
         """Whether a stimulus interests the robot; an UnknownName when there is no such stimulus."""
-        return self._enabled[_known(stimulus)]
+        return self._enabled[known(stimulus, "stimulus", STIMULI)]
 
     def enable(self, stimulus: str, enabled: bool) -> None:
         """Have a stimulus interest the robot or not; `listen` puts it to work.
@@ -133,11 +134,5 @@ class Stimuli:
 
 def check(stimulus: str, enabled: bool) -> None:
     """Refuse what is no stimulus (UnknownName), and to enable one that a NAO has no sense for (NaoqiError)."""
-    if _known(stimulus) in MISSING and enabled:
+    if known(stimulus, "stimulus", STIMULI) in MISSING and enabled:
         raise NaoqiError(f"{stimulus}: {MISSING[stimulus]}")
-
-
-def _known(stimulus: str) -> str:
-    if stimulus not in STIMULI:
-        raise UnknownName("stimulus", stimulus, STIMULI)
-    return stimulus

@@ -277,8 +277,6 @@ class MemoryStore:
             for table in (self._subscribers, self._listeners, self._changes, self._watchers):
                 table.clear()
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _forget_change(self, change: Task) -> None:
         with self._lock:
             self._changes.pop(change, None)

@@ -13,7 +13,7 @@ from nao_sim_bridge.control.joints.bezier import BezierCurve, Handle, Interpolat
 from nao_sim_bridge.model.frames import ROBOT, TORSO, WORLD
 from nao_sim_bridge.model.kinematics import matrix_rpy, rpy_matrix, transform
 from nao_sim_bridge.model.robot_model import RobotModel, joint_names
-from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers, vector
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 TYPES = ", ".join(f"{kind.value} ({kind.name})" for kind in Interpolation)
@@ -180,9 +180,7 @@ def one_each(value: Any, count: int, field: str, nested: bool = False) -> list[A
 
 def pose_of_position(value: Any) -> np.ndarray:
     """(4, 4) pose of x, y, z in m and wx, wy, wz in rad."""
-    six = numbers(value, "position")
-    if len(six) != 6:
-        raise BadValue("position", value, "x, y, z in m and wx, wy, wz in rad")
+    six = vector(value, "position", 6, "x, y, z in m and wx, wy, wz in rad")
     return transform(rpy_matrix(six[3:]), six[:3])
 
 

@@ -9,7 +9,7 @@ from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers, vector
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.arguments import require_rising
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of, gait_of_feet
@@ -154,8 +154,6 @@ class Walking(MotionPart):
         enabled = self._robot.locomotion.arms.enabled
         return [enabled[arm] for arm in ARM_GROUPS["Arms"]]
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _walk(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
         """Run a command of the robot's locomotion in the simulation thread."""
 
@@ -233,9 +231,7 @@ def _placed(legs: Any, steps: Any) -> list[tuple[int, FootPose]]:
         raise BadValue("footSteps", steps, f"as many steps [x, y, theta] as legs: {len(legs)} here")
     placed = []
     for position, (leg, step) in enumerate(zip(legs, steps)):
-        three = numbers(step, f"footSteps[{position}]")
-        if len(three) != 3:
-            raise BadValue(f"footSteps[{position}]", step, "x, y in m, theta in rad, from the other foot")
+        three = vector(step, f"footSteps[{position}]", 3, "x, y in m, theta in rad, from the other foot")
         placed.append((SIDES[leg], FootPose(*three)))
     return placed
 

@@ -203,8 +203,6 @@ class ALAudioDevice:
     def setDefaultOutput(self, index: int) -> None:
         _device(index, OUTPUTS)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     @property
     def _speakers(self) -> Any:
         return self._simulation.sound.loudspeakers

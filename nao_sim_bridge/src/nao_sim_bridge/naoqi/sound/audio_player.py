@@ -50,7 +50,6 @@ class ALAudioPlayer:
         )
 
     def parts(self) -> list[Any]:
-        """The objects that together have the methods of the module."""
         return [self, self._sets]
 
     # --- files ----------------------------------------------------------------------------------------------------

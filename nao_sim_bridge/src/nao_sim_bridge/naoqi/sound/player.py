@@ -177,8 +177,6 @@ class Player:
         for loaded in self.loaded():
             self.unload(loaded)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _begin(self, loaded: LoadedSound, position: float) -> None:
         run = loaded.run
         pan = max(-1.0, min(1.0, loaded.pan + self._panorama))

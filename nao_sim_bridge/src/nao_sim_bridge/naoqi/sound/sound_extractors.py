@@ -87,7 +87,6 @@ class SoundExtractor(SwitchModule):
         self._extractor = Extractor(module, memory, listening.start, listening.stop, events)
 
     def parts(self) -> list[Any]:
-        """The objects that together have the methods of the module."""
         return [self, self._extractor]
 
     def _begin(self) -> Hear:

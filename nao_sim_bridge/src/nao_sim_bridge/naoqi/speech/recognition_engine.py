@@ -109,8 +109,6 @@ class RecognitionEngine(Switch):
             listener.close()
         self._recogniser.close()
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _update(self) -> None:
         runs = self._works
         if runs == self.runs:

@@ -208,8 +208,6 @@ class ALSpeechRecognition:
         with self._lock:
             return self._contexts.get(context).parameter(name)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _change_context(self, name: str, change: Callable[[Context], Context]) -> None:
         self._change("contexts", lambda: self._contexts.put(name, change(self._contexts.get(name))))
 

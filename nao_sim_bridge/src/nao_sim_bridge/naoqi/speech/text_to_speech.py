@@ -85,8 +85,6 @@ class ALTextToSpeech:
     def disableNotifications(self) -> None:
         self._events.enabled = False
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _write(self, text: str, style: Style, path: Any) -> None:
         sound = self._studio.sound(text, style).at_rate(FILE_RATE)
         if path.suffix.lower() == ".raw":

@@ -46,6 +46,7 @@ class Tracking:
         timeout: How long after the last sighting a target counts as lost, s.
         max_distance: Sightings further away do not count, m.
         searches: Whether it looks around for a target that is lost.
+        new: Whether the target was seen since somebody asked for its place.
         periods: Of the modules, ms, by name of the target.
         sightings: What was seen last.
     """
@@ -81,14 +82,9 @@ class Tracking:
     def lost(self) -> bool:
         return self._active is None or self._lost
 
-    @property
-    def new(self) -> bool:
-        """Whether the target was seen since somebody asked for its place."""
-        return self._new
-
     def place_in(self, frame: int) -> list[float]:
         """Where the target was seen last in one of ALMotion's frames, m; empty when it is lost."""
-        place, self._new = self._place, False
+        place, self.new = self._place, False
         if place is None or self.lost:
             return []
         model, placed = self._simulation.model, geometry.placement(self._simulation.model, self._runner.snapshot)
@@ -124,7 +120,7 @@ class Tracking:
 
     def _forget(self) -> None:
         self._seen: float | None = None
-        self._lost, self._new = True, False
+        self._lost, self.new = True, False
         self._place: Point | None = None
         self.sightings: Sequence[Sighting] = ()
 
@@ -155,7 +151,7 @@ class Tracking:
         model, placed = self._simulation.model, geometry.placement(self._simulation.model, self._simulation.snapshot)
         frame = WORLD if not active.module and len(value) == 2 and value[1] == WORLD else ROBOT
         self._place = geometry.in_world(model, placed, near[0].place, frame)
-        self._seen, self._new = self._simulation.time, True
+        self._seen, self.new = self._simulation.time, True
         if self._lost:
             self._lost = False
             self._tell(DETECTED)

@@ -77,7 +77,7 @@ class Watching(Switch):
         self._settings = settings
         self._on_stop = on_stop
         self._camera = camera
-        self._resolution = resolution
+        self.resolution = resolution
         self._fps = fps
         self._fps_of: dict[str, int] = {}  # subscribers with a rate of their own
         self._subscribers: frozenset[str] = frozenset()
@@ -94,10 +94,6 @@ class Watching(Switch):
     def camera(self) -> int:
         """Index of the camera that it looks through, or would."""
         return self._cameras.active if self._camera is None else self._camera
-
-    @property
-    def resolution(self) -> int:
-        return self._resolution
 
     @property
     def fps(self) -> int:
@@ -127,7 +123,7 @@ class Watching(Switch):
         with self._lock:
             if self._stream is not None:
                 self._stream.resolution = resolution
-            self._resolution = resolution
+            self.resolution = resolution
 
     def set_fps(self, fps: int, subscriber: str | None = None) -> None:
         """The most pictures a second, for everybody or for one subscriber.
@@ -145,8 +141,6 @@ class Watching(Switch):
                 raise NaoqiError(f"{subscriber!r} is not subscribed; subscribed is {known}")
             self._set_stream_rate()
 
-    # --- inside -----------------------------------------------------------------------------------------------------
-
     def _update(self) -> None:
         if self._works and self._stream is None:
             self._begin()
@@ -155,7 +149,7 @@ class Watching(Switch):
 
     def _begin(self) -> None:
         self._stream = self._cameras.open(
-            self._name, self.camera, self._resolution, BGR, self._stream_rate(), every=True
+            self._name, self.camera, self.resolution, BGR, self._stream_rate(), every=True
         )
         self._failed = False
         self._thread = threading.Thread(target=self._run, args=(self._stream,), name=self._name, daemon=True)
