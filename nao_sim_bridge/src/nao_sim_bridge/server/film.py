@@ -41,10 +41,6 @@ class FilmReport:
     duration: float  # s
     left_out: int  # frames that the computer was too slow for
 
-    def as_dict(self) -> dict[str, Any]:
-        """Its attributes by name, the path as text."""
-        return {**vars(self), "path": str(self.path)}
-
 
 class Film:
     """One film that is being taken, which replaces the file at `path`; a RenderError when there is no film process.

@@ -8,7 +8,7 @@ import threading
 from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.record_dir import ClientFiles, unused
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.base.tasks import Task, TaskIds, worked_out
+from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import known
@@ -36,7 +36,6 @@ class FilmControl:
         self._engine = engine
         self._lock = threading.Lock()
         self._film: Film | None = None
-        self._ids = TaskIds()
 
     def start(self, file: str, view: str, width: int, height: int, frame_rate: float) -> Task:
         """Begin a film; the task ends with its path, as text, when the camera runs.
@@ -72,7 +71,7 @@ class FilmControl:
                 self._film = film
             return str(path)
 
-        return worked_out(self._ids.make("startFilm"), start, "startFilm")
+        return worked_out(Task("startFilm", 0), start, "startFilm")
 
     def caption(self, text: str) -> None:
         """Write a text into the film from now on; empty for none.
@@ -94,7 +93,7 @@ class FilmControl:
                 self._film = None
             return film.end()
 
-        return worked_out(self._ids.make("stopFilm"), stop, "stopFilm")
+        return worked_out(Task("stopFilm", 0), stop, "stopFilm")
 
     def close(self, limit: float = END_LIMIT) -> None:
         """End the film that is taken, before the simulation ends; what is not drawn in `limit` s is left out."""

@@ -43,9 +43,9 @@ class Pictures:
             viewer.close()
             self.open_window()
 
-    def state(self, simulation: Simulation | None = None) -> RenderState:
+    def state(self) -> RenderState:
         """What is to be seen now."""
-        simulation = simulation or self._simulation
+        simulation = self._simulation
         return simulation.render_state(simulation.snapshot)
 
     def png(self, view: str, width: int, height: int) -> bytes:
@@ -58,7 +58,7 @@ class Pictures:
         if not whole or not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
             raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
         simulation = self._simulation
-        state = self.state(simulation)
+        state = simulation.render_state(simulation.snapshot)
         camera = preset_camera(view, simulation.model, state, width, height)
         buffer = io.BytesIO()
         Image.fromarray(simulation.renderer.render(state, camera, TIMEOUT), "RGB").save(buffer, "PNG")

@@ -64,10 +64,6 @@ class Workers:
         self.recogniser = SpareProcess()
         self.sounds = SoundReader()
 
-    def begin(self) -> None:
-        """Have the voice ready for the first text."""
-        self.voice.warm_up()
-
     def closing(self) -> list[Step]:
         """Steps that end them."""
         return [one.close for one in (self.vision, self.persons, self.voice, self.recogniser, self.sounds)]

@@ -129,7 +129,7 @@ class SimulatorServer:
 
     def prepare(self) -> None:
         """First part of `start`, before time passes: listen, and have a look at every tick."""
-        self._workers.begin()
+        self._workers.voice.warm_up()
         self._robot.begin()
         self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)

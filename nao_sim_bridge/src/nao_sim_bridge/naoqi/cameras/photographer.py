@@ -154,7 +154,7 @@ class _Series:
         try:
             last = None
             for path in self._paths:
-                frame = self._first() if last is None else self._next(last)
+                frame = self._wait(self._held or self._stream) if last is None else self._next(last)
                 if frame is None:
                     return
                 write_whole(path, encoded(frame.array(), path.suffix[1:]))
@@ -169,9 +169,6 @@ class _Series:
             self.task.finish([str(path) for path in self._paths])
         finally:
             self.end()
-
-    def _first(self) -> Any:
-        return self._wait(self._held if self._held is not None else self._stream)
 
     def _next(self, last: float) -> Any:
         """The first picture that is due after the one of time `last`, None when nobody wants it any more.

@@ -77,9 +77,8 @@ def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_
 def constants(version: str) -> dict[str, Any]:
     """Keys whose value never changes: what the robot is made of."""
     tables = key_tables()
-    values = {k: v for k, v in tables["robot_config_V6"].items() if k != "note"}
-    if version != "V6":
-        values.update({k: v for k, v in tables[f"robot_config_{version}"].items() if k != "note"})
+    values = {**tables["robot_config_V6"], **tables[f"robot_config_{version}"]}
+    values.pop("note", None)
     values["Device/DeviceList/ChestBoard/BodyId"] = "SIMULATED-NAO-BODY"
     values["RobotConfig/Head/FullHeadId"] = "SIMULATED-NAO-HEAD"
     return values

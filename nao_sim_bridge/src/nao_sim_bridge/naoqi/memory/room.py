@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any, Deque, Hashable, Tuple
 
-from nao_sim_bridge.base.sizes import MemorySizes, load_sizes
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 OVERHEAD = 1000
@@ -18,8 +18,8 @@ History = Deque[Tuple[Any, float, int]]
 class MemoryRoom:
     """Counts what clients have in a memory. Not thread-safe: the memory has a lock."""
 
-    def __init__(self, sizes: MemorySizes | None = None) -> None:
-        self._sizes = load_sizes().memory if sizes is None else sizes
+    def __init__(self) -> None:
+        self._sizes = load_sizes().memory
         self._bytes = 0
         self._held: dict[Hashable, int] = {}
 

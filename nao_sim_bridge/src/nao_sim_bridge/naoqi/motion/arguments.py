@@ -150,6 +150,17 @@ def _handle(entry: Any) -> Handle:
     return Handle(Interpolation(int(kind)), time, angle)
 
 
+def pairs(config: Any, field: str, example: str) -> Sequence[Sequence[Any]]:
+    """Pairs of a name and a value, such as the `example`; a BadValue when the list has another shape."""
+
+    def right(pair: Any) -> bool:
+        return isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str)
+
+    if not isinstance(config, (list, tuple)) or not all(map(right, config)):
+        raise BadValue(field, config, f"pairs such as {example}")
+    return config
+
+
 def effectors(names: Any) -> list[str]:
     """Effectors, each once.
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.naoqi.binding.arguments import known
+from nao_sim_bridge.naoqi.motion.arguments import pairs
 from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, feet_gait, parameters
 
 FIELD = "moveConfig"
@@ -52,13 +53,5 @@ def gait_list(which: str) -> list[list[Any]]:
 
 
 def _pairs(config: Any, field: str) -> dict[str, float]:
-    shape = 'pairs such as [["MaxStepX", 0.03], ["StepHeight", 0.02]]'
-    if not isinstance(config, (list, tuple)):
-        raise BadValue(field, config, shape)
-    values: dict[str, float] = {}
-    for pair in config:
-        if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
-            raise BadValue(field, config, shape)
-        name, value = pair
-        values[name] = round(value, DECIMALS) if isinstance(value, float) else value
-    return values
+    given = pairs(config, field, '[["MaxStepX", 0.03], ["StepHeight", 0.02]]')
+    return {name: round(value, DECIMALS) if isinstance(value, float) else value for name, value in given}

@@ -17,14 +17,15 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.hearing.array import microphone_array
 from nao_sim_bridge.hearing.detection import DEFAULT_SENSITIVITY, SoundDetector
 from nao_sim_bridge.hearing.localiser import HeardSound, Localiser, OwnVoice
-from nao_sim_bridge.model.frames import ROBOT, Placement, space_in_torso
-from nao_sim_bridge.model.kinematics import LinkPoses, quaternion_matrix, transform
+from nao_sim_bridge.model.frames import ROBOT, space_in_torso
+from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.switch import Switch, SwitchModule
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.arguments import as_position
 from nao_sim_bridge.sound.ears import Ears, Listener, MicrophoneBlock
+from nao_sim_bridge.tracking.geometry import placement
 
 DETECTION, DETECTED = "ALSoundDetection", "SoundDetected"
 LOCALIZATIONS = ("ALSoundLocalization", "ALAudioSourceLocalization")
@@ -153,10 +154,9 @@ class HeadTrack:
 
     def _pose(self, snapshot: Snapshot) -> HeadPose:
         model = self._simulation.model
-        odometry = transform(quaternion_matrix(snapshot.odometry.orientation), snapshot.odometry.position)
-        placement = Placement(LinkPoses(model, snapshot.positions), odometry)
-        head = placement.links[self._link.parent_link]
-        in_robot = np.linalg.inv(space_in_torso(model, ROBOT, placement)) @ head
+        placed = placement(model, snapshot)
+        head = placed.links[self._link.parent_link]
+        in_robot = np.linalg.inv(space_in_torso(model, ROBOT, placed)) @ head
         up = (quaternion_matrix(snapshot.torso.orientation) @ head[:3, :3])[2]
         return HeadPose(tuple(up.tolist()), as_position(head), as_position(in_robot))
 

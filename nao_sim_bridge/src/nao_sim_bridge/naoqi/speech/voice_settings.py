@@ -202,12 +202,9 @@ class VoiceSettings:
                 raise
 
     def _take(self, wanted: dict[str, Any]) -> None:
-        if "language" in wanted:
-            self.setLanguage(wanted["language"])
-        if "voice" in wanted:
-            self.setVoice(wanted["voice"])
-        if "volume" in wanted:
-            self.setVolume(wanted["volume"])
+        for key, take in (("language", self.setLanguage), ("voice", self.setVoice), ("volume", self.setVolume)):
+            if key in wanted:
+                take(wanted[key])
         if not isinstance(wanted.get("parameters", {}), dict):
             raise BadValue("parameters", wanted["parameters"], "an object of names and numbers")
         for name, value in wanted.get("parameters", {}).items():

@@ -133,7 +133,7 @@ class NaoSimulation:
     @typed(NAME, qi.Map(qi.String, qi.Dynamic), [])
     def stopFilm(self) -> Any:
         """End the film; returns its path, frames, duration in s, and frames left_out, when the file is complete."""
-        return self._host.film.stop().then(lambda film: film.as_dict())
+        return self._host.film.stop().then(lambda film: {**vars(film), "path": str(film.path)})
 
     @typed(NAME, qi.Void, [qi.Bool])
     def plugCharger(self, plugged: bool) -> Any:
