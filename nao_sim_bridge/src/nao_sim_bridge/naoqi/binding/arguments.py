@@ -49,10 +49,7 @@ def one_of(value: Any, field: str, allowed: Collection[Any]) -> Any:
 
 
 def known(name: Any, kind: str, names: Collection[str]) -> Any:
-    """`name`, which has to be one of `names`.
-
-    An UnknownName when it is none of them, of which `kind` says what they name.
-    """
+    """`name`, if it is one of `names`; else an UnknownName, which calls them by their `kind`."""
     if name not in names:
         raise UnknownName(kind, name, names)
     return name

@@ -65,7 +65,7 @@ def read(text: str) -> list[Union[str, Instruction]]:
 def method_call(text: str) -> Tuple[str, str, list[Any]]:
     """Module, method and arguments of a call as it is written, for example ALLeds.fadeRGB("FaceLeds", "red", 0.5).
 
-    A ValueError when it is none.
+    A ValueError when the text is no such call.
     """
     found = METHOD.fullmatch(text)
     if found is None:
