@@ -14,6 +14,7 @@ from nao_sim_bridge.core.hands import COME_TIME, LEAVE_TIME
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.touch_names import CHEST_BUTTON, HEAD, SENSORS
+from nao_sim_bridge.server.pictures import Pictures
 from nao_sim_bridge.world.objects import read_object
 
 MODEL = load_model()
@@ -72,6 +73,13 @@ def test_a_robot_with_noise_feels_errors_of_its_seed_but_the_truth_stays_true(be
     assert noisy.imu.angles != true.imu.angles and noisy.odometry != true.odometry
     assert roll_pitch_yaw(noisy.torso.orientation) == pytest.approx(true.imu.angles, abs=2e-3)
     assert max(map(abs, noisy.angular_velocity)) < 0.01 < max(map(abs, noisy.imu.gyroscope))
+
+
+def test_a_picture_shows_the_joints_as_they_are_not_as_noisy_sensors_say(bench):
+    one = bench("Crouch", sensor_noise=1.0)
+    one.run(0.1)
+    shown = Pictures(one.simulation, None).state()
+    assert shown.joint_positions == one.robot.true_positions != one.now.positions
 
 
 def test_a_broken_motor_gives_no_torque_until_it_is_repaired_and_only_stiff_ones_are_found(bench):

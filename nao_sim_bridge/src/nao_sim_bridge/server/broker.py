@@ -31,12 +31,7 @@ QUIET_LIBQI = "qi.path.sdklayout=silent:qimessaging.servicedirectory=warning"
 
 
 class Broker:
-    """A libqi session that listens on one address and serves modules.
-
-    Attributes:
-        name: Name that modules report as their broker.
-        port: Port it listens on, known after `listen`.
-    """
+    """A libqi session that listens on one address and serves modules, as `name`; its port is known after `listen`."""
 
     def __init__(self, name: str = "nao_sim") -> None:
         qi.logging.setFilters(QUIET_LIBQI)
@@ -53,8 +48,7 @@ class Broker:
     def listen(self, address: str, port: int, still_wanted: Callable[[], bool] = lambda: True) -> None:
         """Listen on `address`:`port`; port 0 takes a free one. Waits for a port that is just being freed.
 
-        Raises:
-            RuntimeError: The address cannot be had.
+        A RuntimeError when the address cannot be had.
         """
         give_up = time.monotonic() + BIND_PATIENCE
         warned = False
@@ -114,8 +108,7 @@ class Broker:
     def service(self, module: str) -> Any:
         """The service of that name, of the simulator or of a client.
 
-        Raises:
-            RuntimeError: There is none, or its program does not answer.
+        A RuntimeError when there is none, or its program does not answer.
         """
         found = self._session.service(module, _async=True)
         return answer(found, threading.Condition(), lambda: True, PATIENCE)

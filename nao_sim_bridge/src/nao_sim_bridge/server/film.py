@@ -34,39 +34,19 @@ FOLLOWER_LIMIT = 5.0
 
 @dataclass(frozen=True)
 class FilmReport:
-    """A film that is complete.
-
-    Attributes:
-        frames: How many pictures it has.
-        duration: s.
-        left_out: Frames that the computer was too slow for.
-    """
+    """A film that is complete."""
 
     path: Path
-    frames: int
-    duration: float
-    left_out: int
-
-    def as_dict(self) -> dict[str, Any]:
-        """Its attributes by name, the path as text."""
-        return {**vars(self), "path": str(self.path)}
+    frames: int  # how many pictures it has
+    duration: float  # s
+    left_out: int  # frames that the computer was too slow for
 
 
 class Film:
-    """One film that is being taken, into the file at `path`.
+    """One film that is being taken, which replaces the file at `path`; a RenderError when there is no film process.
 
     Threads: the simulation's puts states into a queue, a follower of the sound's clock puts sound there, a third one
     sends both to the process that draws. The lock guards the queue.
-
-    Args:
-        path: The file; one that is there is replaced.
-        view: A name of a view.
-        size: Width and height, pixels.
-        frame_rate: Pictures a second of simulated time.
-        engine: What draws; see `Renderer`.
-
-    Raises:
-        RenderError: There is no film process.
     """
 
     def __init__(
@@ -113,13 +93,9 @@ class Film:
         self._put("caption", text)
 
     def end(self, limit: float = END_LIMIT) -> FilmReport:
-        """Draw what waits and complete the file; after `pause`.
+        """Draw what waits and complete the file, with what is drawn within `limit` s of wall time; after `pause`.
 
-        Args:
-            limit: s of wall time. After that the file is completed with what the film process has by then.
-
-        Raises:
-            RenderError: Something went wrong on the way, or it has taken too long.
+        A RenderError when something went wrong on the way, or it has taken too long.
         """
         deadline = time.monotonic() + limit
         if self._follower is not None:

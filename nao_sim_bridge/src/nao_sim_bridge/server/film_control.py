@@ -5,12 +5,13 @@ from __future__ import annotations
 import logging
 import threading
 
-from nao_sim_bridge.base.errors import BadValue, NotAllowed, UnknownName
+from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.record_dir import ClientFiles, unused
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.base.tasks import Task, TaskIds, worked_out
+from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.render.client import RenderError
 from nao_sim_bridge.server.film import END_LIMIT, Film, FilmReport
 from nao_sim_bridge.world.render_state import PRESETS
@@ -35,7 +36,6 @@ class FilmControl:
         self._engine = engine
         self._lock = threading.Lock()
         self._film: Film | None = None
-        self._ids = TaskIds()
 
     def start(self, file: str, view: str, width: int, height: int, frame_rate: float) -> Task:
         """Begin a film; the task ends with its path, as text, when the camera runs.
@@ -44,8 +44,7 @@ class FilmControl:
             file: Name inside the folder for recordings, ending with .mp4; one that is there is replaced. Empty for
                 film.mp4, or film-2.mp4, ...: the first one that is not there.
             view: A view of pictures; empty for three_quarter.
-            width: Pixels, even; 0 for 480.
-            height: Likewise.
+            width, height: Pixels, even; 0 for 480.
             frame_rate: Pictures a second of simulated time; 0 for 20.
 
         Raises:
@@ -54,8 +53,7 @@ class FilmControl:
         """
         view, frame_rate = view or VIEW, frame_rate or FRAME_RATE
         size = (width or SIZE[0], height or SIZE[1])
-        if view not in PRESETS:
-            raise UnknownName("view", view, PRESETS)
+        known(view, "view", PRESETS)
         if not all(16 <= side <= MAX_SIZE and side % 2 == 0 for side in size):
             raise BadValue("film size", size, f"even numbers, 16 to {MAX_SIZE} pixels each way")
         if not 1.0 <= frame_rate <= MAX_FRAME_RATE:
@@ -73,14 +71,12 @@ class FilmControl:
                 self._film = film
             return str(path)
 
-        return worked_out(self._ids.make("startFilm"), start, "startFilm")
+        return worked_out(Task("startFilm", 0), start, "startFilm")
 
     def caption(self, text: str) -> None:
         """Write a text into the film from now on; empty for none.
 
-        Raises:
-            BadValue: It is too long.
-            NotAllowed: Nothing is filmed.
+        A BadValue when it is too long, a NotAllowed when nothing is filmed.
         """
         longest = load_sizes().film.caption_characters
         if len(text) > longest:
@@ -97,7 +93,7 @@ class FilmControl:
                 self._film = None
             return film.end()
 
-        return worked_out(self._ids.make("stopFilm"), stop, "stopFilm")
+        return worked_out(Task("stopFilm", 0), stop, "stopFilm")
 
     def close(self, limit: float = END_LIMIT) -> None:
         """End the film that is taken, before the simulation ends; what is not drawn in `limit` s is left out."""

@@ -12,33 +12,19 @@ from nao_sim_bridge.world.places import RobotPlace
 
 @dataclass(frozen=True)
 class ServerOptions:
-    """How a simulated robot is started.
+    """How a simulated robot is started."""
 
-    Attributes:
-        scene: World, robot version, posture, seed.
-        port: Port; 0 takes a free one.
-        speed: Simulated seconds per wall second, infinity for as fast as possible.
-        gui: Show the robot in a window.
-        record_dir: Folder for files of clients; "~" stands for the home of the user.
-        sound_file: Name in `record_dir` of a WAV for everything that the loudspeakers play; empty for none.
-        sound_card: Let it be heard on this computer, too; only at speed 1.
-        renderer: What draws: "auto", "opengl" or "builtin"; see `Renderer`.
-        robots: How many there are in the world; with more than one the port is that of the first.
-        places: Where they stand; empty for where the world says, or else the usual places.
-        allow_private_streams: Whether playWebStream may fetch from this computer and from private networks.
-    """
-
-    scene: Scene = field(default_factory=Scene)
+    scene: Scene = field(default_factory=Scene)  # world, robot version, posture, seed
     address: str = "127.0.0.1"
-    port: int = 9559
-    speed: float = 1.0
+    port: int = 9559  # 0 takes a free one
+    speed: float = 1.0  # simulated seconds per wall second, infinity for as fast as possible
     paused: bool = False
-    gui: bool = False
-    record_dir: Path = DEFAULT_RECORD_DIR
-    sound_file: str = ""
-    sound_card: bool = False
-    renderer: str = "auto"
+    gui: bool = False  # show the robot in a window
+    record_dir: Path = DEFAULT_RECORD_DIR  # folder for files of clients; "~" stands for the home of the user
+    sound_file: str = ""  # name in `record_dir` of a WAV for everything that the loudspeakers play; empty for none
+    sound_card: bool = False  # let it be heard on this computer, too; only at speed 1
+    renderer: str = "auto"  # what draws: "auto", "opengl" or "builtin"; see `Renderer`
     name: str = "nao"
-    robots: int = 1
-    places: tuple[RobotPlace, ...] = ()
-    allow_private_streams: bool = False
+    robots: int = 1  # how many there are in the world; with more than one the port is that of the first
+    places: tuple[RobotPlace, ...] = ()  # where they stand; empty for where the world says, or else the usual places
+    allow_private_streams: bool = False  # whether playWebStream may fetch from this computer and from private networks

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import logging
 import threading
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from PIL import Image
@@ -42,34 +43,22 @@ class Pictures:
             viewer.close()
             self.open_window()
 
-    def state(self, simulation: Simulation | None = None) -> RenderState:
+    def state(self) -> RenderState:
         """What is to be seen now."""
-        simulation = simulation or self._simulation
-        snapshot = simulation.snapshot
-        return RenderState(
-            snapshot.torso.position,
-            snapshot.torso.orientation,
-            snapshot.positions,
-            simulation.robot.leds.values,
-            snapshot.objects,
-            snapshot.placed,
-            snapshot.gone,
-            simulation.shared.looks_beside(simulation),
-        )
+        simulation = self._simulation
+        return simulation.render_state(simulation.snapshot)
 
     def png(self, view: str, width: int, height: int) -> bytes:
         """A PNG picture of the robot from a named view.
 
-        Raises:
-            UnknownName: There is no such view.
-            BadValue: The size is out of range.
-            RenderError: The picture process failed.
+        An UnknownName when there is no such view, a BadValue when the size is out of range, a RenderError when the
+        picture process failed.
         """
         whole = isinstance(width, int) and isinstance(height, int)
         if not whole or not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
             raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
         simulation = self._simulation
-        state = self.state(simulation)
+        state = simulation.render_state(simulation.snapshot)
         camera = preset_camera(view, simulation.model, state, width, height)
         buffer = io.BytesIO()
         Image.fromarray(simulation.renderer.render(state, camera, TIMEOUT), "RGB").save(buffer, "PNG")
@@ -78,8 +67,7 @@ class Pictures:
     def open_window(self) -> None:
         """Show the simulation in a window from now on; a click on a robot touches the sensor that is there.
 
-        Raises:
-            RenderError: There is no display.
+        A RenderError when there is no display.
         """
         self._viewer = Viewer(self._simulation.scene.world, self._simulation.scene.version).start()
         self._viewer.on_pointer = self._on_pointer
@@ -97,10 +85,8 @@ class Pictures:
             for robot in self._simulation.shared.robots:
                 robot.robot.point_at(ray)
 
-        try:
+        with suppress(SimulationStopped):  # and with it all touches
             self._runner.execute(point, "point")
-        except SimulationStopped:
-            pass  # and with it all touches
 
     def _mirror(self, viewer: Viewer) -> None:
         while not self._closing.wait(WINDOW_PERIOD):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any, Callable, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.temperatures import BATTERY, HEAD
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import known, number
 
 COLDEST, HOTTEST = -40.0, 200.0
 
@@ -20,13 +20,10 @@ class HandsControl:
         self._runner = runner
 
     def touch(self, sensors: Sequence[str], duration: float, wait: bool = True) -> Task:
-        """Touch a sensor, or stroke over several.
+        """Touch a sensor, or stroke over several, by their names or those of their events, for `duration` s.
 
-        Args:
-            sensors: Names of sensors, or of their events.
-            duration: s of simulated time; see `Hands.touch`.
-            wait: Whether the task ends when the hand has gone or, without a duration, when it is felt; else when the
-                hand begins to come.
+        The task ends when the hand has gone or, without a duration, when it is felt; without `wait`, when it begins to
+        come.
         """
         wanted, lasting = _names(sensors), number(duration, "duration", 0.0)
 
@@ -59,25 +56,18 @@ class HealthControl:
         return self._run(lambda: self._simulation.robot.power.battery.plug(bool(plugged)), "plugCharger")
 
     def set_battery_charge(self, charge: float) -> Task:
-        """Have the battery this full, 0..1; it goes on from there.
-
-        Raises:
-            BadValue: `charge` is not within 0..1.
-        """
+        """Have the battery this full, 0..1; it goes on from there. A BadValue when `charge` is not within 0..1."""
         wanted = number(charge, "charge", 0.0, 1.0)
         return self._run(lambda: self._simulation.robot.power.battery.put(wanted), "setBatteryCharge")
 
     def set_temperature(self, device: str, celsius: float) -> Task:
         """Have the motor of a joint, the computer in the `Head` or the `Battery` this warm, degC.
 
-        Raises:
-            BadValue: The temperature makes no sense.
-            UnknownName: There is no such device.
+        A BadValue when the temperature makes no sense, an UnknownName when there is no such device.
         """
         wanted = number(celsius, "temperature", COLDEST, HOTTEST)
         joints = self._simulation.model.joint_index
-        if device not in (*joints, HEAD, BATTERY):
-            raise UnknownName("device", device, (*joints, HEAD, BATTERY))
+        known(device, "device", (*joints, HEAD, BATTERY))
 
         def warm_up() -> None:
             power = self._simulation.robot.power

@@ -9,17 +9,22 @@ from typing import TYPE_CHECKING, Any, Callable
 from nao_sim_bridge.base.closing import Step
 from nao_sim_bridge.base.config import sounds_directory
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.behaviors.installed import InstalledBehaviors
+from nao_sim_bridge.behaviors.player import BehaviorPlayer
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.hearing.recogniser import SpareProcess
 from nao_sim_bridge.naoqi import motion
-from nao_sim_bridge.naoqi.behaviors.wiring import BehaviorModules
+from nao_sim_bridge.naoqi.behaviors import animation_player, behavior_manager, frame_manager
+from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.body import leds
 from nao_sim_bridge.naoqi.body.body_modules import BodyModules
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.cameras import video_device
-from nao_sim_bridge.naoqi.cameras.photos_and_films import PictureModules
+from nao_sim_bridge.naoqi.cameras.film_recorder import VideoRecorder
+from nao_sim_bridge.naoqi.cameras.photographer import Photographer
+from nao_sim_bridge.naoqi.cameras.photos_and_films import FILMS, PHOTOS, ALPhotoCapture, ALVideoRecorder
 from nao_sim_bridge.naoqi.life.wiring import LifeModules
 from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
@@ -28,6 +33,7 @@ from nao_sim_bridge.naoqi.motion.wake import AWAKE
 from nao_sim_bridge.naoqi.sound.sound_extractors import DETECTION, LOCALIZATIONS, ALSoundDetection, SoundLocalization
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.sound.wiring import AudioModules, SpeechModules
+from nao_sim_bridge.naoqi.speech.recognition_engine import NAME as RECOGNITION
 from nao_sim_bridge.naoqi.speech.speech_recognition import ALSpeechRecognition
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
@@ -49,13 +55,7 @@ log = logging.getLogger("nao_sim.robot")
 
 
 class Workers:
-    """Programs and threads that work for a robot and know nothing of it; they take long to start.
-
-    Attributes:
-        voice: Makes the robot's speech.
-        persons: Makes the speech of persons: they may speak while the robot does.
-        vision: Where detectors look at pictures.
-    """
+    """Programs and threads that work for a robot and know nothing of it; they take long to start."""
 
     def __init__(self) -> None:
         self.voice = Studio()
@@ -64,35 +64,18 @@ class Workers:
         self.recogniser = SpareProcess()
         self.sounds = SoundReader()
 
-    def begin(self) -> None:
-        """Have the voice ready for the first text."""
-        self.voice.warm_up()
-
     def closing(self) -> list[Step]:
         """Steps that end them."""
         return [one.close for one in (self.vision, self.persons, self.voice, self.recogniser, self.sounds)]
 
 
 class RobotModules:
-    """The modules of one robot, and what only a simulator can do to it.
+    """The modules of one robot at time 0, and what only a simulator can do to it.
 
     Attributes:
         simulation: Touched in the simulation thread only; replaced by a factory reset, with everything else in here.
         runner: That thread, for this simulation.
         began: What `SimulatorServer.now` says at time 0 of the simulation, s.
-        memory: What ALMemory keeps.
-        files: Where clients may have files written to and read from.
-        speech: The robot's voice.
-        vision: What it recognises in its pictures.
-        sounds, things: Of the world.
-        hands: What touches the robot.
-        health: Charger, temperatures, broken devices.
-
-    Args:
-        simulation: The robot and its world, at time 0.
-        runner: The thread that it runs in, or will.
-        broker: Finds modules of clients.
-        system: What ALSystem makes of the memory and the time zone.
     """
 
     def __init__(
@@ -113,13 +96,17 @@ class RobotModules:
         self._audio = AudioModules(simulation, runner, sounds, broker, memory, options.allow_private_streams)
         self.speech = SpeechModules(simulation, runner, memory, files, broker, workers.voice)
         posture = ALRobotPosture(simulation, runner, memory)
-        behaviors = BehaviorModules(simulation, runner, memory, files, self.speech, posture)
+        library = self.speech.library
+        player = BehaviorPlayer(simulation, self.speech.animator, library, self.speech.say, posture.goToPosture)
+        running = RunningBehaviors(player, InstalledBehaviors(library), memory)
         zone = TimeZone()
-        self._life = LifeModules(simulation, runner, memory, broker, self.speech, posture, behaviors.running, zone)
+        self._life = LifeModules(simulation, runner, memory, broker, self.speech, posture, running, zone)
         self.recognition = ALSpeechRecognition(simulation, runner, memory, files, workers.recogniser)
         self.video = video_device.ALVideoDevice(simulation.cameras, files)
         self.vision = VisionModules(simulation, memory, files, workers.vision)
-        self._pictures_taken = PictureModules(simulation, runner, files)
+        cameras = simulation.cameras
+        self._photographer = Photographer(cameras, PHOTOS)
+        self._recorder = VideoRecorder(cameras, runner, FILMS)
         self.sounds = WorldSoundsControl(simulation, runner, sounds, workers.persons)
         self.things = ThingsControl(simulation, runner, files)
         self.hands = HandsControl(simulation, runner)
@@ -131,26 +118,25 @@ class RobotModules:
             "ALLeds": leds.parts(simulation, runner),
             "ALMotion": motion.parts(simulation, runner, memory),
             "ALRobotPosture": [posture],
-            **self._audio.modules(),
-            **self.speech.modules(),
-            **behaviors.modules(),
-            **self._life.modules(),
-            **self.recognition.modules(),
+            **self._audio.modules,
+            **self.speech.modules,
+            behavior_manager.NAME: [behavior_manager.ALBehaviorManager(running, runner, memory, files)],
+            animation_player.NAME: [animation_player.ALAnimationPlayer(running, simulation, runner)],
+            frame_manager.NAME: [frame_manager.ALFrameManager(running, runner, files)],
+            **self._life.modules,
+            RECOGNITION: self.recognition.parts(),
             DETECTION: ALSoundDetection(simulation, memory).parts(),
             **{name: SoundLocalization(name, simulation, memory).parts() for name in LOCALIZATIONS},
             video_device.NAME: self.video.parts(),
-            **self.vision.modules(),
-            **self._pictures_taken.modules(),
-            **self._body.modules(),
+            **self.vision.modules,
+            PHOTOS: [ALPhotoCapture(self._photographer, files, cameras.tables)],
+            FILMS: [ALVideoRecorder(self._recorder, files, cameras.tables)],
+            **self._body.modules,
             "ALSystem": [system(memory, zone)],
         }
 
     def begin(self) -> None:
-        """Have a look at every tick; before time passes.
-
-        Raises:
-            SimulationError: A sound of the world cannot be had.
-        """
+        """Have a look at every tick; before time passes. A SimulationError when a sound of the world cannot be had."""
         simulation, memory = self.simulation, self.memory
         if simulation is simulation.shared.robots[0]:
             self.sounds.begin()
@@ -177,7 +163,8 @@ class RobotModules:
             self._life.close,
             *self._audio.closing(),
             *self.vision.closing(),  # before what has files to complete, and needs the pictures that are drawn
-            *self._pictures_taken.closing(),
+            self._photographer.close,  # before the film, whose last frames need not wait for the photos
+            self._recorder.close,
             *self.video.closing(),
             partial(self.film.close, film_limit),  # what takes longest
         ]

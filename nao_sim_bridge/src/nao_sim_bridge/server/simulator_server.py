@@ -18,7 +18,7 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Scene, Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import number, vector
 from nao_sim_bridge.naoqi.binding.binding import Service
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.system.nao_simulation import NAME as NAO_SIMULATION
@@ -54,8 +54,6 @@ class SimulatorServer:
     and the programs that work for it stay.
 
     Attributes:
-        broker: The libqi side.
-        pictures: Drawings of the robot.
         ended: Set when a client shut the robot down or the simulation failed.
 
     Args:
@@ -122,9 +120,8 @@ class SimulatorServer:
     def start(self) -> None:
         """Listen, register the modules and let time pass.
 
-        Raises:
-            RuntimeError: The address cannot be had.
-            SimulationError: The sound card, the file for sound, or a sound of the world cannot be had.
+        A RuntimeError when the address cannot be had; a SimulationError when the sound card, the file for sound, or a
+        sound of the world cannot be had.
         """
         self.prepare()
         self.runner.start()
@@ -132,7 +129,7 @@ class SimulatorServer:
 
     def prepare(self) -> None:
         """First part of `start`, before time passes: listen, and have a look at every tick."""
-        self._workers.begin()
+        self._workers.voice.warm_up()
         self._robot.begin()
         self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)
@@ -221,8 +218,7 @@ class SimulatorServer:
     def take(self, robot: RobotModules, began: float) -> Callable[[], None]:
         """Be another robot from now on; simulation thread, which has just taken its simulation.
 
-        Returns:
-            To be called outside the thread: closes what was left behind, but for what draws.
+        What it returns is to be called outside the thread: it closes what was left behind, but for what draws.
         """
         former, robot.began = self._robot, began
         former.runner.leave_behind()
@@ -280,11 +276,9 @@ class SimulatorServer:
 
     def push(self, force: Sequence[float], duration: float, link: str) -> None:
         """Push a link with `force` (N, in world) for `duration` s of simulated time from now on."""
-        vector = tuple(numbers(force, "force"))
-        if len(vector) != 3:
-            raise BadValue("force", force, "[x, y, z] in N")
+        newtons = tuple(vector(force, "force", 3, "[x, y, z] in N"))
         lasting = number(duration, "duration", 0.0, MAX_PUSH)
-        self.runner.call(lambda: self.simulation.robot.push(vector, lasting, link))
+        self.runner.call(lambda: self.simulation.robot.push(newtons, lasting, link))
 
     def press(self, sensors: Sequence[str]) -> None:
         """Simulated fingers on these touch sensors and on no others."""

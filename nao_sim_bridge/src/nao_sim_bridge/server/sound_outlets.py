@@ -34,13 +34,8 @@ class SoundCardError(SimulationError):
 class SoundFile:
     """A WAV of everything that the loudspeakers play from now on, silence included; whole at any moment.
 
-    While the disk is full, it is silent.
-
-    Args:
-        path: The file; one that is there is replaced in the end.
-
-    Raises:
-        FileTrouble: It cannot be written.
+    While the disk is full, it is silent. What is at `path` is replaced in the end; a FileTrouble when it cannot be
+    written.
     """
 
     def __init__(self, simulation: Simulation, path: Path) -> None:
@@ -86,8 +81,7 @@ class SoundFile:
 class SoundCard:
     """The computer's own loudspeakers; time must run at speed 1.
 
-    Raises:
-        SoundCardError: There is no library or no card.
+    A SoundCardError when there is no library or no card.
     """
 
     def __init__(self, simulation: Simulation) -> None:

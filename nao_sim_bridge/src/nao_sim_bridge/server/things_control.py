@@ -31,8 +31,7 @@ class ThingsControl:
     def place_described(self, description: str) -> Task:
         """Place what a text describes: an entry of a world file in YAML or JSON; see `place`.
 
-        Raises:
-            BadValue: The text is neither.
+        A BadValue when the text is neither.
         """
         if not isinstance(description, str) or len(description) > LONGEST_DESCRIPTION:
             raise BadValue("description", str(description)[:40], f"{LONGEST_DESCRIPTION} characters at most")
@@ -45,9 +44,7 @@ class ThingsControl:
     def place(self, entry: Mapping[str, Any]) -> Task:
         """Place a thing as in a world file, its `image` a file of the client; the task ends when it is there.
 
-        Raises:
-            WorldError: The entry is wrong.
-            ValueError: The client may not have that file.
+        A WorldError when the entry is wrong, a ValueError when the client may not have that file.
         """
         # Outside the simulation thread: figures take a while.
         thing = read_object(entry, WHERE, lambda name: self._files.to_read(name))
@@ -56,13 +53,10 @@ class ThingsControl:
     def move(
         self, name: str, position: Sequence[float], rpy: Sequence[float], duration: float, wait: bool = True
     ) -> Task:
-        """Put a thing to another place.
+        """Put a thing to another place, [x, y, z] in m over the floor; see `Things.move`.
 
-        Args:
-            position: [x, y, z] in m over the floor; see `Things.move`.
-            rpy: [roll, pitch, yaw] in rad; [] to keep it.
-            duration: How long it is on its way, s of simulated time.
-            wait: Whether the task ends on arrival, else when it begins to move.
+        `rpy` is [roll, pitch, yaw] in rad, or [] to keep it; it is `duration` s of simulated time on its way. The task
+        ends on arrival; without `wait`, when it begins to move.
         """
         place, lasting = numbers(position, "position"), number(duration, "duration", 0.0)
         turn = numbers(rpy, "rpy") or None

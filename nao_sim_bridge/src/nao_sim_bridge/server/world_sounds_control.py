@@ -27,8 +27,7 @@ LONGEST_TEXT = 10000
 class WorldSoundsControl:
     """Places sounds in the world, and lets persons speak there.
 
-    Args:
-        studio: Makes the voices of persons: not that of the robot, for both may speak at the same time.
+    The studio makes the voices of persons: not that of the robot, for both may speak at the same time.
     """
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, sounds: SoundFiles, studio: Studio) -> None:
@@ -44,8 +43,7 @@ class WorldSoundsControl:
     def begin(self) -> None:
         """Let the sounds of the world file begin; before time passes.
 
-        Raises:
-            SimulationError: One of them cannot be had.
+        A SimulationError when one of them cannot be had.
         """
         world = self._simulation.scene.load_world(self._simulation.settings.contact.sole_friction)
         WorldSounds(self._simulation, world, self._speak, self._sounds.reader.read).begin()
@@ -53,11 +51,8 @@ class WorldSoundsControl:
     def add(self, name: str, sound: str, position: Sequence[float], level_db: float, loop: bool) -> Task:
         """Place a sound; the task ends when it has begun.
 
-        Args:
-            sound: A file's name, "noise:white", "noise:pink", or "tone:" and a frequency in Hz.
-            position: [x, y, z] in world, m.
-            level_db: At 1 m, dB SPL.
-            loop: Again and again; noises and tones last until they are removed in any case.
+        `sound` is a file's name, "noise:white", "noise:pink", or "tone:" and a frequency in Hz; position is [x, y, z]
+        in world, m; the level that at 1 m, dB SPL. Noises and tones last until they are removed even without `loop`.
         """
         made, endless = self._sound(sound)
         source = SoundSource(name, _position(position), made, _level(level_db), bool(loop) or endless)
@@ -78,10 +73,8 @@ class WorldSoundsControl:
     def person_says(self, text: str, position: Sequence[float], voice: str, level_db: float) -> Task:
         """Let a person say something; the task ends when it has been said, and its kill silences.
 
-        Args:
-            position: Of the mouth, in world, m.
-            voice: Name of a voice, empty for the robot's first.
-            level_db: At 1 m, dB SPL; 0 for that of a talking person.
+        The position is that of the mouth, in world, m; no voice is the robot's first; the level is that at 1 m, dB SPL,
+        0 for that of a talking person.
         """
         if not text.strip() or len(text) > LONGEST_TEXT:
             raise BadValue("text", text[:60], f"1 to {LONGEST_TEXT} characters")

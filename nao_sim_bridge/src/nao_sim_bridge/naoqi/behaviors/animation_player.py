@@ -61,8 +61,6 @@ class ALAnimationPlayer:
         self._tags.clear()
         self._paths = [ANIMATIONS]
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _tagged(self, tag: str, posture: str) -> list[Behavior]:
         added = self._tags.get(tag.lower(), ())
         return [

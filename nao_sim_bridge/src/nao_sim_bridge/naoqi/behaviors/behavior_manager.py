@@ -163,8 +163,6 @@ class ALBehaviorManager:
         behaviors = [self._installed.resolve(name) for name in self.getDefaultBehaviors()]
         return self._start([b for b in behaviors if b.name not in self._running.names], "playDefaultProject")
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _start(self, behaviors: Sequence[Behavior], call: str) -> Task:
         def start() -> None:
             for behavior in behaviors:

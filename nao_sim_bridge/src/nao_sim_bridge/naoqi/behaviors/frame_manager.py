@@ -33,8 +33,7 @@ class _Made:
 class ALFrameManager:
     """ALFrameManager as the simulated robot offers it, without what NAOqi has had no use for since 1.14.
 
-    Args:
-        running: Starts and stops behaviours; those of this module are called by their ids.
+    The behaviours that it makes are run under their ids.
     """
 
     def __init__(self, running: RunningBehaviors, runner: SimulationRunner, files: ClientFiles) -> None:
@@ -110,8 +109,6 @@ class ALFrameManager:
 
     def getMotionLength(self, number: str) -> float:
         return length_of(self._of(number).behavior.step)
-
-    # --- inside ---------------------------------------------------------------------------------------------------
 
     def _make(self, step: Step, path: str) -> str:
         most = load_sizes().behaviors.made

@@ -39,9 +39,7 @@ class RunningBehaviors:
     def start(self, behavior: Behavior) -> Task:
         """Begin with a behaviour; its task ends with it.
 
-        Raises:
-            NaoqiError: It runs already.
-            BehaviorFailed: Its first step cannot be done.
+        A NaoqiError when it runs already, a BehaviorFailed when its first step cannot be done.
         """
         if behavior.name in self._tasks:
             raise NaoqiError(f"{behavior.name} runs already")
@@ -54,11 +52,7 @@ class RunningBehaviors:
         return task
 
     def stop(self, name: str) -> None:
-        """Stop a behaviour.
-
-        Raises:
-            NaoqiError: It does not run.
-        """
+        """Stop a behaviour; a NaoqiError when it does not run."""
         if name not in self._tasks:
             known = ", ".join(self._tasks) or "none"
             raise NaoqiError(f"{name} does not run; running is {known}")

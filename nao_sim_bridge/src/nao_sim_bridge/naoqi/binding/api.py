@@ -84,8 +84,7 @@ def _tables() -> Mapping[str, Any]:
 def module_methods(module: str) -> Mapping[str, Method]:
     """Methods of a module by name, those included that it shares with others: "_inherits" names their tables.
 
-    Raises:
-        ConfigError: The module is not in the table.
+    A ConfigError when the module is not in the table.
     """
     tables = _tables()
     if module not in tables:

@@ -49,11 +49,7 @@ def one_of(value: Any, field: str, allowed: Collection[Any]) -> Any:
 
 
 def known(name: Any, kind: str, names: Collection[str]) -> Any:
-    """`name`, which has to be one of `names`.
-
-    Raises:
-        UnknownName: It is none of them, of which `kind` says what they name.
-    """
+    """`name`, if it is one of `names`; else an UnknownName, which calls them by their `kind`."""
     if name not in names:
         raise UnknownName(kind, name, names)
     return name
@@ -64,6 +60,16 @@ def numbers(values: Any, field: str, low: float = -math.inf, high: float = math.
     if not isinstance(values, (list, tuple)):
         raise BadValue(field, values, "a list of numbers")
     return [number(v, f"{field}[{i}]", low, high) for i, v in enumerate(values)]
+
+
+def vector(
+    values: Any, field: str, count: int, allowed: str, low: float = -math.inf, high: float = math.inf
+) -> list[float]:
+    """A list of `count` finite numbers within [low, high], of which errors say that `allowed` are."""
+    listed = numbers(values, field, low, high)
+    if len(listed) != count:
+        raise BadValue(field, values, allowed)
+    return listed
 
 
 def per_item(value: Any, count: int, field: str, low: float = -math.inf, high: float = math.inf) -> list[float]:

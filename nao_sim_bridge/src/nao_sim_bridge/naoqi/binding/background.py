@@ -14,23 +14,19 @@ Work = Callable[[Wanted], Any]
 
 
 class Background:
-    """Jobs in threads of their own.
-
-    Args:
-        released: Called when `holds` has become False.
-    """
+    """Jobs in threads of their own; `released` is called when `holds` has become False."""
 
     def __init__(self, released: Callable[[], None] = lambda: None) -> None:
         self._released = released
         self._lock = threading.Lock()
         self._jobs: deque[Callable[[], None]] = deque()
         self._working = False
-        self._unfinished = 0
+        self.unfinished = 0  # jobs in turn that have not ended
         self._stops = 0
 
     def holds(self) -> bool:
         """Whether time that runs faster than the wall clock should wait, as for a robot the work takes next to none."""
-        return self._unfinished > 0
+        return self.unfinished > 0
 
     def stop(self) -> None:
         """Nobody wants what has been asked for up to now."""
@@ -39,23 +35,19 @@ class Background:
     def in_turn(self, work: Work, name: str) -> Task:
         """Do something after what was asked for before; time that runs fast waits for it.
 
-        Args:
-            work: Called with a function that answers whether anybody still wants the result. When it returns a task,
-                time waits for that as well.
-            name: Name of the task.
-
-        Returns:
-            A task that ends with what `work` returns or raises, or when nobody wants it any more.
+        `work` is called with a function that answers whether anybody still wants the result; when it returns a task,
+        time waits for that as well. The task that this returns ends with what `work` returns or raises, or when nobody
+        wants it any more.
         """
         with self._lock:
-            self._unfinished += 1
+            self.unfinished += 1
         task, job = self._job(work, name, self._finished)
         with self._lock:
             self._jobs.append(job)
             if self._working:
                 return task
             self._working = True
-        threading.Thread(target=self._work, name="sound files", daemon=True).start()
+        threading.Thread(target=self._work, name=name, daemon=True).start()
         return task
 
     def beside(self, work: Work, name: str) -> Task:
@@ -104,7 +96,7 @@ class Background:
 
     def _finished(self) -> None:
         with self._lock:
-            self._unfinished -= 1
+            self.unfinished -= 1
         self._released()
 
 
@@ -114,12 +106,8 @@ log = logging.getLogger("nao_sim.services")
 class ModuleCalls:
     """Calls modules one after the other; time that runs faster than the wall clock waits for them. Any thread.
 
-    Attributes:
-        holds: Whether time should wait.
-
-    Args:
-        broker: Finds modules: `service(name)`.
-        released: Called when time need not wait any more.
+    The `broker` finds modules by `service(name)`; `holds` says whether time should wait, `released` is called when it
+    need not any more.
     """
 
     def __init__(self, broker: Any, released: Callable[[], None]) -> None:

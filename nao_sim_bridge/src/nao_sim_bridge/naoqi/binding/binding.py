@@ -67,8 +67,7 @@ class Service:
     def rebind(self, parts: Sequence[Any]) -> Callable[[], None]:
         """Have other objects of the same kinds do the work from now on.
 
-        Returns:
-            To be called when the former ones do nothing any more: ends calls that wait for something of theirs.
+        What it returns is to be called when the former ones do nothing any more: it ends calls that wait for them.
         """
         for part in parts:
             if hasattr(part, "take_over"):

@@ -23,7 +23,6 @@ def answer(future: Any, news: threading.Condition, wanted: Callable[[], bool], l
     """The value of a libqi future, once it has one.
 
     Args:
-        future: Of the call.
         news: Notified when `wanted` may have changed.
         wanted: Whether anybody still waits; called with `news` held.
         limit: How long to wait, s of wall time; None for `GIVEN_UP`.

@@ -10,11 +10,7 @@ from nao_sim_bridge.base.sizes import load_sizes
 
 
 def check_sizes(arguments: Iterable[Any]) -> None:
-    """Raise an error if the arguments of a call are too large together.
-
-    Raises:
-        BadValue: They are; it says what there is and what is allowed.
-    """
+    """Raise a BadValue, which says what is there and allowed, if the arguments of a call are too large together."""
     sizes, items = load_sizes().call, 0
     waiting: list[tuple[Any, int]] = [(arguments, 0)]
     while waiting:
@@ -39,20 +35,15 @@ def _within(what: str, there: int, unit: str, most: int) -> None:
 
 
 class Row(NamedTuple):
-    """A line of the table of bounds.
-
-    Attributes:
-        unit: Of `lowest` and `highest`.
-        smallest: How near to 0 it may be when it is not 0; 0 where that does not matter.
-        where: Names of NAOqi's parameters, "Module.method parameter" where one has another kind than its name says,
-            "field NAME" of ROS services of the simulator, "world NAME" of keys of world files.
-    """
+    """A line of the table of bounds."""
 
     kind: str
     lowest: float
     highest: float
-    unit: str
-    smallest: float
+    unit: str  # of `lowest` and `highest`
+    smallest: float  # how near to 0 it may be when it is not 0; 0 where that does not matter
+    # Names of NAOqi's parameters, "Module.method parameter" where one has another kind than its name says, "field NAME"
+    # of ROS services of the simulator, "world NAME" of keys of world files.
     where: tuple[str, ...]
 
 
@@ -62,11 +53,7 @@ def kind_of(module: str, method: str, parameter: str) -> Kind:
 
 
 def check_arguments(module: str, method: str, names: Sequence[str], values: Sequence[Any]) -> None:
-    """Look at every number in the arguments of a call.
-
-    Raises:
-        BadValue: One of them is out of the bounds of its kind.
-    """
+    """Look at every number in the arguments of a call; a BadValue when one of them is out of the bounds of its kind."""
     for name, value in zip(names, values):
         if not isinstance(value, (str, bool)):
             check(value, name, kind_of(module, method, name))

@@ -18,12 +18,7 @@ class Switch(ABC):
     def __init__(self) -> None:
         self._lock = threading.RLock()
         self._wanted = False
-        self._paused = False
-
-    @property
-    def paused(self) -> bool:
-        """Whether it does nothing although somebody is subscribed."""
-        return self._paused
+        self.paused = False  # whether it does nothing although somebody is subscribed
 
     @property
     @abstractmethod
@@ -32,7 +27,7 @@ class Switch(ABC):
 
     @property
     def _works(self) -> bool:
-        return self._wanted and not self._paused
+        return self._wanted and not self.paused
 
     def start(self) -> None:
         """Somebody is subscribed."""
@@ -44,7 +39,7 @@ class Switch(ABC):
 
     def pause(self, paused: bool) -> None:
         """Do nothing for a while, or go on."""
-        self._set("_paused", paused)
+        self._set("paused", paused)
 
     def _set(self, name: str, value: bool) -> None:
         with self._lock:
@@ -57,12 +52,7 @@ class Switch(ABC):
 
 
 class SwitchModule:
-    """Methods that NAOqi's extractors with ears or eyes have in common. No other methods are public.
-
-    Args:
-        switch: The ears or eyes.
-        setters: What takes the value of a parameter, by its name.
-    """
+    """What NAOqi's extractors with ears or eyes have in common, and nothing else; `setters` take parameters by name."""
 
     def __init__(self, switch: Switch, setters: Mapping[str, Callable[[Any], Any]]) -> None:
         self._switch = switch

@@ -25,11 +25,8 @@ def fitted(method: Method, arguments: Sequence[Any], module: str = "") -> list[A
     A text where it takes a list of texts is a list of this one; a whole number is an int, also where it came as 2.0 or
     as true. Of overloads that take the same number of arguments, the one counts for which least has to be changed.
 
-    Some numbers have bounds of their own in one `module`.
-
-    Raises:
-        NaoqiError: It takes another number of arguments.
-        BadValue: One of them is of another type, or a number in it is out of bounds.
+    Some numbers have bounds of their own in one `module`. A NaoqiError when it takes another number of arguments; a
+    BadValue when one of them is of another type, or a number in it is out of bounds.
     """
     overloads = [overload for overload in method.overloads if len(overload.types) == len(arguments)]
     if not overloads:

@@ -29,50 +29,44 @@ class BodyModules:
         self._simulation = simulation
         self._memory = memory
         self._touch = touch.ALTouch(simulation.model, memory)
-        self._gestures = tactile_gesture.ALTactileGesture(memory)
-        self._sensors = sensors.ALSensors(runner, memory)
         self._sonar = sonar.ALSonar(simulation, runner, memory)
-        self._battery = battery.ALBattery(runner, memory)
-        self._temperature = body_temperature.ALBodyTemperature(simulation, runner, memory)
-        self._diagnosis = diagnosis.ALDiagnosis(simulation, memory)
-        self._pushes = motion_events.PushEvents(simulation, memory)
-        self._pose = posture.ALRobotPose(runner, simulation.model)
-        self._dcm = dcm.DCM(simulation, runner, memory)
-
-    def begin(self) -> None:
-        """Look at the robot after each tick from now on; before time passes."""
-        simulation, memory = self._simulation, self._memory
-        memory.add_live(sonar.sonar_keys(self._sonar))
-        simulation.after_tick += [
+        gestures, stiffness = tactile_gesture.ALTactileGesture(memory), sensors.ALSensors(runner, memory)
+        power = battery.ALBattery(runner, memory)
+        temperature = body_temperature.ALBodyTemperature(simulation, runner, memory)
+        failures = diagnosis.ALDiagnosis(simulation, memory)
+        pose = posture.ALRobotPose(runner, simulation.model)
+        self._watchers = [
             posture.PostureEvents(simulation.model, memory),
             motion_events.FallEvents(simulation, memory),
             touch.FootEvents(memory),
             self._touch,
-            self._gestures,
-            self._sensors,
+            gestures,
+            stiffness,
             self._sonar,
             motion_events.DiagnosisEvents(simulation, memory),
-            self._battery,
-            self._temperature,
-            self._diagnosis,
-            self._pushes,
-            self._pose,
+            power,
+            temperature,
+            failures,
+            motion_events.PushEvents(simulation, memory),
+            pose,
         ]
-        simulation.after_reset.append(self._touch.forget)
-
-    def modules(self) -> dict[str, list[Any]]:
-        """The objects that together have the methods of each module."""
-        return {
+        self.modules: dict[str, list[Any]] = {
             touch.TOUCH: [self._touch],
-            tactile_gesture.NAME: [self._gestures],
+            tactile_gesture.NAME: [gestures],
             touch.CHEST: [touch.EventsOnly()],
             touch.FEET: [touch.EventsOnly()],
-            sensors.NAME: self._sensors.parts(),
+            sensors.NAME: stiffness.parts(),
             sonar.NAME: self._sonar.parts(),
-            battery.NAME: [self._battery],
-            body_temperature.NAME: [self._temperature],
-            diagnosis.NAME: [self._diagnosis],
-            robot_model.NAME: [robot_model.ALRobotModel(self._simulation.model.version)],
-            posture.POSE: [self._pose],
-            dcm.NAME: [self._dcm],
+            battery.NAME: [power],
+            body_temperature.NAME: [temperature],
+            diagnosis.NAME: [failures],
+            robot_model.NAME: [robot_model.ALRobotModel(simulation.model.version)],
+            posture.POSE: [pose],
+            dcm.NAME: [dcm.DCM(simulation, runner, memory)],
         }
+
+    def begin(self) -> None:
+        """Look at the robot after each tick from now on; before time passes."""
+        self._memory.add_live(sonar.sonar_keys(self._sonar))
+        self._simulation.after_tick += self._watchers
+        self._simulation.after_reset.append(self._touch.forget)

@@ -12,7 +12,7 @@ from nao_sim_bridge.base.timed_commands import MERGE, Point
 from nao_sim_bridge.core.device_commands import DeviceCommands, index_of
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import number, numbers, whole_number
+from nao_sim_bridge.naoqi.binding.arguments import number, vector, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.live_keys import key_prefix
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -68,9 +68,7 @@ class DCM:
             return self._run(*alias_command(arguments[0], self._aliases))
         alias, moment, values = arguments
         devices = members(alias, self._aliases)
-        wanted = numbers(values, "commands")
-        if len(wanted) != len(devices):
-            raise BadValue("commands", values, f"a value for each of {len(devices)} devices")
+        wanted = vector(values, "commands", len(devices), f"a value for each of {len(devices)} devices")
         return self._run({device: [(value, moment)] for device, value in zip(devices, wanted)}, MERGE)
 
     def preferences(self, action: str, target: str, key: str, value: Any) -> int:

@@ -45,9 +45,6 @@ class ALSonar:
 
     They fire for subscribers of ALSonar or of its events, and for ALMotion while the robot walks. Else the keys of
     ALMemory keep what was measured last.
-
-    Attributes:
-        firing: Whether they fire.
     """
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
@@ -69,7 +66,6 @@ class ALSonar:
         return list(self._filtered)
 
     def parts(self) -> list[Any]:
-        """The objects that together have the methods of ALSonar."""
         keys, events = [f"Device/SubDeviceList/US/{side}/Sensor/Value" for side in SIDES], [*DETECTED, *NOTHING]
         work = (self._start, self._stop)
         return [self, Extractor(NAME, self._memory, *work, events, keys, DEFAULT, self._changed, by_events=True)]
@@ -145,8 +141,7 @@ def _told(snapshot: Snapshot, side: int) -> Echoes:
 def sonar_keys(sonar: ALSonar) -> Dict[str, Callable[[], float]]:
     """ALMemory's keys of the sonars: key -> function without arguments that reads its present value.
 
-    Raises:
-        ConfigError: The file names a key that nothing can read.
+    A ConfigError when the file names a key that nothing can read.
     """
     return {key_prefix() + key: _reader(key, sonar) for key in key_tables()["devices"]["sonar"]["keys"]}
 

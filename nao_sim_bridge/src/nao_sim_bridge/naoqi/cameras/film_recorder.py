@@ -20,8 +20,6 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 log = logging.getLogger("nao_sim.films")
 
-LOOK_AGAIN = 1.0
-"""How long a wait for a frame lasts before the next one begins, s of wall time."""
 CLOSING = 10.0
 """How long the end of the simulator waits for a file, s of wall time."""
 
@@ -35,29 +33,17 @@ RATE_STEPS = 1000
 
 @dataclass(frozen=True)
 class FilmSettings:
-    """How a film is recorded.
+    """How a film is recorded."""
 
-    Attributes:
-        camera: 0 top, 1 bottom.
-        resolution: NAOqi's number of a resolution.
-        color_space: NAOqi's number of a colour space.
-        rate: Frames a second of simulated time.
-        kind: Format of the file, "MJPG" or "IYUV".
-    """
-
-    camera: int
-    resolution: int
-    color_space: int
-    rate: float
-    kind: str
+    camera: int  # 0 top, 1 bottom
+    resolution: int  # NAOqi's number of a resolution
+    color_space: int  # NAOqi's number of a colour space
+    rate: float  # frames a second of simulated time
+    kind: str  # format of the file, "MJPG" or "IYUV"
 
 
 class VideoRecorder:
-    """One recording at a time.
-
-    Args:
-        name: What its streams are called.
-    """
+    """One recording at a time; its streams have the `name`."""
 
     def __init__(self, cameras: Any, runner: SimulationRunner, name: str) -> None:
         self._cameras = cameras
@@ -73,9 +59,7 @@ class VideoRecorder:
     def start(self, path: Path, settings: FilmSettings) -> Task:
         """Begin at the present moment of simulated time; the task ends when it has begun.
 
-        Raises:
-            NaoqiError: A recording is under way.
-            FileTrouble: The file cannot be written.
+        A NaoqiError when a recording is under way, a FileTrouble when the file cannot be written.
         """
         size = self._cameras.tables.resolution(settings.resolution)
         with self._lock:
@@ -122,11 +106,7 @@ class VideoRecorder:
 
 
 class _Recording:
-    """A film that grows with every frame of a camera, in a thread of its own.
-
-    Attributes:
-        ended: A task that ends with [frames, path] when the film is complete.
-    """
+    """A film that grows with every frame, in a thread of its own; its task ends with [frames, path]."""
 
     def __init__(self, path: Path, film: Film, rate: float) -> None:
         self.path = path
@@ -152,10 +132,7 @@ class _Recording:
     def _run(self) -> None:
         try:
             while True:
-                try:
-                    self._add(self._stream.take(LOOK_AGAIN))
-                except TimeoutError:
-                    continue
+                self._add(self._stream.take())
         except CameraClosed:
             self._complete()
         except Exception as error:
@@ -191,16 +168,10 @@ class _Recording:
 
 
 class Film:
-    """An AVI file that grows frame by frame, at a constant rate.
+    """An AVI file that grows frame by frame, at `rate` frames a second; it replaces in the end what is at `path`.
 
-    It can be played at any moment, also when its process is killed or the disk is full.
-
-    Args:
-        path: The file; one that is there is replaced in the end.
-        rate: Frames a second.
-
-    Raises:
-        FileTrouble: It cannot be written.
+    It can be played at any moment, also when its process is killed or the disk is full. A FileTrouble when it cannot be
+    written.
     """
 
     def __init__(self, path: Path, kind: str, width: int, height: int, rate: float) -> None:
@@ -209,6 +180,7 @@ class Film:
         codec, pixels, letters = FORMATS[kind]
         self.frames = 0
         self._file = WholeFile(path)
+        self.path = self._file.path
         # Each frame goes to the file at once, so that it ends with a whole one.
         self._container = av.open(self._file, mode="w", format="avi", options={"flush_packets": "1"})
         fraction = Fraction(round(rate * RATE_STEPS), RATE_STEPS)
@@ -219,15 +191,10 @@ class Film:
         if kind == "MJPG":
             self._stream.options = {"qmin": JPEG_QUANTISER, "qmax": JPEG_QUANTISER}
 
-    @property
-    def path(self) -> Path:
-        return self._file.path
-
     def write(self, picture: np.ndarray) -> None:
         """Append a frame, (height, width) grey or (height, width, 3) BGR, uint8.
 
-        Raises:
-            FileTrouble: It cannot be written; the film ends with the frame before.
+        A FileTrouble when it cannot be written; the film ends with the frame before.
         """
         import av
 
@@ -240,11 +207,7 @@ class Film:
         self.frames += 1
 
     def close(self) -> None:
-        """Complete the file; without a frame there is none.
-
-        Raises:
-            FileTrouble: It is not complete.
-        """
+        """Complete the file; without a frame there is none. A FileTrouble when it is not complete."""
         try:
             if self.frames:
                 for packet in self._stream.encode():

@@ -38,30 +38,16 @@ FORMATS = ("bmp", "dib", "jpeg", "jpg", "jpe", "png", "pbm", "pgm", "ppm", "sr",
 
 @dataclass(frozen=True)
 class PhotoSettings:
-    """How pictures are taken.
+    """How pictures are taken."""
 
-    Attributes:
-        camera: 0 top, 1 bottom.
-        resolution: NAOqi's number of a resolution.
-        color_space: NAOqi's number of a colour space.
-        interval: Simulated time from one picture to the next, s.
-    """
-
-    camera: int
-    resolution: int
-    color_space: int
-    interval: float
+    camera: int  # 0 top, 1 bottom
+    resolution: int  # NAOqi's number of a resolution
+    color_space: int  # NAOqi's number of a colour space
+    interval: float  # simulated time from one picture to the next, s
 
 
 class Photographer:
-    """Takes pictures with the robot's cameras. Any thread; each series has one of its own.
-
-    Attributes:
-        keeps: Whether the camera is held ready from one picture to the next.
-
-    Args:
-        name: What its streams are called.
-    """
+    """Takes pictures with the robot's cameras, as `name`. Any thread; each series has one of its own."""
 
     def __init__(self, cameras: Any, name: str) -> None:
         self._cameras = cameras
@@ -97,10 +83,7 @@ class Photographer:
     def take(self, paths: Sequence[Path], settings: PhotoSettings) -> Task:
         """Take one picture for each path; the task ends with the paths, as text, when all are written.
 
-        When the task is killed, what has been taken stays.
-
-        Raises:
-            BadValue: Too many are being taken already.
+        When the task is killed, what has been taken stays. A BadValue when too many are being taken already.
         """
         with self._lock:
             if self._closed:
@@ -144,14 +127,8 @@ class Photographer:
 class _Series:
     """Pictures that are being taken, in a thread of their own: writing a large one takes its time.
 
-    Attributes:
-        task: Ends with the paths.
-
-    Args:
-        paths: One for each picture.
-        interval: Simulated time from one to the next, s.
-        held: Stream of a camera that is held ready, or None; it gives the first picture, at once.
-        stream: Gives the others, or None when there are none.
+    The first one comes at once from `held`, the stream of a camera that is held ready, if that is not None; the others
+    from `stream`, every `interval` s of simulated time. The task ends with the paths.
     """
 
     def __init__(self, paths: Sequence[Path], interval: float, held: Any, stream: Any) -> None:
@@ -177,7 +154,7 @@ class _Series:
         try:
             last = None
             for path in self._paths:
-                frame = self._first() if last is None else self._next(last)
+                frame = self._wait(self._held or self._stream) if last is None else self._next(last)
                 if frame is None:
                     return
                 write_whole(path, encoded(frame.array(), path.suffix[1:]))
@@ -192,9 +169,6 @@ class _Series:
             self.task.finish([str(path) for path in self._paths])
         finally:
             self.end()
-
-    def _first(self) -> Any:
-        return self._wait(self._held if self._held is not None else self._stream)
 
     def _next(self, last: float) -> Any:
         """The first picture that is due after the one of time `last`, None when nobody wants it any more.
@@ -219,12 +193,9 @@ def picture_files(files: ClientFiles, folder: str, name: str, kind: str, count: 
     """Paths of the pictures of a series; folders on the way are made.
 
     One picture has the name as it was given, several are name_0, name_1, ...; the ending of the format is added when
-    the name does not have it.
-
-    Raises:
-        BadValue: The name is that of a folder.
-        NaoqiError: There is such a file, and it must not be overwritten.
-        ValueError: A file leads out of the folder for recordings, or cannot be made there.
+    the name does not have it. A BadValue when the name is that of a folder; a NaoqiError when there is such a file, and
+    it must not be overwritten; a ValueError when a file leads out of the folder for recordings, or cannot be made
+    there.
     """
     ending = f".{kind}"
     stem = name[: -len(ending)] if name.lower().endswith(ending) else name
@@ -244,12 +215,7 @@ def check_new(paths: Sequence[Path], overwrite: bool) -> None:
 
 
 def encoded(picture: np.ndarray, kind: str) -> bytes:
-    """A picture in a file format.
-
-    Args:
-        picture: (height, width) grey or (height, width, 3) BGR, uint8.
-        kind: One of `FORMATS`.
-    """
+    """A picture, (height, width) grey or (height, width, 3) BGR, uint8, in a file format, one of `FORMATS`."""
     if picture.ndim == 3 and picture.shape[2] == 1:
         picture = picture[:, :, 0]
     if kind in GREY_ONLY and picture.ndim == 3:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import posixpath
 from dataclasses import replace
-from typing import Any, Callable
+from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import LONGEST_PATH, ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.cameras.settings import CameraTables
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, one_of, text, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.cameras.film_recorder import FORMATS as FILM_FORMATS
@@ -30,11 +28,7 @@ MOST_FPS, MOST_FPS_VGA, ABOVE_FPS_MJPG = 30.0, 15.0, 2.0
 
 
 class PictureSettings:
-    """Settings that pictures and films have.
-
-    Args:
-        settings: The first settings: a dataclass with `camera`, `resolution` and `color_space`, NAOqi's numbers.
-    """
+    """The settings that photos and films have in common."""
 
     def __init__(self, tables: CameraTables, settings: Any) -> None:
         self._tables = tables
@@ -166,22 +160,3 @@ class ALVideoRecorder(PictureSettings):
 
     def getVideoFormat(self) -> str:
         return self._settings.kind
-
-
-class PictureModules:
-    """ALPhotoCapture and ALVideoRecorder of one robot."""
-
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
-        cameras = simulation.cameras
-        self.photographer = Photographer(cameras, PHOTOS)
-        self.recorder = VideoRecorder(cameras, runner, FILMS)
-        self._photos = ALPhotoCapture(self.photographer, files, cameras.tables)
-        self._films = ALVideoRecorder(self.recorder, files, cameras.tables)
-
-    def modules(self) -> dict[str, list[Any]]:
-        return {PHOTOS: [self._photos], FILMS: [self._films]}
-
-    def closing(self) -> list[Callable[[], None]]:
-        """Steps that take no more photos and complete the film that is recorded; blocking."""
-        # Photos first: the last frames of the film need not wait for them.
-        return [self.photographer.close, self.recorder.close]

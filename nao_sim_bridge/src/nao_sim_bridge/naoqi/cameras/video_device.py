@@ -10,8 +10,7 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.cameras.cameras import Cameras
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.cameras.video_device_angles import VideoDeviceAngles
-from nao_sim_bridge.naoqi.cameras.video_device_cameras import CameraStates, VideoDeviceCameras
+from nao_sim_bridge.naoqi.cameras.video_device_cameras import CameraStates, VideoDeviceAngles, VideoDeviceCameras
 from nao_sim_bridge.naoqi.cameras.video_device_recordings import RawRecordings
 from nao_sim_bridge.naoqi.cameras.video_device_settings import NATIVE, VideoDeviceSettings
 from nao_sim_bridge.naoqi.cameras.video_device_subscribers import VideoSubscribers, View
@@ -38,7 +37,6 @@ class ALVideoDevice:
         self._recordings = RawRecordings(cameras, files)
 
     def parts(self) -> list[Any]:
-        """The objects that together have the methods of the module."""
         return [
             self,
             VideoDeviceSettings(self._cameras, self._subscribers, self._states),
@@ -118,8 +116,6 @@ class ALVideoDevice:
     def stopVideo(self, handle: str) -> Task:
         return self._recordings.stop(handle)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _subscribe(self, name: str, views: Sequence[View], fps: int, several: bool) -> str:
         handle = self._subscribers.add(name, views, fps, several)
         for view in views:
@@ -159,11 +155,7 @@ def _all(frames: list[Frame]) -> list[tuple]:
 
 
 def _whole_numbers(values: Any, field: str, count: int | None = None) -> list[int]:
-    """A list of whole numbers, `count` of them if that is given.
-
-    Raises:
-        BadValue: It is something else.
-    """
+    """A list of whole numbers, `count` of them if that is given; a BadValue for anything else."""
     right = isinstance(values, (list, tuple)) and all(isinstance(v, int) and not isinstance(v, bool) for v in values)
     if not right or (count is not None and len(values) != count):
         allowed = "a list of whole numbers" if count is None else f"a list of {count} whole numbers, one a camera"

@@ -1,7 +1,8 @@
-"""Part of ALVideoDevice: the cameras themselves, which of them run, and pictures from outside that they see."""
+"""Parts of ALVideoDevice: the cameras, which of them run, what they see from outside; places in pictures, angles."""
 
 from __future__ import annotations
 
+import math
 import threading
 from typing import Any, Callable
 
@@ -10,13 +11,16 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.cameras.cameras import Cameras
 from nao_sim_bridge.cameras.settings import CAMERA_NAMES, CAMERAS
-from nao_sim_bridge.naoqi.binding.arguments import whole_number
+from nao_sim_bridge.naoqi.binding.arguments import vector, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.cameras.video_device_subscribers import VideoSubscribers
 
 LAYERS = 3
 SIZE = (640, 480)
 MOST_PIXELS = 2560 * 1920
+LIMIT = 1.57
+"""Angles beyond it, rad, are in no picture."""
+UNKNOWN = -1
 
 
 def of_active(method: Callable[..., Any]) -> Callable[..., Any]:
@@ -25,10 +29,9 @@ def of_active(method: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class CameraStates:
-    """The cameras' states. A camera is open and runs by itself while somebody looks; any thread.
+    """The cameras' states; any thread. A camera is open and runs by itself while somebody looks.
 
-    Args:
-        fail: Called with a camera and a reason when there will be no frames.
+    `fail` is called with a camera and a reason when there will be no frames.
     """
 
     def __init__(self, cameras: Cameras, fail: Callable[[int, str], None]) -> None:
@@ -57,11 +60,7 @@ class CameraStates:
             self._stop(camera, "closed: openCamera and startCamera")
 
     def start(self, camera: int) -> None:
-        """Let it take pictures.
-
-        Raises:
-            NaoqiError: It is closed.
-        """
+        """Let it take pictures; a NaoqiError when it is closed."""
         with self._lock:
             if self._closed[camera]:
                 raise NaoqiError(f"camera {camera} is closed; open it with openCamera first")
@@ -84,11 +83,7 @@ class CameraStates:
             self.use(camera)
 
     def check(self, camera: int) -> None:
-        """Make sure that a camera has pictures for somebody who looks.
-
-        Raises:
-            NaoqiError: It is closed or stopped.
-        """
+        """Make sure that a camera has pictures for somebody who looks; a NaoqiError when it is closed or stopped."""
         with self._lock:
             if self._closed[camera]:
                 raise NaoqiError(_no_pictures(camera, "closed: openCamera and startCamera"))
@@ -200,6 +195,54 @@ class VideoDeviceCameras:
 
     def _index(self, *camera: int) -> int:
         return self._cameras.tables.camera(camera[0]) if camera else self._cameras.active
+
+
+class VideoDeviceAngles:
+    """Places are normalised, (0, 0) upper left, (1, 1) lower right; angles are positive to the left and downwards."""
+
+    def __init__(self, cameras: Cameras) -> None:
+        self._cameras = cameras
+
+    def resolutionToSizes(self, resolution: int) -> list:
+        size = self._cameras.tables.resolution(resolution)
+        return [size.width, size.height]
+
+    def sizesToResolution(self, width: int, height: int) -> int:
+        sizes = {(size.width, size.height): size.id for size in self._cameras.tables.resolutions.values()}
+        return sizes.get((width, height), UNKNOWN)
+
+    def getAngularPositionFromImagePosition(self, camera: int, place: Any) -> list:
+        return list(self._cameras.optics(camera).angles(*_pair(place, "ImagePosition")))
+
+    def getAngularSizeFromImageSize(self, camera: int, size: Any) -> list:
+        return list(self._cameras.optics(camera).angular_size(*_pair(size, "ImageSize", least=0.0)))
+
+    def getImagePositionFromAngularPosition(self, camera: int, angles: Any) -> list:
+        return list(self._cameras.optics(camera).place(*_pair(angles, "AngularPosition", -LIMIT, LIMIT)))
+
+    def getImageSizeFromAngularSize(self, camera: int, size: Any) -> list:
+        return list(self._cameras.optics(camera).image_size(*_pair(size, "AngularSize", 0.0, 2.0 * LIMIT)))
+
+    def getImageInfoFromAngularInfo(self, camera: int, info: Any) -> list:
+        values = vector(info, "AngularInfo", 4, "[alpha, beta, width, height] in rad")
+        place = self.getImagePositionFromAngularPosition(camera, values[:2])
+        return place + self.getImageSizeFromAngularSize(camera, values[2:])
+
+    def getImageInfoFromAngularInfoWithResolution(self, camera: int, info: Any, resolution: int) -> list:
+        size = self._cameras.tables.resolution(resolution)
+        x, y, width, height = self.getImageInfoFromAngularInfo(camera, info)
+        return [x * size.width, y * size.height, width * size.width, height * size.height]
+
+    getAngPosFromImgPos = of_active(getAngularPositionFromImagePosition)
+    getAngSizeFromImgSize = of_active(getAngularSizeFromImageSize)
+    getImgPosFromAngPos = of_active(getImagePositionFromAngularPosition)
+    getImgSizeFromAngSize = of_active(getImageSizeFromAngularSize)
+    getImgInfoFromAngInfo = of_active(getImageInfoFromAngularInfo)
+    getImgInfoFromAngInfoWithRes = of_active(getImageInfoFromAngularInfoWithResolution)
+
+
+def _pair(values: Any, field: str, least: float = -math.inf, most: float = math.inf) -> list[float]:
+    return vector(values, field, 2, "two numbers", least, most)
 
 
 def _size(width: int, height: int) -> tuple[int, int]:

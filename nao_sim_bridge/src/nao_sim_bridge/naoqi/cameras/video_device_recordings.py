@@ -36,14 +36,9 @@ class RawRecordings:
     def start(self, subscriber: Subscriber, path: str, total: int, period: int) -> None:
         """Record pictures as a subscriber gets them; of several cameras the first.
 
-        Args:
-            path: Name inside the folder for recordings.
-            period: Of how many pictures that fall due one is recorded.
-
-        Raises:
-            NaoqiError: It records already.
-            FileTrouble: The file cannot be written.
-            BadValue: A number is out of range.
+        Of `period` pictures that fall due one is recorded, `total` in all, in a file inside the folder for recordings.
+        A NaoqiError when it records already, a FileTrouble when the file cannot be written, a BadValue when a number is
+        out of range.
         """
         number(total, "totalNumber", 1, MOST_PICTURES)
         number(period, "period", 1, 1000)
@@ -63,8 +58,7 @@ class RawRecordings:
     def stop(self, handle: str) -> Task:
         """End the recording of a subscriber; the task ends when the file is complete, or tells why it ended early.
 
-        Raises:
-            NaoqiError: It does not record.
+        A NaoqiError when it does not record.
         """
         with self._lock:
             recording = self._running.get(handle)

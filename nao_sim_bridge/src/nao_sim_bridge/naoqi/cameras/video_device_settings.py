@@ -183,8 +183,6 @@ class VideoDeviceSettings:
     def setCamerasParameterToDefault(self, handle: str, number: int) -> list:
         return [self.setParameterToDefault(camera, number) for camera in self.getActiveCameras(handle)]
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _one(self, handle: str) -> Subscriber:
         """A subscriber that looks through one camera."""
         subscriber = self._subscribers.get(handle)

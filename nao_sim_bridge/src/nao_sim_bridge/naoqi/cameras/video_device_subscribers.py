@@ -43,34 +43,20 @@ class View:
 
 @dataclass(eq=False)
 class Subscriber:
-    """One subscription.
+    """One subscription."""
 
-    Attributes:
-        name: What the client called itself.
-        handle: What it got.
-        views: What it sees; several if it asked for several cameras.
-        fps: Frames a second that it asked for.
-        several: Whether it asked for several cameras, if only for one of them.
-        waiting: Calls that wait for a frame.
-        used: When it was used last, s of wall time.
-    """
-
-    name: str
-    handle: str
-    views: Tuple[View, ...]
-    fps: int
-    several: bool
+    name: str  # what the client called itself
+    handle: str  # what it got
+    views: Tuple[View, ...]  # what it sees; several if it asked for several cameras
+    fps: int  # frames a second that it asked for
+    several: bool  # whether it asked for several cameras, if only for one of them
     streams: Tuple[CameraStream, ...] = ()
-    waiting: set = field(default_factory=set)
-    used: float = 0.0
+    waiting: set = field(default_factory=set)  # calls that wait for a frame
+    used: float = 0.0  # when it was used last, s of wall time
 
 
 class VideoSubscribers:
-    """Who looks, and the pictures for them. Any thread.
-
-    Args:
-        clock: Wall time, s.
-    """
+    """Who looks, and the pictures for them; idle ones are found by the `clock`, s of wall time. Any thread."""
 
     def __init__(self, cameras: Cameras, clock: Callable[[], float] = time.monotonic) -> None:
         self._cameras = cameras
@@ -84,8 +70,7 @@ class VideoSubscribers:
     def add(self, name: str, views: Sequence[View], fps: int, several: bool) -> str:
         """Let somebody look; returns the handle.
 
-        Raises:
-            BadValue: The cameras cannot do that, or too many look already.
+        A BadValue when the cameras cannot do that, or too many look already.
         """
         if not name:
             raise BadValue("name", name, "a name, not empty")
@@ -100,11 +85,7 @@ class VideoSubscribers:
         return handle
 
     def remove(self, handle: str) -> None:
-        """Let somebody look no more.
-
-        Raises:
-            NaoqiError: There is no such handle.
-        """
+        """Let somebody look no more; a NaoqiError when there is no such handle."""
         with self._lock:
             if self._gone.pop(handle, None) is None:
                 _close(self._known.pop(self._find(handle).handle))
@@ -118,11 +99,7 @@ class VideoSubscribers:
                 _close(self._known.pop(subscriber.handle))
 
     def get(self, handle: str) -> Subscriber:
-        """The subscriber with a handle; it counts as used.
-
-        Raises:
-            NaoqiError: There is no such handle.
-        """
+        """The subscriber with a handle; it counts as used. A NaoqiError when there is no such handle."""
         with self._lock:
             self.clean_up()
             back = self._gone.pop(handle, None)
@@ -141,9 +118,7 @@ class VideoSubscribers:
     def change(self, handle: str, views: Sequence[View] | None = None, fps: int | None = None) -> None:
         """Change what somebody sees; with other cameras as many as before.
 
-        Raises:
-            NaoqiError: There is no such handle.
-            BadValue: The cameras cannot do that.
+        A NaoqiError when there is no such handle, a BadValue when the cameras cannot do that.
         """
         with self._lock:
             subscriber = self.get(handle)
@@ -179,14 +154,7 @@ class VideoSubscribers:
     # --- pictures -------------------------------------------------------------------------------------------------
 
     def ask(self, handle: str, call: str, change: Callable[[list[Frame]], Any]) -> Task:
-        """The next frame of each camera of a subscriber.
-
-        Args:
-            change: Makes what the task ends with.
-
-        Raises:
-            NaoqiError: There is no such handle.
-        """
+        """A task that ends with what `change` makes of the next frames; a NaoqiError when there is no such handle."""
         with self._lock:
             subscriber = self.get(handle)
             waiting = WaitingCall(call, len(subscriber.streams), change, lambda: self._answered(subscriber, waiting))
@@ -199,8 +167,6 @@ class VideoSubscribers:
             waiting = [w for s in self._known.values() for w in s.waiting if camera in [v.camera for v in s.views]]
         for each in waiting:
             each.fail(NaoqiError(reason))
-
-    # --- inside ---------------------------------------------------------------------------------------------------
 
     def _open(self, subscriber: Subscriber) -> None:
         opened: list[CameraStream] = []
@@ -271,15 +237,10 @@ def _check_fps(fps: Any, cameras: Cameras) -> None:
 
 
 class WaitingCall:
-    """A call that waits for a frame of each camera of a subscriber.
+    """A call that waits for a frame of each of `count` cameras; `change` makes its answer of them.
 
     The task leads here until it is over, and this leads to it no longer then: pictures are large, and must not be kept
     by a cycle.
-
-    Args:
-        count: Number of cameras.
-        change: Makes the answer from the frames.
-        on_end: Called when it is over.
     """
 
     def __init__(self, call: str, count: int, change: Callable[[list[Frame]], Any], on_end: Callable[[], None]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Callable, Mapping
 
-from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.naoqi.binding.arguments import known
 
 BLINKING, BACKGROUND, AWARENESS, LISTENING, SPEAKING = NAMES = (
     "AutonomousBlinking",
@@ -17,11 +17,7 @@ ALL = "All"
 
 
 class Abilities:
-    """Part of ALAutonomousLife: which abilities are enabled, and which run.
-
-    Args:
-        abilities: By name, what begins (True) and ends it.
-    """
+    """Part of ALAutonomousLife: which abilities are enabled, and run; by name, what begins (True) and ends each."""
 
     def __init__(self, abilities: Mapping[str, Callable[[bool], Any]]) -> None:
         self._abilities = dict(abilities)
@@ -38,11 +34,7 @@ class Abilities:
         return all(self._enabled[one] for one in self.named(name))
 
     def enable(self, name: str, enabled: bool) -> None:
-        """Switch an ability, or all of them.
-
-        Raises:
-            UnknownName: There is no such ability.
-        """
+        """Switch an ability, or all of them; an UnknownName when there is no such ability."""
         for one in self.named(name):
             self._enabled[one] = enabled
         self._update()
@@ -53,16 +45,10 @@ class Abilities:
         self._update()
 
     def named(self, name: str) -> list[str]:
-        """The ability of a name; "All": all of them.
-
-        Raises:
-            UnknownName: There is no such ability.
-        """
+        """The ability of a name; "All": all of them. An UnknownName when there is no such ability."""
         if name == ALL:
             return list(self._abilities)
-        if name not in self._abilities:
-            raise UnknownName("autonomous ability", name, [*self._abilities, ALL])
-        return [name]
+        return [known(name, "autonomous ability", [*self._abilities, ALL])]
 
     def _update(self) -> None:
         for name, switch in self._abilities.items():

@@ -16,9 +16,6 @@ class ALAutonomousLife:
     """ALAutonomousLife as the simulated robot offers it; it begins disabled, so that a robot does what it is told.
 
     No activity is launched by conditions: those that are installed have none.
-
-    Args:
-        installed: The behaviours that may be activities.
     """
 
     def __init__(self, life: Life, installed: InstalledBehaviors, stimuli: Stimuli, runner: SimulationRunner) -> None:

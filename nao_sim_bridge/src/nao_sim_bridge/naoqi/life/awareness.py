@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass, fields, replace
 from typing import Any, Callable, Sequence
 
-from nao_sim_bridge.base.errors import MoveRefused, UnknownName
+from nao_sim_bridge.base.errors import MoveRefused
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.frames import ROBOT
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import known, number
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.life.stimuli import MOVEMENT, NAME, PEOPLE, Stimuli
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -32,25 +32,15 @@ NOBODY = -1
 
 @dataclass(frozen=True)
 class Settings:
-    """Parameters under NAOqi's names.
+    """Parameters under NAOqi's names."""
 
-    Attributes:
-        LookStimulusSpeed: How fast it looks where something happens, share of the top speed.
-        LookBackSpeed: How fast it looks back, share of the top speed.
-        NobodyFoundTimeOut: How long it looks for somebody where something happened, s.
-        MinTimeTracking: How long it follows somebody at least before something else may interest it, s.
-        TimeOutResetHead: After so long without anything it looks ahead again, s.
-        AmplitudeYawTracking: How far the head turns to follow, deg to both sides together.
-        BodyRotationThresholdNao: From which HeadYaw on the body turns, too, deg.
-    """
-
-    LookStimulusSpeed: float = 0.5
-    LookBackSpeed: float = 0.3
-    NobodyFoundTimeOut: float = 2.0
-    MinTimeTracking: float = 2.0
-    TimeOutResetHead: float = 10.0
-    AmplitudeYawTracking: float = 90.0
-    BodyRotationThresholdNao: float = 30.0
+    LookStimulusSpeed: float = 0.5  # how fast it looks where something happens, share of the top speed
+    LookBackSpeed: float = 0.3  # how fast it looks back, share of the top speed
+    NobodyFoundTimeOut: float = 2.0  # how long it looks for somebody where something happened, s
+    MinTimeTracking: float = 2.0  # how long it follows somebody at least before something else may interest it, s
+    TimeOutResetHead: float = 10.0  # after so long without anything it looks ahead again, s
+    AmplitudeYawTracking: float = 90.0  # how far the head turns to follow, deg to both sides together
+    BodyRotationThresholdNao: float = 30.0  # from which HeadYaw on the body turns, too, deg
 
 
 RANGES = {
@@ -66,16 +56,11 @@ PARAMETERS = tuple(field.name for field in fields(Settings))
 
 
 class Awareness:
-    """Looks at people, and where something happens.
+    """Looks at people, and where something happens, unless somebody else has the head: `busy` tells.
 
     Attributes:
-        enabled: Whether it is switched on.
-        paused: Whether it does nothing all the same.
         engagement: How easily it turns away from a person: one of `ENGAGEMENTS`.
         tracking: What moves: one of `TRACKINGS`.
-
-    Args:
-        busy: Whether somebody else has the head now.
     """
 
     def __init__(
@@ -94,7 +79,7 @@ class Awareness:
         self._memory = memory
         self._busy = busy
         self._follower = Follower(simulation)
-        self._human = NOBODY
+        self.human = NOBODY  # the number of the face that is followed
         self._engaged = NOBODY
         self._since = self._seen = self._until = self._last = 0.0
         self._looks = False
@@ -108,11 +93,6 @@ class Awareness:
     def running(self) -> bool:
         return self.enabled and not self.paused
 
-    @property
-    def human(self) -> int:
-        """Who is followed: the number of the face; -1 for nobody."""
-        return self._human
-
     def update(self) -> None:
         """Begin or end as `enabled`, `paused`, `stimuli` and `tracking` say."""
         self.stimuli.listen(self.running)
@@ -123,13 +103,10 @@ class Awareness:
     def set_parameter(self, name: str, value: Any) -> None:
         """Change a parameter.
 
-        Raises:
-            UnknownName: There is no such parameter.
-            BadValue: It is out of its range.
+        An UnknownName when there is no such parameter, a BadValue when it is out of its range.
         """
-        if name not in PARAMETERS:
-            raise UnknownName("parameter", name, PARAMETERS)
-        self.settings = replace(self.settings, **{name: number(value, name, *RANGES[name])})
+        limits = RANGES[known(name, "parameter", PARAMETERS)]
+        self.settings = replace(self.settings, **{name: number(value, name, *limits)})
 
     def trigger(self, place: Point) -> int:
         """Something happens at a place of the world, m; returns the number of this stimulus."""
@@ -139,7 +116,7 @@ class Awareness:
 
     def engage(self, person: int) -> bool:
         """Follow one person from now on; False when nobody of this number is followed now, who has to be in view."""
-        if person != self._human:
+        if person != self.human:
             return False
         self._engaged = person
         return True
@@ -151,9 +128,9 @@ class Awareness:
             self._follow(sightings)
             return
         now = self._simulation.time
-        if self._human != NOBODY and (self.engagement == FULLY or now - self._since < self.settings.MinTimeTracking):
+        if self.human != NOBODY and (self.engagement == FULLY or now - self._since < self.settings.MinTimeTracking):
             return
-        if self._human != NOBODY and self.engagement == SEMI and stimulus == MOVEMENT:
+        if self.human != NOBODY and self.engagement == SEMI and stimulus == MOVEMENT:
             return
         if self._looks and now < self._until:
             return  # it looks at something already
@@ -164,17 +141,17 @@ class Awareness:
 
     def _follow(self, faces: Sequence[Sighting]) -> None:
         """A picture shows faces: follow the same as before, or else the nearest."""
-        wanted = self._engaged if self._engaged != NOBODY else self._human
+        wanted = self._engaged if self._engaged != NOBODY else self.human
         face = next((face for face in faces if face.number == wanted), None)
         if face is None:
-            if self._human != NOBODY and self._simulation.time - self._seen < LOST_AFTER:
+            if self.human != NOBODY and self._simulation.time - self._seen < LOST_AFTER:
                 return
             face = faces[0]
         now = self._simulation.time
-        if face.number != self._human:
-            if self._human == NOBODY:
+        if face.number != self.human:
+            if self.human == NOBODY:
                 self._memory.raise_event(STIMULUS, PEOPLE)
-            self._human, self._since = face.number, now
+            self.human, self._since = face.number, now
             self._memory.raise_event(TRACKED, face.number)
         self._seen = self._last = now
         self._looks = False
@@ -195,7 +172,7 @@ class Awareness:
         bearing = math.atan2(y, x)
         if self.tracking in (ROTATION, CONTEXTUAL):
             self._turn(bearing)
-        elif abs(bearing) > limit and self.tracking == HEAD and self._human != NOBODY:
+        elif abs(bearing) > limit and self.tracking == HEAD and self.human != NOBODY:
             bearing, distance = math.copysign(limit, bearing), math.hypot(x, y)
             place = self._in_world((distance * math.cos(bearing), distance * math.sin(bearing), z))
         self._follower.follow(place)
@@ -216,17 +193,17 @@ class Awareness:
         if self._busy():
             self._follower.lose()
             return
-        if self._human != NOBODY and now.time - self._seen > LOST_AFTER:
+        if self.human != NOBODY and now.time - self._seen > LOST_AFTER:
             self._lose()
-        if self._looks and now.time > self._until and self._human == NOBODY:
+        if self._looks and now.time > self._until and self.human == NOBODY:
             self._looks = False
             self._look_ahead(self.settings.LookBackSpeed)
-        elif self._last and now.time - self._last > self.settings.TimeOutResetHead and self._human == NOBODY:
+        elif self._last and now.time - self._last > self.settings.TimeOutResetHead and self.human == NOBODY:
             self._last = 0.0
             self._look_ahead(self.settings.LookBackSpeed)
 
     def _lose(self) -> None:
-        self._human = self._engaged = NOBODY
+        self.human = self._engaged = NOBODY
         self._memory.raise_event(LOST, None)
         self._memory.raise_event(TRACKED, NOBODY)
         self._follower.lose()
@@ -236,7 +213,7 @@ class Awareness:
         self._follower.follow(self._in_world((2.0, 0.0, 0.6)))
 
     def _leave(self) -> None:
-        if self._human != NOBODY:
+        if self.human != NOBODY:
             self._lose()
         self._looks, self._last = False, 0.0
         self._follower.stop()
@@ -248,7 +225,7 @@ class Awareness:
         return geometry.in_world(self._simulation.model, self._placed(), place)
 
     def _after_reset(self) -> None:
-        self._human = self._engaged = NOBODY
+        self.human = self._engaged = NOBODY
         self._looks, self._last = False, 0.0
         if self.enabled or self.paused:
             self.enabled = self.paused = False

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Callable
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.naoqi.binding.arguments import numbers, one_of
+from nao_sim_bridge.naoqi.binding.arguments import known, one_of, vector
 from nao_sim_bridge.naoqi.life.awareness import (
     ENGAGEMENTS,
     HEAD,
@@ -75,9 +74,7 @@ class ALBasicAwareness:
         )
 
     def getParameter(self, name: str) -> float:
-        if name not in PARAMETERS:
-            raise UnknownName("parameter", name, PARAMETERS)
-        return getattr(self._awareness.settings, name)
+        return getattr(self._awareness.settings, known(name, "parameter", PARAMETERS))
 
     def setParameter(self, name: str, value: Any) -> None:
         self._awareness.set_parameter(name, value)
@@ -93,9 +90,7 @@ class ALBasicAwareness:
         return self._change("resetAllParameters", reset)
 
     def triggerStimulus(self, position: Any) -> Task:
-        place = numbers(position, "positionFrameWorld", -100.0, 100.0)
-        if len(place) != 3:
-            raise BadValue("positionFrameWorld", position, "[x, y, z] in FRAME_WORLD, m")
+        place = vector(position, "positionFrameWorld", 3, "[x, y, z] in FRAME_WORLD, m", -100.0, 100.0)
         return self._runner.execute(lambda: self._awareness.trigger(tuple(place)), "triggerStimulus")
 
     def engagePerson(self, person: int) -> Task:

@@ -17,11 +17,7 @@ START, COMPLETION, DURATION, TOTAL = (
 
 
 class LifeRecord:
-    """Part of ALAutonomousLife: histories and statistics; times in whole s of simulated time.
-
-    Args:
-        clock: Simulated time, s.
-    """
+    """Part of ALAutonomousLife: histories and statistics; times in whole s of simulated time."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock

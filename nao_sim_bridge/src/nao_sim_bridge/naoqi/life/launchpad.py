@@ -8,6 +8,7 @@ from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.control.balance.posture_recognition import recognise
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.naoqi.life.life import DISABLED, FOCUSED, NEXT, Life
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
@@ -25,10 +26,7 @@ Fact = Callable[[Snapshot], Any]
 class Launchpad:
     """Part of ALAutonomousLife: writes the keys while it monitors and the robot lives.
 
-    Simulation thread only, but for NAOqi's methods.
-
-    Args:
-        tracked: Number of the person who is followed, -1 for nobody.
+    Simulation thread only, but for NAOqi's methods. `tracked` gives the person who is followed, -1 for nobody.
     """
 
     def __init__(
@@ -58,9 +56,7 @@ class Launchpad:
         return [name for name, on in self._enabled.items() if on]
 
     def setLaunchpadPluginEnabled(self, name: str, enabled: bool) -> None:
-        if name not in self._enabled:
-            raise UnknownName("launch pad plugin", name, self._enabled)
-        self._enabled[name] = bool(enabled)
+        self._enabled[known(name, "launch pad plugin", self._enabled)] = bool(enabled)
 
     def getLaunchpadPluginsForGroup(self, group: str) -> list[str]:
         """Plugins are groups of themselves, and there is one of all."""

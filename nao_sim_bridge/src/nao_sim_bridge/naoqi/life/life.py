@@ -38,13 +38,9 @@ class Life:
     """The life of one robot.
 
     Attributes:
-        state: One of `STATES`.
         focused: Name of the activity that has the focus, empty when none has.
         stand_up: Has the robot stand up from wherever it is; its task ends with whether it stands.
         entered: Called with the state before, when there is a new one.
-
-    Args:
-        wake: Wakes the robot up; its task may end with a further task.
     """
 
     def __init__(
@@ -85,8 +81,7 @@ class Life:
     def set_state(self, state: str) -> Task:
         """Go to a state; the task ends when the robot is in it: it wakes up before it lives.
 
-        Raises:
-            BadValue: There is no such state.
+        A BadValue when there is no such state.
         """
         one_of(state, "state", STATES)
         done = self._simulation.task_ids.make("setState")
@@ -131,9 +126,8 @@ class Life:
     def switch_focus(self, behavior: Behavior, flag: int = STOP) -> None:
         """Give the focus to an activity.
 
-        Raises:
-            NaoqiError: The robot does not live, or the behaviour is no activity.
-            BehaviorFailed: It cannot begin.
+        A NaoqiError when the robot does not live, or the behaviour is no activity; a BehaviorFailed when it cannot
+        begin.
         """
         if self.state not in ALIVE:
             raise NaoqiError(f"the state is {self.state}: activities get the focus in {' and '.join(ALIVE)}")
@@ -157,8 +151,6 @@ class Life:
         """Stop all activities, stacked ones too."""
         self._stacked.clear()
         self.stop_focus()
-
-    # --- inside ---------------------------------------------------------------------------------------------------
 
     def _enter(self, state: str) -> None:
         before, self.state = self.state, state

@@ -7,6 +7,7 @@ only, but for `SpeakingMovement`'s and `ListeningMovement`'s ears.
 from __future__ import annotations
 
 import random
+from contextlib import suppress
 from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue, SimulationStopped
@@ -36,11 +37,7 @@ CLOSE, CLOSED, OPEN = 0.06, 0.05, 0.1
 
 
 class BackgroundMovement:
-    """What chains do that nobody moves: they breathe, or go back to the posture of the robot, or nothing.
-
-    Attributes:
-        strategy: One of `STRATEGIES`: what they do while they do not breathe.
-    """
+    """What chains do that nobody moves: they breathe, or else follow the strategy, one of `STRATEGIES`."""
 
     def __init__(self, simulation: Any) -> None:
         self.strategy = NONE
@@ -83,11 +80,7 @@ class SpeakingMovement:
 
 
 class ListeningMovement:
-    """Nods when somebody speaks to the robot, which speech recognition tells while it runs.
-
-    Attributes:
-        enabled: Whether it does so when it is switched on.
-    """
+    """Nods, if enabled, when somebody speaks to the robot, which speech recognition tells while it runs."""
 
     def __init__(self, simulation: Any, runner: SimulationRunner, memory: MemoryStore, animator: Animator) -> None:
         self.enabled = True
@@ -104,10 +97,8 @@ class ListeningMovement:
     def _hear(self, voice: Any) -> None:
         if not (self._on and self.enabled and voice):
             return
-        try:
+        with suppress(SimulationStopped):
             self._runner.execute(self._nod, "listening")
-        except SimulationStopped:
-            pass
 
     def _nod(self) -> None:
         robot, now = self._simulation.robot, self._simulation.time

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any, Callable
 
-from nao_sim_bridge.base.errors import SimulationStopped, UnknownName
+from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.naoqi.life.life import ALIVE, DISABLED, SOLITARY, Life
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
@@ -23,11 +25,7 @@ CRITICAL = 2
 
 
 class Safeguards:
-    """Part of ALAutonomousLife: watches over a life.
-
-    Args:
-        rest: Has the robot rest; its task may end with a further task.
-    """
+    """Part of ALAutonomousLife: watches over a life."""
 
     def __init__(self, life: Life, runner: SimulationRunner, memory: MemoryStore, rest: Callable[[], Task]) -> None:
         self._enabled = dict.fromkeys(SAFEGUARDS, True)
@@ -41,21 +39,14 @@ class Safeguards:
             memory.listen(event, lambda value, what=name: self._do(lambda: self._diagnosed(what, value)))
 
     def isSafeguardEnabled(self, name: str) -> bool:
-        return self._enabled[self._known(name)]
+        return self._enabled[known(name, "safeguard", self._enabled)]
 
     def setSafeguardEnabled(self, name: str, enabled: bool) -> None:
-        self._enabled[self._known(name)] = bool(enabled)
-
-    def _known(self, name: str) -> str:
-        if name not in self._enabled:
-            raise UnknownName("safeguard", name, self._enabled)
-        return name
+        self._enabled[known(name, "safeguard", self._enabled)] = bool(enabled)
 
     def _do(self, command: Callable[[], Any]) -> None:
-        try:
+        with suppress(SimulationStopped):
             self._runner.execute(command, "life")
-        except SimulationStopped:
-            pass
 
     def _fallen(self) -> None:
         if self._enabled[FELL]:

@@ -5,10 +5,12 @@ Events of the modules that see, hear and feel come in threads of their own and a
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any, Callable, Mapping, Sequence
 
-from nao_sim_bridge.base.errors import SimulationStopped, UnknownName
+from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -44,13 +46,9 @@ TOUCHER_DISTANCE, TOUCHER_HEIGHT = 0.6, 1.0
 
 
 class Stimuli:
-    """Listens for what interests the robot.
+    """Listens for what interests the robot, which stands `offset` m over the floor that people stand on.
 
-    Attributes:
-        offset: Height of what the robot stands on over the floor that people stand on, m.
-
-    Args:
-        react: Called in the simulation thread with a stimulus and where it is, places in FRAME_ROBOT, the first first.
+    `react` is called in the simulation thread with a stimulus and where it is, in FRAME_ROBOT, the first first.
     """
 
     def __init__(
@@ -72,19 +70,13 @@ class Stimuli:
         self.enable_all()
 
     def enabled(self, stimulus: str) -> bool:
-        """Whether a stimulus interests the robot.
-
-        Raises:
-            UnknownName: There is no such stimulus.
-        """
-        return self._enabled[_known(stimulus)]
+        """Whether a stimulus interests the robot; an UnknownName when there is no such stimulus."""
+        return self._enabled[known(stimulus, "stimulus", STIMULI)]
 
     def enable(self, stimulus: str, enabled: bool) -> None:
         """Have a stimulus interest the robot or not; `listen` puts it to work.
 
-        Raises:
-            UnknownName: There is no such stimulus.
-            NaoqiError: A NAO has no sense for it.
+        An UnknownName when there is no such stimulus, a NaoqiError when a NAO has no sense for it.
         """
         check(stimulus, enabled)
         self._enabled[stimulus] = enabled
@@ -115,10 +107,8 @@ class Stimuli:
         """Any thread."""
         if not self._interests(stimulus):
             return
-        try:
+        with suppress(SimulationStopped):
             self._runner.execute(lambda: self._tell(stimulus, value), "awareness")
-        except SimulationStopped:
-            pass
 
     def _tell(self, stimulus: str, value: Any) -> None:
         if self._interests(stimulus):
@@ -143,17 +133,6 @@ class Stimuli:
 
 
 def check(stimulus: str, enabled: bool) -> None:
-    """Whether a stimulus can be enabled, or disabled.
-
-    Raises:
-        UnknownName: There is no such stimulus.
-        NaoqiError: A NAO has no sense for it; to have it disabled is right.
-    """
-    if _known(stimulus) in MISSING and enabled:
+    """Refuse what is no stimulus (UnknownName), and to enable one that a NAO has no sense for (NaoqiError)."""
+    if known(stimulus, "stimulus", STIMULI) in MISSING and enabled:
         raise NaoqiError(f"{stimulus}: {MISSING[stimulus]}")
-
-
-def _known(stimulus: str) -> str:
-    if stimulus not in STIMULI:
-        raise UnknownName("stimulus", stimulus, STIMULI)
-    return stimulus

@@ -77,7 +77,7 @@ class LifeModules:
         )
         launchpad = Launchpad(simulation, self._life, memory, lambda: self._awareness.human, zone)
         safeguards = Safeguards(self._life, runner, memory, wake.rest)
-        self._modules: dict[str, list[Any]] = {
+        self.modules: dict[str, list[Any]] = {
             autonomous_life.NAME: [
                 ALAutonomousLife(self._life, running.installed, self._awareness.stimuli, runner),
                 self._life.record,
@@ -89,9 +89,6 @@ class LifeModules:
             awareness.NAME: [ALBasicAwareness(self._awareness, runner)],
             tracking.NAME: [ALTracker(self._tracking, runner), Looking(self._tracking, simulation, runner)],
         }
-
-    def modules(self) -> dict[str, list[Any]]:
-        return dict(self._modules)
 
     def close(self) -> None:
         """Ask nothing of other modules any more; blocking."""

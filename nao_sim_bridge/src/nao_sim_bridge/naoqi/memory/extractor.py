@@ -38,12 +38,10 @@ class Extractor:
     """Subscribers of an extractor, and the methods that NAOqi has for them. Only NAOqi methods are public.
 
     Args:
-        memory: Where its events are declared.
         start: Called when the first subscriber comes; when it raises, nobody is subscribed and the caller gets the
             error. A task that it returns is what everybody waits for who subscribes before it has ended. Should it end
             with an error, who waits gets it but is subscribed, until `unsubscribe`.
         stop: Called when the last subscriber has gone.
-        events: Names of the events that it raises.
         keys: Names of the keys that it writes and that are no events.
         default: What a subscriber gets that asks for nothing.
         changed: Called with the subscriptions by name whenever they have changed, before `stop` when nobody is left.

@@ -64,8 +64,7 @@ def key_prefix() -> str:
 def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_values: Callable[[], tuple]) -> dict:
     """Key -> function without arguments that reads its present value.
 
-    Raises:
-        ConfigError: The file names a key that nothing can read.
+    A ConfigError when the file names a key that nothing can read.
     """
     readers: dict[str, Callable[[], Any]] = {}
     for key, read in _snapshot_keys(model).items():
@@ -78,9 +77,8 @@ def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_
 def constants(version: str) -> dict[str, Any]:
     """Keys whose value never changes: what the robot is made of."""
     tables = key_tables()
-    values = {k: v for k, v in tables["robot_config_V6"].items() if k != "note"}
-    if version != "V6":
-        values.update({k: v for k, v in tables[f"robot_config_{version}"].items() if k != "note"})
+    values = {**tables["robot_config_V6"], **tables[f"robot_config_{version}"]}
+    values.pop("note", None)
     values["Device/DeviceList/ChestBoard/BodyId"] = "SIMULATED-NAO-BODY"
     values["RobotConfig/Head/FullHeadId"] = "SIMULATED-NAO-HEAD"
     return values

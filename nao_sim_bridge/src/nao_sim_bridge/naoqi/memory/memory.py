@@ -28,8 +28,7 @@ class EventSubscriber:
 class EventSignal:
     """Tells the clients that are connected to an event; called with each of its values.
 
-    Attributes:
-        answer: What `ALMemory.subscriber` answers, made once: of each Python object that qi hands over kilobytes stay.
+    `ALMemory.subscriber` gives the same `answer` each time: of each Python object that qi hands over kilobytes stay.
     """
 
     def __init__(self) -> None:
@@ -45,9 +44,8 @@ class EventSignal:
 class ALMemory:
     """ALMemory as the simulated robot offers it. Only NAOqi methods live here.
 
-    Args:
-        store: Keys and events.
-        broker: Road to modules of clients: `call(module, method, arguments)` without waiting, and `service(name)`.
+    The broker calls modules of clients without waiting, `call(module, method, arguments)`, and finds any
+    `service(name)`.
     """
 
     def __init__(self, store: MemoryStore, broker: Any) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any, Deque, Hashable, Tuple
 
-from nao_sim_bridge.base.sizes import MemorySizes, load_sizes
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 OVERHEAD = 1000
@@ -18,16 +18,15 @@ History = Deque[Tuple[Any, float, int]]
 class MemoryRoom:
     """Counts what clients have in a memory. Not thread-safe: the memory has a lock."""
 
-    def __init__(self, sizes: MemorySizes | None = None) -> None:
-        self._sizes = load_sizes().memory if sizes is None else sizes
+    def __init__(self) -> None:
+        self._sizes = load_sizes().memory
         self._bytes = 0
         self._held: dict[Hashable, int] = {}
 
     def hold(self, holder: Hashable, *texts: Any) -> None:
         """Count a key, a subscription or what else a client makes, with its texts; again with others of the same one.
 
-        Raises:
-            NaoqiError: There are too many.
+        A NaoqiError when there are too many.
         """
         size, former = OVERHEAD + size_of(texts), self._held.get(holder)
         if former is None and len(self._held) >= self._sizes.keys:
@@ -43,8 +42,7 @@ class MemoryRoom:
     def make(self, history: History, size: int) -> None:
         """Make room for a value of a client: where there is none, the oldest values of the same key go.
 
-        Raises:
-            NaoqiError: There would not be enough.
+        A NaoqiError when there would not be enough.
         """
         self._require(size - sum(entry[2] for entry in history))
         while self._bytes + size > self._sizes.bytes:

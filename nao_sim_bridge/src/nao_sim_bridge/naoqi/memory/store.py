@@ -44,13 +44,10 @@ class _Entry:
 
 
 class MemoryStore:
-    """Keys and what they hold.
+    """Keys and what they hold; the `clock` gives time stamps, s since 1970 (or since the start of the simulation).
 
-    What is written `by_client` counts (see `MemoryRoom`), and is refused with a NaoqiError where there is no room.
-
-    Args:
-        clock: Time for time stamps, s since 1970 (or since the start of the simulation).
-        guard: Calls subscribers, listeners and watchers; None for one of its own.
+    What is written `by_client` counts (see `MemoryRoom`), and is refused with a NaoqiError where there is no room. The
+    `guard` calls subscribers, listeners and watchers.
     """
 
     def __init__(self, clock: Callable[[], float], guard: Guard | None = None) -> None:
@@ -90,8 +87,7 @@ class MemoryStore:
     def insert(self, key: str, value: Any, by_client: bool = False) -> None:
         """Write one key, creating it when needed.
 
-        Raises:
-            NaoqiError: The key belongs to a sensor, or a client has no room for it.
+        A NaoqiError when the key belongs to a sensor, or a client has no room for it.
         """
         if key in self._live:
             writer = self._live[key][1]
@@ -104,8 +100,7 @@ class MemoryStore:
     def remove(self, key: str, kind: str | None = None) -> None:
         """Delete a key, its description and its subscribers.
 
-        Raises:
-            UnknownName: There is no such key (of that kind).
+        An UnknownName when there is no such key (of that kind).
         """
         with self._lock:
             if key in self._live:
@@ -156,9 +151,7 @@ class MemoryStore:
     def next_change(self, key: str) -> Task:
         """A task that ends with the value that is written next; nothing is left of one that is killed.
 
-        Raises:
-            UnknownName: There is no such key.
-            NaoqiError: The key is never written.
+        An UnknownName when there is no such key, a NaoqiError when the key is never written.
         """
         change = Task("getDataOnChange", 0, ask=lambda task: task.kill())
         with self._lock:
@@ -226,11 +219,7 @@ class MemoryStore:
         self._tell_watcher(name)
 
     def unsubscribe(self, name: str, module: str) -> None:
-        """End a subscription.
-
-        Raises:
-            NaoqiError: The module is not subscribed.
-        """
+        """End a subscription; a NaoqiError when the module is not subscribed."""
         with self._lock:
             if module not in self._subscribers.get(name, {}):
                 known = ", ".join(self.subscribers(name)) or "nobody"
@@ -260,8 +249,7 @@ class MemoryStore:
     def hold(self, name: str, what: Hashable = SIGNAL, *values: Any) -> None:
         """Count what a client has made beside keys: the signal of an event, or something else with its values.
 
-        Raises:
-            NaoqiError: There is no room for it.
+        A NaoqiError when there is no room for it.
         """
         with self._lock:
             self._room.hold((what, name), name, *values)
@@ -288,8 +276,6 @@ class MemoryStore:
         with self._lock:
             for table in (self._subscribers, self._listeners, self._changes, self._watchers):
                 table.clear()
-
-    # --- inside ---------------------------------------------------------------------------------------------------
 
     def _forget_change(self, change: Task) -> None:
         with self._lock:

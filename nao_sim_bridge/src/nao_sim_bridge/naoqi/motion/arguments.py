@@ -13,7 +13,7 @@ from nao_sim_bridge.control.joints.bezier import BezierCurve, Handle, Interpolat
 from nao_sim_bridge.model.frames import ROBOT, TORSO, WORLD
 from nao_sim_bridge.model.kinematics import matrix_rpy, rpy_matrix, transform
 from nao_sim_bridge.model.robot_model import RobotModel, joint_names
-from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers, vector
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 TYPES = ", ".join(f"{kind.value} ({kind.name})" for kind in Interpolation)
@@ -23,11 +23,7 @@ LARGEST_MASK = 63
 
 
 def joint_indices(names: Any, model: RobotModel) -> list[int]:
-    """Body indices of `joint_names`.
-
-    Raises:
-        NaoqiError: A joint is named twice.
-    """
+    """Body indices of `joint_names`; a NaoqiError when a joint is named twice."""
     found = joint_names(names, model)
     twice = sorted(name for name, count in Counter(found).items() if count > 1)
     if twice:
@@ -52,10 +48,8 @@ def key_frames(count: int, values: Any, times: Any, field: str) -> list[tuple[li
     """(times, values) of each of `count` joints from the shapes NAOqi takes.
 
     One value or one list for one joint; for several joints one value for all, or a list with one value or one list
-    each. Times likewise; one number or one list of times serves all joints.
-
-    Raises:
-        BadValue: A size does not fit, there are too many, or times do not rise from above 0.
+    each. Times likewise; one number or one list of times serves all joints. A BadValue when a size does not fit, there
+    are too many, or times do not rise from above 0.
     """
     value_lists = _one_each(values, count, field)
     require_few(field, sum(map(len, value_lists)), "key_frames")
@@ -100,11 +94,8 @@ def bezier_key_points(count: int, times: Any, points: Any) -> list[list[KeyPoint
     """Key points of each of `count` joints.
 
     `times` are a list of rising times in s for each joint, `points` as many control points for each; a single joint may
-    have both without the list around them.
-
-    Raises:
-        BadValue: Something has another shape, there are too many points, times do not rise from above 0, or a handle
-            points the wrong way.
+    have both without the list around them. A BadValue when something has another shape, there are too many points,
+    times do not rise from above 0, or a handle points the wrong way.
     """
     if count == 1 and isinstance(times, (list, tuple)) and times and not isinstance(times[0], (list, tuple)):
         times, points = [times], [points]
@@ -159,12 +150,21 @@ def _handle(entry: Any) -> Handle:
     return Handle(Interpolation(int(kind)), time, angle)
 
 
+def pairs(config: Any, field: str, example: str) -> Sequence[Sequence[Any]]:
+    """Pairs of a name and a value, such as the `example`; a BadValue when the list has another shape."""
+
+    def right(pair: Any) -> bool:
+        return isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str)
+
+    if not isinstance(config, (list, tuple)) or not all(map(right, config)):
+        raise BadValue(field, config, f"pairs such as {example}")
+    return config
+
+
 def effectors(names: Any) -> list[str]:
     """Effectors, each once.
 
-    Raises:
-        UnknownName: One is no such effector.
-        BadValue: None is given, or one twice.
+    An UnknownName when one is no such effector; a BadValue when none is given, or one twice.
     """
     listed = [names] if isinstance(names, str) else names
     if not isinstance(listed, (list, tuple)) or not listed or len(set(map(str, listed))) != len(listed):
@@ -191,9 +191,7 @@ def one_each(value: Any, count: int, field: str, nested: bool = False) -> list[A
 
 def pose_of_position(value: Any) -> np.ndarray:
     """(4, 4) pose of x, y, z in m and wx, wy, wz in rad."""
-    six = numbers(value, "position")
-    if len(six) != 6:
-        raise BadValue("position", value, "x, y, z in m and wx, wy, wz in rad")
+    six = vector(value, "position", 6, "x, y, z in m and wx, wy, wz in rad")
     return transform(rpy_matrix(six[3:]), six[:3])
 
 
@@ -224,10 +222,8 @@ def paths_of(
 ) -> list[tuple[list[float], list[np.ndarray]]]:
     """(times in s, poses) of each of `count` effectors.
 
-    A path is one pose or a list of poses; times are one number or list for all effectors, or one list each.
-
-    Raises:
-        BadValue: A size does not fit, there are too many poses, or times do not rise from above 0.
+    A path is one pose or a list of poses; times are one number or list for all effectors, or one list each. A BadValue
+    when a size does not fit, there are too many poses, or times do not rise from above 0.
     """
     if not isinstance(paths, (list, tuple)) or not paths:
         raise BadValue("paths", paths, "one pose or list of poses for each effector")

@@ -11,6 +11,7 @@ from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.naoqi.binding.arguments import known
+from nao_sim_bridge.naoqi.motion.arguments import pairs
 from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, feet_gait, parameters
 
 FIELD = "moveConfig"
@@ -22,9 +23,8 @@ LISTS = {"Default": attrgetter("default"), "Min": attrgetter("minimum"), "Max": 
 def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:
     """The gait of a move; `frequency` is a share 0..1 of the top one, when it is an argument of its own.
 
-    Raises:
-        UnknownName: There is no such parameter.
-        BadValue: The list has another shape, or a value is out of its range.
+    An UnknownName when there is no such parameter; a BadValue when the list has another shape, or a value is out of its
+    range.
     """
     values = _pairs(config, FIELD)
     if frequency is not None:
@@ -35,9 +35,8 @@ def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:
 def gait_of_feet(left: Any, right: Any, frequency: float) -> FeetGait:
     """The gait of a move whose feet have a configuration each, with names that say no foot.
 
-    Raises:
-        UnknownName: There is no such parameter of a foot.
-        BadValue: A list has another shape, or a value is out of its range.
+    An UnknownName when there is no such parameter of a foot; a BadValue when a list has another shape, or a value is
+    out of its range.
     """
     values: dict[str, float] = {FREQUENCY: frequency}
     for side, config in (("Left", left), ("Right", right)):
@@ -54,13 +53,5 @@ def gait_list(which: str) -> list[list[Any]]:
 
 
 def _pairs(config: Any, field: str) -> dict[str, float]:
-    shape = 'pairs such as [["MaxStepX", 0.03], ["StepHeight", 0.02]]'
-    if not isinstance(config, (list, tuple)):
-        raise BadValue(field, config, shape)
-    values: dict[str, float] = {}
-    for pair in config:
-        if not isinstance(pair, (list, tuple)) or len(pair) != 2 or not isinstance(pair[0], str):
-            raise BadValue(field, config, shape)
-        name, value = pair
-        values[name] = round(value, DECIMALS) if isinstance(value, float) else value
-    return values
+    given = pairs(config, field, '[["MaxStepX", 0.03], ["StepHeight", 0.02]]')
+    return {name: round(value, DECIMALS) if isinstance(value, float) else value for name, value in given}

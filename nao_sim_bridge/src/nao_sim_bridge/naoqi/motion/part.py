@@ -12,19 +12,12 @@ from nao_sim_bridge.core.robot import SimulatedRobot
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.frames import Placement, commanded, space_in_torso
-from nao_sim_bridge.model.kinematics import LinkPoses, quaternion_matrix, transform
 from nao_sim_bridge.naoqi.motion.arguments import joint_indices, space_of
+from nao_sim_bridge.tracking.geometry import placement
 
 
 class MotionPart:
-    """A part of ALMotion.
-
-    Names that begin with an underscore are not published.
-
-    Args:
-        simulation: Whose joints these are; touched in the simulation thread only.
-        runner: That thread.
-    """
+    """A part of ALMotion; its joints are touched in the simulation thread only."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation
@@ -51,8 +44,7 @@ class MotionPart:
     def _placement(self, use_sensors: bool, now: Snapshot | None = None) -> Placement:
         """Where the links are measured to be, or commanded to be."""
         now = now or self._runner.snapshot
-        torso = transform(quaternion_matrix(now.odometry.orientation), now.odometry.position)
-        measured = Placement(LinkPoses(self._model, now.positions), torso)
+        measured = placement(self._model, now)
         return measured if use_sensors else commanded(self._model, self._robot.joints.commands, measured)
 
     def _torso_in(self, space: Any, placed: Placement) -> np.ndarray:

@@ -7,12 +7,13 @@ from typing import Any, Callable
 
 import numpy as np
 
-from nao_sim_bridge.base.errors import BadValue, NotAllowed, UnknownName
+from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.balance.reflexes import SWITCHES
 from nao_sim_bridge.control.joints.idle import AMPLITUDE, BPM, GROUPS, Mode
 from nao_sim_bridge.control.joints.self_collision import ARMS, COLLISION, NONE
 from nao_sim_bridge.naoqi.binding.arguments import known, number
+from nao_sim_bridge.naoqi.motion.arguments import pairs
 from nao_sim_bridge.naoqi.motion.part import MotionPart
 
 # The owner's permission to do without the fall manager; off at the start.
@@ -26,12 +27,7 @@ LIMITS = {"Bpm": BPM, "Amplitude": AMPLITUDE}
 
 
 def _switch(call: str, path: str) -> tuple[Callable[[MotionPart], bool], Callable[[MotionPart, bool], Task]]:
-    """The two methods that read and set a switch of the robot.
-
-    Args:
-        call: NAOqi's name of the one that sets it.
-        path: Attributes that lead from the robot to the switch.
-    """
+    """The two methods that read and set the switch at `path` of the robot; `call` is NAOqi's name of the second."""
     owner, _, name = path.rpartition(".")
 
     def read(part: MotionPart) -> bool:
@@ -68,7 +64,7 @@ class Switches(MotionPart):
 
     def setMotionConfig(self, config: Any) -> Task:
         wanted = {}
-        for name, value in _pairs(config, "config", '[["ENABLE_STIFFNESS_PROTECTION", true]]'):
+        for name, value in pairs(config, "config", '[["ENABLE_STIFFNESS_PROTECTION", true]]'):
             known(name, "motion switch", SWITCHES)
             if value not in (True, False):
                 raise BadValue(name, value, "true or false")
@@ -165,10 +161,8 @@ class Idling(MotionPart):
 
     def setBreathConfig(self, config: Any) -> Task:
         given = {}
-        for name, value in _pairs(config, "pConfig", '[["Bpm", 12.0], ["Amplitude", 0.5]]'):
-            if not isinstance(name, str) or name not in LIMITS:
-                raise UnknownName("breath parameter", name, LIMITS)
-            given[name] = number(value, name, *LIMITS[name])
+        for name, value in pairs(config, "pConfig", '[["Bpm", 12.0], ["Amplitude", 0.5]]'):
+            given[name] = number(value, name, *LIMITS[known(name, "breath parameter", LIMITS)])
 
         def change() -> None:
             idle = self._robot.reflexes.idle
@@ -186,9 +180,3 @@ class Idling(MotionPart):
 
 def _members(groups: dict[str, tuple[str, ...]], name: Any) -> tuple[str, ...]:
     return groups[known(name, "arm or group", groups)]
-
-
-def _pairs(config: Any, field: str, example: str) -> Any:
-    if not isinstance(config, (list, tuple)) or any(not isinstance(p, (list, tuple)) or len(p) != 2 for p in config):
-        raise BadValue(field, config, f"pairs such as {example}")
-    return config

@@ -9,7 +9,7 @@ from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import known, number, vector
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.arguments import require_rising
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of, gait_of_feet
@@ -106,7 +106,7 @@ class Walking(MotionPart):
         # A foot that steps twice in a row needs a step of the other one in between, and no time is given for that.
         if any(one == next_ for (one, _), (next_, _) in zip(placed, placed[1:])):
             raise BadValue("legName", legs, "LLeg and RLeg in turns")
-        landings = _one_each(times, len(placed), "timeList")
+        landings = vector(times, "timeList", len(placed), f"as many as steps: {len(placed)} here")
         require_rising(landings, "timeList", times)
         steps = _placements(placed, [b - a for a, b in zip([0.0, *landings], landings)])
 
@@ -118,7 +118,8 @@ class Walking(MotionPart):
     def setFootStepsWithSpeed(self, legs: list[str], steps: Any, fractions: list[float], clear: bool) -> Task:
         """One fraction of the top frequency for all steps, or one for each."""
         placed, gait = _placed(legs, steps), FeetGait()
-        shares = _one_each(fractions, len(placed), "fractionMaxSpeed", (0.0, 1.0), one_for_all=True)
+        each = fractions * len(placed) if len(fractions) == 1 else fractions
+        shares = vector(each, "fractionMaxSpeed", len(placed), f"as many as steps: {len(placed)} here", 0.0, 1.0)
         steps = _placements(placed, [gait.of(side).period(share) for (side, _), share in zip(placed, shares)])
         begin = lambda locomotion: locomotion.set_steps(steps, gait, bool(clear)).then(lambda _: None)  # noqa: E731
         return self._walk("setFootStepsWithSpeed", begin)
@@ -153,8 +154,6 @@ class Walking(MotionPart):
     def getWalkArmsEnabled(self) -> list[bool]:
         enabled = self._robot.locomotion.arms.enabled
         return [enabled[arm] for arm in ARM_GROUPS["Arms"]]
-
-    # --- inside ---------------------------------------------------------------------------------------------------
 
     def _walk(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
         """Run a command of the robot's locomotion in the simulation thread."""
@@ -223,8 +222,7 @@ def _share(value: Any, field: str, least: float) -> float:
 def _placed(legs: Any, steps: Any) -> list[tuple[int, FootPose]]:
     """Side and place of each step.
 
-    Raises:
-        BadValue: A leg has another name, a step other numbers, there is not one step for each leg, or too many are.
+    A BadValue when a leg has another name, a step other numbers, there is not one step for each leg, or too many are.
     """
     if isinstance(steps, (list, tuple)):
         require_few("footSteps", len(steps), "steps")
@@ -234,22 +232,9 @@ def _placed(legs: Any, steps: Any) -> list[tuple[int, FootPose]]:
         raise BadValue("footSteps", steps, f"as many steps [x, y, theta] as legs: {len(legs)} here")
     placed = []
     for position, (leg, step) in enumerate(zip(legs, steps)):
-        three = numbers(step, f"footSteps[{position}]")
-        if len(three) != 3:
-            raise BadValue(f"footSteps[{position}]", step, "x, y in m, theta in rad, from the other foot")
+        three = vector(step, f"footSteps[{position}]", 3, "x, y in m, theta in rad, from the other foot")
         placed.append((SIDES[leg], FootPose(*three)))
     return placed
-
-
-def _one_each(
-    values: Any, count: int, field: str, limits: tuple[float, ...] = (), one_for_all: bool = False
-) -> list[float]:
-    listed = numbers(values, field, *limits)
-    if one_for_all and len(listed) == 1:
-        return listed * count
-    if len(listed) != count:
-        raise BadValue(field, values, f"as many as steps: {count} here")
-    return listed
 
 
 def _placements(placed: Iterable[tuple[int, FootPose]], periods: Iterable[float]) -> list[Placement]:

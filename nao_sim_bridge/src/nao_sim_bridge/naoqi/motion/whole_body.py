@@ -6,7 +6,6 @@ from typing import Any, Callable
 
 import numpy as np
 
-from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.whole_body.aims import TargetAim
 from nao_sim_bridge.control.whole_body.cartesian_move import EffectorMove
@@ -15,7 +14,7 @@ from nao_sim_bridge.control.whole_body.tasks import go_to_balance, lead_to
 from nao_sim_bridge.control.whole_body.whole_body import WholeBody as Control
 from nao_sim_bridge.model.frames import FEET, ROBOT
 from nao_sim_bridge.model.kinematics import rpy_matrix, transform
-from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
+from nao_sim_bridge.naoqi.binding.arguments import known, number, vector
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.part import MotionPart
 
@@ -70,9 +69,7 @@ class WholeBody(MotionPart):
 
     def wbSetEffectorControl(self, name: str, target: Any) -> Task:
         known(name, "effector", CONTROLLED)
-        three = numbers(target, "targetCoordinate")
-        if len(three) != 3:
-            raise BadValue("targetCoordinate", target, "wx, wy, wz in rad for Head, x, y, z in m for an arm")
+        three = vector(target, "targetCoordinate", 3, "wx, wy, wz in rad for Head, x, y, z in m for an arm")
         turns = name == "Head"
         pose = transform(rpy_matrix(three), (0.0, 0.0, 0.0)) if turns else transform(np.eye(3), three)
         move = EffectorMove(name, ROBOT, CONTROLLED[name], lambda _: pose)
@@ -87,8 +84,7 @@ class WholeBody(MotionPart):
     def wbEnableEffectorOptimization(self, name: str, enabled: bool) -> Task:
         names = GROUPS.get(name, (name,))
         for one in names:
-            if one not in KEPT:
-                raise UnknownName("effector", one, [*KEPT, *GROUPS])
+            known(one, "effector", [*KEPT, *GROUPS])
 
         def change(control: Control) -> None:
             for one in names:
@@ -114,11 +110,7 @@ class WholeBody(MotionPart):
         return self._while_on(call, start)
 
     def _while_on(self, call: str, change: Callable[[Control], Any]) -> Task:
-        """Run `change` in the simulation thread.
-
-        Raises:
-            NaoqiError: In the task: whole body control is off.
-        """
+        """Run `change` in the simulation thread; the task ends with a NaoqiError when whole body control is off."""
 
         def run() -> Any:
             control = self._robot.whole_body

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import threading
 from typing import Any, Callable, Mapping, Sequence
 
 import numpy as np
 
 from nao_sim_bridge.base.errors import UnknownName
-from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, one_of
@@ -16,7 +15,8 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.sound.microphone_clients import MicrophoneClients
 from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, HIGH, LOW, MicrophoneFormat, microphone_format
 from nao_sim_bridge.naoqi.sound.output_buffers import RATES, OutputBuffers, samples_of
-from nao_sim_bridge.naoqi.sound.recorder import Recorder, RecordingOrder, kind_of
+from nao_sim_bridge.naoqi.sound.recorder import Recorder, kind_of
+from nao_sim_bridge.naoqi.sound.sound_extractors import Listening
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles, side, sine
 
 OUTPUT_RATE, INPUT_SIZE = "outputSampleRate", "inputBufferSize"
@@ -28,53 +28,36 @@ FRONT = 3
 
 
 def _energy_of(side: str) -> Callable[[MicrophoneEnergy], float]:
-    return lambda self: self._energies[side]
+    return lambda self: self._energies.get(side, 0.0) if self._listening.runs else 0.0
 
 
 class MicrophoneEnergy:
     """Part of ALAudioDevice: root mean square of the newest block of 170 ms, 0 to 32768; 0 while it is not computed.
 
-    Args:
-        ears: `listen(name, callback, wants)` of the sound world.
-        sides: For left, right, front and rear: the channels of a block that are on that side.
+    `sides` are the channels of a block that are left, right, front and rear.
     """
 
     def __init__(self, ears: Any, sides: Mapping[str, Sequence[int]]) -> None:
-        self._ears = ears
+        self._listening = Listening(ears, "microphone energy", self._begin)
         self._sides = sides
-        self._lock = threading.Lock()
-        self._enabled, self._closed = False, False
-        self._listener: Any = None
-        self._energies = dict.fromkeys(sides, 0.0)
+        self._energies: dict[str, float] = {}
 
     getLeftMicEnergy, getRightMicEnergy = _energy_of("left"), _energy_of("right")
     getFrontMicEnergy, getRearMicEnergy = _energy_of("front"), _energy_of("rear")
 
     def enableEnergyComputation(self) -> None:
-        self._enable(True)
+        self._listening.start()
 
     def disableEnergyComputation(self) -> None:
-        self._enable(False)
+        self._listening.stop()
 
     def set_closed(self, closed: bool) -> None:
         """Whether the microphones are closed: then there is nothing to compute."""
-        with self._lock:
-            self._closed = closed
-            self._update()
+        self._listening.pause(closed)
 
-    def _enable(self, enabled: bool) -> None:
-        with self._lock:
-            self._enabled = enabled
-            self._update()
-
-    def _update(self) -> None:
-        wanted = self._enabled and not self._closed
-        if wanted and self._listener is None:
-            self._listener = self._ears.listen("microphone energy", self._on_block, wants="48k4")
-        elif not wanted and self._listener is not None:
-            self._listener.close()
-            self._listener = None
-            self._energies = dict.fromkeys(self._sides, 0.0)
+    def _begin(self) -> Callable[[Any], None]:
+        self._energies = {}
+        return self._on_block
 
     def _on_block(self, block: Any) -> None:
         squares = np.mean(block.samples.astype(np.float64) ** 2, axis=0)
@@ -84,11 +67,7 @@ class MicrophoneEnergy:
 
 
 class ALAudioDevice:
-    """ALAudioDevice as the simulated robot offers it.
-
-    Args:
-        simulation: Whose loudspeakers and microphones these are; touched in the simulation thread only.
-    """
+    """ALAudioDevice as the simulated robot offers it."""
 
     def __init__(
         self,
@@ -108,10 +87,6 @@ class ALAudioDevice:
         self._buffers = OutputBuffers(simulation)
         self._input_size = INPUT_SIZES[0]
         self._input_closed = False
-
-    def parts(self) -> list[Any]:
-        """The objects that together have the methods of the module."""
-        return [self, self._energy]
 
     # --- loudspeakers ---------------------------------------------------------------------------------------------
 
@@ -158,10 +133,10 @@ class ALAudioDevice:
 
     def subscribe(self, module: str) -> Task:
         # Not in libqi's own thread: the first call of a module may need that to get through.
-        return _in_thread(lambda: self._clients.subscribe(module), "subscribe")
+        return worked_out(Task("subscribe", 0), lambda: self._clients.subscribe(module), "subscribe")
 
     def unsubscribe(self, module: str) -> Task:
-        return _in_thread(lambda: self._clients.unsubscribe(module), "unsubscribe")
+        return worked_out(Task("unsubscribe", 0), lambda: self._clients.unsubscribe(module), "unsubscribe")
 
     def client_gone(self, module: str) -> None:
         self._clients.gone(module)
@@ -184,7 +159,7 @@ class ALAudioDevice:
     def startMicrophonesRecording(self, name: str) -> Task:
         kind = kind_of(name)
         heard = MicrophoneFormat(HIGH, ALL) if kind == "wav" else MicrophoneFormat(LOW, FRONT)
-        return self._recorder.start(RecordingOrder(name, kind, heard))
+        return self._recorder.start(name, kind, heard)
 
     def stopMicrophonesRecording(self) -> Task:
         return self._recorder.stop()
@@ -228,8 +203,6 @@ class ALAudioDevice:
     def setDefaultOutput(self, index: int) -> None:
         _device(index, OUTPUTS)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     @property
     def _speakers(self) -> Any:
         return self._simulation.sound.loudspeakers
@@ -243,22 +216,7 @@ class ALAudioDevice:
             self._clients.set_closed(closed)
             self._energy.set_closed(closed)
 
-        return _in_thread(change, "closeAudioInputs")
-
-
-def _in_thread(action: Callable[[], Any], name: str) -> Task:
-    task = Task(name, 0)
-
-    def run() -> None:
-        try:
-            result = action()
-        except Exception as error:
-            task.finish(error=error)
-        else:
-            task.finish(result)
-
-    threading.Thread(target=run, name=name, daemon=True).start()
-    return task
+        return worked_out(Task("closeAudioInputs", 0), change, "closeAudioInputs")
 
 
 def _device(index: int, devices: tuple[str, ...]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.samples import Sound
@@ -10,12 +10,12 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number
-from nao_sim_bridge.naoqi.binding.background import Background
+from nao_sim_bridge.naoqi.binding.background import Background, Wanted
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.sound.player import LoadedSound, Player
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles, SoundSets, side, sine
 from nao_sim_bridge.naoqi.sound.web_stream import WebStreams
-from nao_sim_bridge.sound.pitch import HIGHEST, LOWEST
+from nao_sim_bridge.sound.pitch import HIGHEST, LOWEST, shifted
 
 # Folder of sound sets that clients bring along, inside the folder for recordings.
 OWN_SETS = "soundsets"
@@ -24,12 +24,7 @@ TIMES = "NaoSimulation/SoundTimes"
 
 
 class ALAudioPlayer:
-    """ALAudioPlayer as the simulated robot offers it. Playing takes simulated time: a call ends with its sound.
-
-    Args:
-        simulation: Whose loudspeakers these are; touched in the simulation thread only.
-        allow_private_streams: Whether streams may come from this computer and from private networks.
-    """
+    """ALAudioPlayer as the simulated robot offers it. Playing takes simulated time: a call ends with its sound."""
 
     def __init__(
         self,
@@ -41,27 +36,27 @@ class ALAudioPlayer:
         allow_private_streams: bool,
     ) -> None:
         memory.insert(TIMES, [])
+        self._runner = runner
+        self._background = background
         self._sounds = sounds
         self._streams = WebStreams(sounds, allow_private_streams)
         folders = (sounds.files.folder / OWN_SETS, *sounds.files.shipped)
         self._sets = SoundSets(sounds, lambda name, size: self._player.check_room(name, size), *folders)
         self._player = Player(
             simulation,
-            runner,
-            background,
             lambda onset, end: memory.insert(TIMES, [onset, end]),
             lambda: sounds.reader.sizes.loaded_sounds.bytes,
             self._sets.kept,
         )
 
     def parts(self) -> list[Any]:
-        """The objects that together have the methods of the module."""
         return [self, self._sets]
 
     # --- files ----------------------------------------------------------------------------------------------------
 
     def loadFile(self, name: str) -> Task:
-        return self._player.load_when_there(lambda: self._sounds.read(name), name)
+        load = lambda _: self._player.load(name, self._sounds.read(name)).number  # noqa: E731
+        return self._background.in_turn(load, "loadFile")
 
     def unloadFile(self, sound_id: int) -> Task:
         loaded = self._player.find(sound_id)
@@ -102,12 +97,12 @@ class ALAudioPlayer:
 
     def playWebStream(self, address: str, volume: float, pan: float) -> Task:
         name, checked = "playWebStream", _volume_and_pan((volume, pan))
-        return self._player.play_when_there(
-            lambda wanted: self._streams.fetch(address, wanted),
-            lambda sound: self._begin_once(address, sound, checked, name),
-            name,
-            may_take_long=True,
-        )
+
+        def play(wanted: Wanted) -> Task:
+            sound = self._streams.fetch(address, wanted)
+            return self._do(lambda: self._begin_once(address, sound, checked, name) if wanted() else None, name)
+
+        return self._background.beside(play, name)  # it may take so long that time should not wait for it
 
     def pause(self, sound_id: int) -> Task:
         loaded = self._player.find(sound_id)
@@ -124,7 +119,7 @@ class ALAudioPlayer:
 
     def stopAll(self) -> Task:
         # At once, so that what is asked for right after this call is played.
-        self._player.give_up_pending()
+        self._background.stop()
         return self._do(self._player.stop_all, "stopAll")
 
     # --- volume, panorama, pitch ----------------------------------------------------------------------------------
@@ -148,10 +143,10 @@ class ALAudioPlayer:
         return self._do(lambda: self._player.set_all(panorama=checked), "setPanorama")
 
     def setPitch(self, sound_id: int, level: float) -> Task:
-        return self._player.change_pitch(sound_id, number(level, "level", LOWEST, HIGHEST))
+        return self._change_pitch(sound_id, number(level, "level", LOWEST, HIGHEST))
 
     def disablePitch(self, sound_id: int) -> Task:
-        return self._player.change_pitch(sound_id, 1.0)
+        return self._change_pitch(sound_id, 1.0)
 
     def playSoundSetFile(self, *args: Any) -> Task:
         names = [argument for argument in args if isinstance(argument, str)]
@@ -160,10 +155,20 @@ class ALAudioPlayer:
         position, volume, pan, loop = args[len(names) :] or (0.0, 1.0, 0.0, False)
         return self._play_once(file, sound, (volume, pan), "playSoundSetFile", position, loop)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
+    def _do(self, action: Callable[[], Any], name: str) -> Task:
+        return self._runner.execute(action, name)
 
-    def _do(self, action: Any, name: str) -> Task:
-        return self._player.in_simulation(action, name)
+    def _change_pitch(self, sound_id: int, factor: float) -> Task:
+        loaded = self._player.find(sound_id)
+        if factor != 1.0 and loaded.altered is None:
+            self._player.check_room(loaded.name, loaded.sound.samples.nbytes)
+
+        def change(_: Wanted) -> Task:
+            sound = loaded.sound
+            altered = None if factor == 1.0 else Sound(shifted(sound.samples, factor, sound.rate), sound.rate)
+            return self._do(lambda: self._player.exchange(loaded, altered), "setPitch")
+
+        return self._background.in_turn(change, "setPitch")
 
     def _play(self, loaded: LoadedSound, volume_and_pan: Any, name: str, loop: bool = False) -> Task:
         checked = _volume_and_pan(volume_and_pan) if volume_and_pan else None
@@ -177,11 +182,13 @@ class ALAudioPlayer:
 
     def _play_file(self, file: str, volume_and_pan: Any, name: str, position: float = 0.0, loop: bool = False) -> Task:
         checked = _volume_and_pan(volume_and_pan)
-        return self._player.play_when_there(
-            lambda _: self._sounds.read(file),
-            lambda sound: self._begin_once(file, sound, checked, name, _position(position, sound), loop),
-            name,
-        )
+
+        def play(wanted: Wanted) -> Task:
+            sound = self._sounds.read(file)
+            begin = lambda: self._begin_once(file, sound, checked, name, _position(position, sound), loop)  # noqa: E731
+            return self._do(lambda: begin() if wanted() else None, name)
+
+        return self._background.in_turn(play, name)
 
     def _play_once(
         self, label: str, sound: Sound, volume_and_pan: Any, name: str, position: float = 0.0, loop: bool = False

@@ -30,10 +30,8 @@ HELD_UP = 2
 class MicrophoneClients:
     """The subscribers of ALAudioDevice.
 
-    Args:
-        ears: `listen(name, callback, wants, channel)` of the sound world.
-        service: Finds the module of a client by its name; raises RuntimeError when it is not there.
-        released: Called when a client has caught up, for time that waits.
+    `service` finds the module of a client by its name, or raises a RuntimeError; `released` is called when a client has
+    caught up, for time that waits.
     """
 
     def __init__(self, ears: Any, service: Callable[[str], Any], released: Callable[[], None] = lambda: None) -> None:
@@ -57,8 +55,7 @@ class MicrophoneClients:
     def subscribe(self, module: str) -> None:
         """Begin to call a module. One that is subscribed already stays so.
 
-        Raises:
-            NaoqiError: There is no such module.
+        A NaoqiError when there is no such module.
         """
         try:
             remote = self._service(module)
@@ -80,11 +77,7 @@ class MicrophoneClients:
             client.listen(wanted)
 
     def unsubscribe(self, module: str) -> None:
-        """Call a module no more.
-
-        Raises:
-            NaoqiError: It is not subscribed.
-        """
+        """Call a module no more; a NaoqiError when it is not subscribed."""
         with self._lock:
             client = self._clients.pop(module, None)
             known = ", ".join(self._clients) or "none"

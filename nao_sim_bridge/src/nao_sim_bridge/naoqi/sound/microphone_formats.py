@@ -17,17 +17,11 @@ ALLOWED = "48000 Hz with channels 0 (all four), or 16000 Hz with 1 (left), 2 (ri
 
 @dataclass(frozen=True)
 class MicrophoneFormat:
-    """What a client gets.
+    """What a client gets."""
 
-    Attributes:
-        rate: Samples a second.
-        channel: 0 for all four, else 1 left, 2 right, 3 front, 4 rear.
-        deinterleaved: One channel after the other, instead of one frame after the other.
-    """
-
-    rate: int = HIGH
-    channel: int = ALL
-    deinterleaved: bool = False
+    rate: int = HIGH  # samples a second
+    channel: int = ALL  # 0 for all four, else 1 left, 2 right, 3 front, 4 rear
+    deinterleaved: bool = False  # one channel after the other, instead of one frame after the other
 
     @property
     def wants(self) -> str:
@@ -45,15 +39,9 @@ class MicrophoneFormat:
 
 
 def microphone_format(rate: int, channels: Any, deinterleaved: int) -> MicrophoneFormat:
-    """The format that a client asks for.
+    """The format of a client's wishes: channels are 0 to 4 as above, or four flags for left, right, front, rear.
 
-    Args:
-        rate: Samples a second.
-        channels: 0 to 4 as above, or four flags for left, right, front, rear.
-        deinterleaved: 0 or 1.
-
-    Raises:
-        BadValue: The microphones cannot be had like this.
+    A BadValue when the microphones cannot be had like this.
     """
     if deinterleaved not in (0, 1):
         raise BadValue("deinterleaved", deinterleaved, "0 or 1")
@@ -64,11 +52,7 @@ def microphone_format(rate: int, channels: Any, deinterleaved: int) -> Microphon
 
 
 def flags_to_channel(flags: Any) -> int:
-    """0 for four flags that are set, 1 to 4 for the one that is.
-
-    Raises:
-        BadValue: Something else.
-    """
+    """0 for four flags that are set, 1 to 4 for the one that is; a BadValue for anything else."""
     right = isinstance(flags, (list, tuple)) and len(flags) == 4 and all(flag in (0, 1) for flag in flags)
     if not right or sum(flags) not in (1, 4):
         raise BadValue("channels", flags, "flags [left, right, front, rear] of 0 or 1: one of them set, or all four")

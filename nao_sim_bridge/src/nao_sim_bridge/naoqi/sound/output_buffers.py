@@ -35,13 +35,10 @@ class OutputBuffers:
         self._waiting: deque[tuple[float, Task]] = deque()
 
     def add(self, samples: np.ndarray) -> Any:
-        """Play a piece after those before it.
+        """Play a piece, (frames, 2) float32 at `rate`, after those before it.
 
-        Args:
-            samples: (frames, 2) float32 at `rate`.
-
-        Returns:
-            True, False when far too much is waiting already, or a task that ends with True once the sender may go on.
+        Returns True, False when far too much is waiting already, or a task that ends with True once the sender may go
+        on.
         """
         if not self._queued:
             self._stream = None
@@ -113,14 +110,9 @@ class OutputBuffers:
 
 
 def samples_of(frames: int, buffer: Any) -> np.ndarray:
-    """What a client sent, as (frames, 2) float32 in -1 to 1.
+    """What a client sent, bytes of 16 bit stereo frames or as many numbers, as (frames, 2) float32 in -1 to 1.
 
-    Args:
-        frames: Their number, as the client says.
-        buffer: Bytes of 16 bit stereo frames, or as many numbers.
-
-    Raises:
-        BadValue: That is no sound of so many frames.
+    A BadValue when that is no sound of so many frames.
     """
     number(frames, "nbOfFrames", 1, LARGEST)
     if isinstance(buffer, (bytes, bytearray)):

@@ -9,11 +9,8 @@ from typing import Any, Callable
 
 from nao_sim_bridge.base.samples import Sound
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
-from nao_sim_bridge.naoqi.binding.background import Background, Wanted
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.sound.pitch import shifted
 
 SHOWN = 5
 """How many sounds a refusal names."""
@@ -21,29 +18,17 @@ SHOWN = 5
 
 @dataclass
 class LoadedSound:
-    """A sound that has a number; everything but its name and sound is touched in the simulation thread only.
+    """A sound that has a number; everything but its name and sound is touched in the simulation thread only."""
 
-    Attributes:
-        number: What clients call it by.
-        name: Name of the file as it was given.
-        sound: As it was read.
-        volume: 0 to 1.
-        pan: -1 left to 1 right.
-        begins: Where it begins when it is played next, s.
-        altered: At another pitch; as long as `sound`.
-        temporary: Forgotten when it has been played.
-        run: What plays it now.
-    """
-
-    number: int
-    name: str
-    sound: Sound
-    volume: float = 1.0
-    pan: float = 0.0
-    begins: float = 0.0
-    altered: Sound | None = None
-    temporary: bool = False
-    run: Run | None = None
+    number: int  # what clients call it by
+    name: str  # name of the file as it was given
+    sound: Sound  # as it was read
+    volume: float = 1.0  # 0 to 1
+    pan: float = 0.0  # -1 left to 1 right
+    begins: float = 0.0  # where it begins when it is played next, s
+    altered: Sound | None = None  # at another pitch; as long as `sound`
+    temporary: bool = False  # forgotten when it has been played
+    run: Run | None = None  # what plays it now
 
     @property
     def size(self) -> int:
@@ -57,26 +42,18 @@ class LoadedSound:
 
 @dataclass
 class Run:
-    """One time that a sound is played.
+    """One time that a sound is played."""
 
-    Attributes:
-        task: For who waits for its end; it outlives a change of the sound.
-        playing: What sounds.
-        loop: Whether it begins again at its end.
-        begun: Simulated time of its first sample, s.
-    """
-
-    task: Task
-    playing: Any
-    loop: bool
-    begun: float
+    task: Task  # for who waits for its end; it outlives a change of the sound
+    playing: Any  # what sounds
+    loop: bool  # whether it begins again at its end
+    begun: float  # simulated time of its first sample, s
 
 
 class Player:
-    """Loaded sounds and how they are played.
+    """Loaded sounds and how they are played; the loudspeakers are touched in the simulation thread only.
 
     Args:
-        simulation: Whose loudspeakers these are; touched in the simulation thread only.
         on_end: Told the simulated times of first and last sample, s, when a sound has been played.
         largest: Answers how many bytes all sounds may take together.
         elsewhere: Names and bytes of other sounds that count with them.
@@ -85,8 +62,6 @@ class Player:
     def __init__(
         self,
         simulation: Simulation,
-        runner: SimulationRunner,
-        background: Background,
         on_end: Callable[[float, float], None],
         largest: Callable[[], int],
         elsewhere: Callable[[], list[tuple[str, int]]],
@@ -94,23 +69,17 @@ class Player:
         self._largest = largest
         self._elsewhere = elsewhere
         self._on_end = on_end
-        self._background = background
         self._simulation = simulation
-        self._runner = runner
         self._lock = threading.Lock()  # guards the table; the sounds in it belong to the simulation thread
         self._sounds: dict[int, LoadedSound] = {}
         self._numbers = itertools.count(1)
-        self._volume = 1.0
+        self.volume = 1.0
         self._panorama = 0.0
 
     # --- from any thread ------------------------------------------------------------------------------------------
 
     def load(self, name: str, sound: Sound, temporary: bool = False) -> LoadedSound:
-        """Give a sound a number.
-
-        Raises:
-            NaoqiError: There is no room for it.
-        """
+        """Give a sound a number; a NaoqiError when there is no room for it."""
         self.check_room(name, sound.samples.nbytes)
         loaded = LoadedSound(next(self._numbers), name, sound, temporary=temporary)
         with self._lock:
@@ -118,11 +87,7 @@ class Player:
         return loaded
 
     def check_room(self, name: str, size: int) -> None:
-        """Raise an error unless there is room for a sound of so many bytes.
-
-        Raises:
-            NaoqiError: There is none; it names what takes the most.
-        """
+        """Raise a NaoqiError that names what takes the most, unless there is room for a sound of so many bytes."""
         largest = self._largest()
         kept = [(loaded.name, loaded.size) for loaded in self.loaded()] + self._elsewhere()
         if sum(each for _, each in kept) + size <= largest:
@@ -140,64 +105,12 @@ class Player:
             return list(self._sounds.values())
 
     def find(self, number: int) -> LoadedSound:
-        """The sound of a number.
-
-        Raises:
-            NaoqiError: There is none.
-        """
+        """The sound of a number; a NaoqiError when there is none."""
         with self._lock:
             if number not in self._sounds:
                 known = ", ".join(map(str, self._sounds)) or "none"
                 raise NaoqiError(f"no sound is loaded under the id {number}; ids in use: {known}")
             return self._sounds[number]
-
-    @property
-    def volume(self) -> float:
-        """Volume of the whole player, 0 to 1."""
-        return self._volume
-
-    def in_simulation(self, action: Callable[[], Any], name: str) -> Task:
-        return self._runner.execute(action, name)
-
-    def load_when_there(self, fetch: Callable[[], Sound], name: str) -> Task:
-        return self._background.in_turn(lambda _: self.load(name, fetch()).number, "loadFile")
-
-    def play_when_there(
-        self, fetch: Callable[[Wanted], Sound], play: Callable[[Sound], Task], name: str, may_take_long: bool = False
-    ) -> Task:
-        """Play what takes its time to get.
-
-        Args:
-            fetch: Gets the sound; it may ask its argument whether anybody still wants it.
-            play: Begins to play it, in the simulation thread.
-            may_take_long: It may take so long that simulated time should not wait for it.
-
-        Returns:
-            A task that leads to the task of the playing; it ends when nobody wants it any more.
-        """
-
-        def work(wanted: Wanted) -> Task:
-            sound = fetch(wanted)
-            return self._runner.execute(lambda: play(sound) if wanted() else None, name)
-
-        return (self._background.beside if may_take_long else self._background.in_turn)(work, name)
-
-    def give_up_pending(self) -> None:
-        """Do not play what was asked for up to now and is still on its way."""
-        self._background.stop()
-
-    def change_pitch(self, number: int, factor: float) -> Task:
-        """Give a sound another pitch, 1 for its own; what plays goes on at the place where it is."""
-        loaded = self.find(number)
-        if factor != 1.0 and loaded.altered is None:
-            self.check_room(loaded.name, loaded.sound.samples.nbytes)
-
-        def work(_: Wanted) -> Task:
-            sound = loaded.sound
-            altered = None if factor == 1.0 else Sound(shifted(sound.samples, factor, sound.rate), sound.rate)
-            return self._runner.execute(lambda: self._exchange(loaded, altered), "setPitch")
-
-        return self._background.in_turn(work, "setPitch")
 
     # --- in the simulation thread ---------------------------------------------------------------------------------
 
@@ -241,7 +154,7 @@ class Player:
 
     def set_all(self, volume: float | None = None, panorama: float | None = None) -> None:
         """Volume 0 to 1 and panorama -1 to 1 of the whole player, on top of those of each sound."""
-        self._volume = self._volume if volume is None else volume
+        self.volume = self.volume if volume is None else volume
         self._panorama = self._panorama if panorama is None else panorama
         for loaded in self.loaded():
             self._adjust(loaded)
@@ -264,13 +177,11 @@ class Player:
         for loaded in self.loaded():
             self.unload(loaded)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _begin(self, loaded: LoadedSound, position: float) -> None:
         run = loaded.run
         pan = max(-1.0, min(1.0, loaded.pan + self._panorama))
         speakers = self._simulation.sound.loudspeakers
-        playing = speakers.play(loaded.heard, loaded.name, loaded.volume * self._volume, pan, position, run.loop)
+        playing = speakers.play(loaded.heard, loaded.name, loaded.volume * self.volume, pan, position, run.loop)
         run.playing = playing
         playing.task.add_done_callback(lambda done: self._ended(loaded, run, playing, done))
 
@@ -295,7 +206,8 @@ class Player:
             with self._lock:
                 self._sounds.pop(loaded.number, None)
 
-    def _exchange(self, loaded: LoadedSound, altered: Sound | None) -> None:
+    def exchange(self, loaded: LoadedSound, altered: Sound | None) -> None:
+        """Have a sound at another pitch, or as it was read; what plays goes on at the place where it is."""
         loaded.altered = altered
         run = loaded.run
         if run is None:
@@ -308,7 +220,7 @@ class Player:
 
     def _adjust(self, loaded: LoadedSound) -> None:
         if loaded.run is not None:
-            loaded.run.playing.set_volume(loaded.volume * self._volume)
+            loaded.run.playing.set_volume(loaded.volume * self.volume)
             loaded.run.playing.set_pan(max(-1.0, min(1.0, loaded.pan + self._panorama)))
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import logging
 import math
 import threading
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import BadValue, SimulationStopped
 from nao_sim_bridge.base.record_dir import ClientFiles
-from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -25,21 +24,6 @@ CLOSING = 10.0
 KINDS: dict[str, Callable[[Path, int, int], Any]] = {"wav": WavFile, "ogg": OggFile}
 
 
-@dataclass(frozen=True)
-class RecordingOrder:
-    """What is to be recorded.
-
-    Attributes:
-        name: File name as it was given.
-        kind: "wav" or "ogg".
-        heard: Rate and channels.
-    """
-
-    name: str
-    kind: str
-    heard: MicrophoneFormat
-
-
 class FilesInUse:
     """Files that are written to, by whichever recorder."""
 
@@ -48,11 +32,7 @@ class FilesInUse:
         self._paths: set[Path] = set()
 
     def take(self, path: Path, name: str) -> None:
-        """Take a file, called `name` in errors.
-
-        Raises:
-            NaoqiError: It is written to already.
-        """
+        """Take a file, called `name` in errors; a NaoqiError when it is written to already."""
         with self._lock:
             if path in self._paths:
                 raise NaoqiError(f"{name!r} is being written to by another recording")
@@ -64,11 +44,7 @@ class FilesInUse:
 
 
 class Recorder:
-    """One recording at a time.
-
-    Args:
-        in_use: Shared by all recorders.
-    """
+    """One recording at a time; all recorders share the files that are `in_use`."""
 
     def __init__(self, simulation: Any, runner: SimulationRunner, files: ClientFiles, in_use: FilesInUse) -> None:
         self._simulation = simulation
@@ -78,21 +54,19 @@ class Recorder:
         self._lock = threading.Lock()
         self._recording: _Recording | None = None
 
-    def start(self, order: RecordingOrder) -> Task:
-        """Begin at the present moment of simulated time; the task ends when it has begun.
+    def start(self, name: str, kind: str, heard: MicrophoneFormat) -> Task:
+        """Record to a file, "wav" or "ogg", from the present moment of simulated time; the task ends when it has begun.
 
-        Raises:
-            NaoqiError: A recording is under way.
-            FileTrouble: The file cannot be written.
-            ValueError: The file is not inside the folder for recordings.
+        A NaoqiError when a recording is under way, a FileTrouble when the file cannot be written, a ValueError when the
+        file is not inside the folder for recordings.
         """
-        path = self._files.to_write(order.name)
+        path = self._files.to_write(name)
         with self._lock:
             if self._recording is not None:
                 raise NaoqiError(f"a recording to {self._recording.name!r} is under way; stop it first")
-            self._in_use.take(path, order.name)
+            self._in_use.take(path, name)
             try:
-                recording = self._recording = _Recording(order, path)
+                recording = self._recording = _Recording(name, KINDS[kind], heard, path)
             except Exception:
                 self._in_use.give_back(path)
                 raise
@@ -104,31 +78,26 @@ class Recorder:
         with self._lock:
             recording, self._recording = self._recording, None
         ended = Task("stopMicrophonesRecording", 0)
+        if recording is None:
+            ended.finish()
+            return ended
 
-        def finish() -> None:
+        def end() -> None:
             try:
                 recording.end()
-            except Exception as error:
+            finally:
                 self._in_use.give_back(recording.path)
-                ended.finish(error=error)
-            else:
-                self._in_use.give_back(recording.path)
-                ended.finish()
 
         def mark() -> None:
             recording.until = self._simulation.sound.time
 
-        if recording is None:
-            ended.finish()
-        else:
-            # In a thread of its own: what was heard last has still to be worked out.
-            thread = threading.Thread(target=finish, name="end of a recording", daemon=True)
-            try:
-                marked = self._runner.execute(mark, "stopMicrophonesRecording")
-            except SimulationStopped:
-                thread.start()  # then there is no more to hear than there is in the file
-            else:
-                marked.add_done_callback(lambda _: thread.start())
+        def marked(_: Task | None) -> None:  # what was heard last has still to be worked out
+            worked_out(ended, end, "end of a recording")
+
+        try:
+            self._runner.execute(mark, "stopMicrophonesRecording").add_done_callback(marked)
+        except SimulationStopped:
+            marked(None)  # there is no more to hear than there is in the file
         return ended
 
     def close(self) -> None:
@@ -140,19 +109,15 @@ class Recorder:
 
 
 class _Recording:
-    """A file that grows with every block that the ears hear.
+    """A file that grows with every block that the ears hear, until a simulated time, s, known once it is stopped."""
 
-    Attributes:
-        name: Name of the file as it was given.
-        until: Simulated time at which it ends, s; known once it is stopped.
-    """
-
-    def __init__(self, order: RecordingOrder, path: Path) -> None:
-        self.name, self.path = order.name, path
+    def __init__(
+        self, name: str, make_file: Callable[[Path, int, int], Any], heard: MicrophoneFormat, path: Path
+    ) -> None:
+        self.name, self.path = name, path
         self.until = math.inf
-        self._heard = order.heard
-        channels = 4 if order.heard.channel == ALL else 1
-        self._file = KINDS[order.kind](path, order.heard.rate, channels)
+        self._heard = heard
+        self._file = make_file(path, heard.rate, 4 if heard.channel == ALL else 1)
         self._listener: Any = None
         self._failure: Exception | None = None
 
@@ -161,11 +126,7 @@ class _Recording:
         self._listener = ears.listen(f"recording {self.name}", self._on_block, wants, channel, exact=True)
 
     def end(self) -> None:
-        """Hear what is left, and end the file.
-
-        Raises:
-            NaoqiError: The file could not be written.
-        """
+        """Hear what is left, and end the file; a NaoqiError when the file could not be written."""
         if self._listener is not None:
             self._listener.close()
         try:
@@ -188,11 +149,7 @@ class _Recording:
 
 
 def kind_of(name: str) -> str:
-    """Wav or ogg, by the ending of a file name.
-
-    Raises:
-        BadValue: It has another ending.
-    """
+    """Wav or ogg, by the ending of a file name; a BadValue when it has another ending."""
     ending = Path(name).suffix.lower().lstrip(".")
     if ending not in KINDS:
         raise BadValue("filename", name, "a name that ends in .wav or .ogg")
@@ -211,7 +168,7 @@ class ALAudioRecorder:
         if kind_of(filename) != kind:
             raise BadValue("filename", filename, f"a name that ends in .{kind}, as the type says")
         heard = microphone_format(rate, flags_to_channel(channels), 0)
-        return self._recorder.start(RecordingOrder(filename, kind, heard))
+        return self._recorder.start(filename, kind, heard)
 
     def stopMicrophonesRecording(self) -> Task:
         return self._recorder.stop()

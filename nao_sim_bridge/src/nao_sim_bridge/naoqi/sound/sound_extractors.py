@@ -17,14 +17,15 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.hearing.detection import DEFAULT_SENSITIVITY, SoundDetector
 from nao_sim_bridge.hearing.localisation import microphone_array
 from nao_sim_bridge.hearing.localiser import HeardSound, Localiser, OwnVoice
-from nao_sim_bridge.model.frames import ROBOT, Placement, space_in_torso
-from nao_sim_bridge.model.kinematics import LinkPoses, quaternion_matrix, transform
+from nao_sim_bridge.model.frames import ROBOT, space_in_torso
+from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.switch import Switch, SwitchModule
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.arguments import as_position
 from nao_sim_bridge.sound.ears import Ears, Listener, MicrophoneBlock
+from nao_sim_bridge.tracking.geometry import placement
 
 DETECTION, DETECTED = "ALSoundDetection", "SoundDetected"
 LOCALIZATIONS = ("ALSoundLocalization", "ALAudioSourceLocalization")
@@ -38,8 +39,7 @@ Hear = Callable[[MicrophoneBlock], None]
 class Listening(Switch):
     """Opens and closes the ears of one module. Any thread.
 
-    Args:
-        begin: Called each time that listening begins; what it returns gets the blocks, four channels of 48 kHz.
+    What `begin` returns each time that listening begins gets the blocks, four channels of 48 kHz.
     """
 
     def __init__(self, ears: Ears, name: str, begin: Callable[[], Hear]) -> None:
@@ -64,12 +64,8 @@ class Listening(Switch):
 class SoundExtractor(SwitchModule):
     """An extractor that listens while somebody is subscribed. Only NAOqi methods are public, and `parts`.
 
-    Who inherits it writes `_hear`, which gets the blocks, four channels of 48 kHz.
-
-    Args:
-        events: Names of the events that it raises.
-        detector: Makes what looks through the blocks, anew each time that listening begins; it has a `sensitivity`.
-        setters: What takes the value of a parameter, by its name, beside the sensitivity.
+    Who inherits it writes `_hear`, which gets the blocks, four channels of 48 kHz. `detector` makes what looks through
+    them, anew each time that listening begins; it has a `sensitivity`. `setters` take other parameters.
     """
 
     def __init__(
@@ -92,7 +88,6 @@ class SoundExtractor(SwitchModule):
         self._extractor = Extractor(module, memory, listening.start, listening.stop, events)
 
     def parts(self) -> list[Any]:
-        """The objects that together have the methods of the module."""
         return [self, self._extractor]
 
     def _begin(self) -> Hear:
@@ -129,17 +124,11 @@ class ALSoundDetection(SoundExtractor):
 
 @dataclass(frozen=True)
 class HeadPose:
-    """The head at one time.
+    """The head at one time."""
 
-    Attributes:
-        up: Unit vector upwards in the world, in the frame of the head.
-        in_torso: x, y, z in m, wx, wy, wz in rad, in FRAME_TORSO.
-        in_robot: The same in FRAME_ROBOT.
-    """
-
-    up: tuple[float, float, float]
-    in_torso: list[float]
-    in_robot: list[float]
+    up: tuple[float, float, float]  # unit vector upwards in the world, in the frame of the head
+    in_torso: list[float]  # x, y, z in m, wx, wy, wz in rad, in FRAME_TORSO
+    in_robot: list[float]  # the same in FRAME_ROBOT
 
 
 class HeadTrack:
@@ -165,10 +154,9 @@ class HeadTrack:
 
     def _pose(self, snapshot: Snapshot) -> HeadPose:
         model = self._simulation.model
-        odometry = transform(quaternion_matrix(snapshot.odometry.orientation), snapshot.odometry.position)
-        placement = Placement(LinkPoses(model, snapshot.positions), odometry)
-        head = placement.links[self._link.parent_link]
-        in_robot = np.linalg.inv(space_in_torso(model, ROBOT, placement)) @ head
+        placed = placement(model, snapshot)
+        head = placed.links[self._link.parent_link]
+        in_robot = np.linalg.inv(space_in_torso(model, ROBOT, placed)) @ head
         up = (quaternion_matrix(snapshot.torso.orientation) @ head[:3, :3])[2]
         return HeadPose(tuple(up.tolist()), as_position(head), as_position(in_robot))
 

@@ -10,6 +10,7 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.samples import RATE, Sound
+from nao_sim_bridge.base.samples import sine as tone
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.sound.files import SoundFileError, SoundReader
@@ -31,21 +32,13 @@ class SoundFiles:
     def read(self, name: str) -> Sound:
         """The sound in a file that a client names, at the rate of the simulated world.
 
-        Raises:
-            ValueError: The name leads out of the folder for recordings, or there is no such file.
-            NaoqiError: The file holds no sound that can be played, or too much of it.
+        A ValueError when the name leads out of the folder for recordings, or there is no such file; a NaoqiError when
+        the file holds no sound that can be played, or too much of it.
         """
         return self.read_path(self.files.to_read(name), name)
 
     def read_path(self, path: Path | str, name: str) -> Sound:
-        """The sound in a file, at the rate of the simulated world.
-
-        Args:
-            name: What to call it in errors.
-
-        Raises:
-            NaoqiError: As above.
-        """
+        """As `read`, of any file, which errors call by `name`."""
         try:
             return self.reader.read(path, self.reader.sizes.sound.client_s).at_rate(RATE)
         except SoundFileError as error:
@@ -53,12 +46,10 @@ class SoundFiles:
 
 
 class SoundSets:
-    """Part of ALAudioPlayer: installed and loaded sound sets.
+    """Part of ALAudioPlayer: installed and loaded sound sets, subfolders of `folders`; the first of a name counts.
 
-    Args:
-        check_room: Called with a name and bytes before a sound of that name is kept; raises an error if they are too
-            many.
-        folders: Folders whose subfolders are the sets, the first that has one of a name counts.
+    `check_room` is called with a name and bytes before a sound of that name is kept; it raises an error if they are too
+    many.
     """
 
     def __init__(self, sounds: SoundFiles, check_room: Callable[[str, int], None], *folders: Path) -> None:
@@ -88,11 +79,7 @@ class SoundSets:
         return self.isSoundSetInstalled(name) and _without_ending(file) in self._files(name)
 
     def _files(self, name: str) -> dict[str, Path]:
-        """Sounds of a set: name without ending to file.
-
-        Raises:
-            NaoqiError: There is no such set.
-        """
+        """Sounds of a set: name without ending to file; a NaoqiError when there is no such set."""
         installed = self.getInstalledSoundSetsList()
         if name not in installed:
             raise NaoqiError(f"no sound set {name!r}; installed are {_listed(installed)}")
@@ -102,8 +89,7 @@ class SoundSets:
     def loadSoundSet(self, name: str) -> None:
         """Read all sounds of a set into memory.
 
-        Raises:
-            NaoqiError: There is no such set, one of its files cannot be read, or there is no room for it.
+        A NaoqiError when there is no such set, one of its files cannot be read, or there is no room for it.
         """
         if name in self._loaded:
             return
@@ -122,23 +108,15 @@ class SoundSets:
         ]
 
     def unloadSoundSet(self, name: str) -> None:
-        """Forget a set.
-
-        Raises:
-            NaoqiError: It is not loaded.
-        """
+        """Forget a set; a NaoqiError when it is not loaded."""
         if name not in self._loaded:
             raise NaoqiError(f"sound set {name!r} is not loaded; loaded are {_listed(self._loaded)}")
         del self._loaded[name]
 
     def sound(self, file: str, name: str | None = None) -> Sound:
-        """A sound by its name, with or without ending.
+        """A sound by its name, with or without ending, of a set, which is loaded if need be, or of all loaded ones.
 
-        Args:
-            name: Its set, which is loaded when it is not yet; without one, all loaded sets are searched.
-
-        Raises:
-            NaoqiError: There is no such set or sound, or no set is loaded.
+        A NaoqiError when there is no such set or sound, or no set is loaded.
         """
         if name is not None:
             self.loadSoundSet(name)
@@ -177,9 +155,7 @@ def sine(frequency: float, gain: float, duration: float) -> Sound:
     frames = round(number(duration, "duration", 0.0, LONGEST) * RATE)
     if frames == 0:
         raise BadValue("duration", duration, f"above 0 to {LONGEST:g}")
-    # Cycles are reduced to their fraction in double precision: long tones keep their phase.
-    cycles = (np.arange(frames) * (pitch / RATE)) % 1.0
-    samples = (amplitude * np.sin(2.0 * np.pi * cycles)).astype(np.float32)
+    samples = tone(pitch, frames / RATE, amplitude).samples[:, 0].copy()
     edge = min(round(EDGE * RATE), frames // 2)
     ramp = np.sin(0.5 * np.pi * np.arange(edge) / max(edge, 1)) ** 2
     samples[:edge] *= ramp
@@ -188,11 +164,7 @@ def sine(frequency: float, gain: float, duration: float) -> Sound:
 
 
 def side(pan: int) -> float:
-    """Panorama of playSine: -1 left, 0 both, 1 right.
-
-    Raises:
-        BadValue: Something else.
-    """
+    """Panorama of playSine: -1 left, 0 both, 1 right; a BadValue for anything else."""
     if pan not in (-1, 0, 1):
         raise BadValue("pan", pan, "-1 (left), 0 (both) or 1 (right)")
     return float(pan)

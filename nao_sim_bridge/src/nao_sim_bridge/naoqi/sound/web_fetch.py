@@ -60,11 +60,7 @@ def resolved(host: str, port: int) -> list[str]:
 
 
 def checked_addresses(host: str, port: int, allowed: Allowed, resolve: Resolve = resolved) -> list[str]:
-    """The addresses of a host, which may be connected to.
-
-    Raises:
-        Refused: One of them is not allowed.
-    """
+    """The addresses of a host, which may be connected to; a Refused when one of them is not allowed."""
     addresses = list(resolve(host, port))
     for address in addresses:
         if not allowed(address):
@@ -76,11 +72,8 @@ def fetch(address: str, file: BinaryIO, sizes: StreamSizes, allowed: Allowed) ->
     """Fill a file with what is at an address of http or https; returns its bytes.
 
     Every address is looked at as it is connected to, that of a redirection too. Proxies of the environment are not
-    asked: they would look names up themselves.
-
-    Raises:
-        Refused: The address is none or not allowed, there is too much, or there are too many redirections.
-        OSError, http.client.HTTPException: Nothing can be had there.
+    asked: they would look names up themselves. A Refused when the address is none or not allowed, there is too much, or
+    there are too many redirections; an OSError or HTTPException when nothing can be had there.
     """
     for _ in range(sizes.redirects + 1):
         parts = urllib.parse.urlsplit(address)

@@ -21,14 +21,7 @@ LOOK = 0.1
 
 
 class WebStreams:
-    """Fetches sounds for the clients of one robot.
-
-    Attributes:
-        count: How many are being fetched.
-
-    Args:
-        allow_private: Whether addresses of this computer and of private networks may be fetched from.
-    """
+    """Fetches sounds for the clients of one robot, from this computer and private networks only if that is allowed."""
 
     def __init__(self, sounds: SoundFiles, allow_private: bool) -> None:
         self.sizes: StreamSizes = sounds.reader.sizes.stream
@@ -38,15 +31,10 @@ class WebStreams:
         self._lock = threading.Lock()  # guards the count
 
     def fetch(self, address: str, wanted: Callable[[], bool] = lambda: True) -> Sound:
-        """The sound at an address; takes its time, so for a thread of its own.
+        """The sound at an address of http, https, or a file that the client may read; for a thread of its own.
 
-        Args:
-            address: http, https, or file; a file has to be one that the client may read.
-            wanted: Asked now and then whether to go on.
-
-        Raises:
-            NaoqiError: The address is none or not allowed, nothing usable is there, it is too large, it does not end,
-                too many are being fetched, or nobody wants it any more.
+        `wanted` is asked now and then whether to go on. A NaoqiError when the address is none or not allowed, nothing
+        usable is there, it is too large, it does not end, too many are being fetched, or nobody wants it any more.
         """
         try:
             parts = urllib.parse.urlsplit(address)

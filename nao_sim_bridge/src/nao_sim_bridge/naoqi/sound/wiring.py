@@ -29,12 +29,7 @@ log = logging.getLogger("nao_sim.speech")
 
 
 class AudioModules:
-    """ALAudioPlayer, ALAudioDevice and ALAudioRecorder of one robot.
-
-    Args:
-        sounds: Reads sound files of clients, from where they may have files read from and written to.
-        broker: Finds modules of clients: `service(name)`.
-    """
+    """ALAudioPlayer, ALAudioDevice and ALAudioRecorder of one robot; the broker finds modules of clients."""
 
     def __init__(
         self,
@@ -51,17 +46,14 @@ class AudioModules:
         in_use = FilesInUse()
         self.recorders = [Recorder(simulation, runner, sounds.files, in_use) for _ in range(2)]
         self._energy = MicrophoneEnergy(ears, {side: settings.energy_channels(side) for side in settings.energies})
-        self._player = ALAudioPlayer(simulation, runner, sounds, background, memory, allow_private_streams)
-        self._device = ALAudioDevice(simulation, runner, sounds, self.clients, self._energy, self.recorders[0])
-        self._recorder = ALAudioRecorder(self.recorders[1])
-        simulation.holds += [self.clients.behind, background.holds]
-
-    def modules(self) -> dict[str, list[Any]]:
-        return {
-            "ALAudioPlayer": self._player.parts(),
-            "ALAudioDevice": self._device.parts(),
-            "ALAudioRecorder": [self._recorder],
+        player = ALAudioPlayer(simulation, runner, sounds, background, memory, allow_private_streams)
+        device = ALAudioDevice(simulation, runner, sounds, self.clients, self._energy, self.recorders[0])
+        self.modules: dict[str, list[Any]] = {
+            "ALAudioPlayer": player.parts(),
+            "ALAudioDevice": [device, self._energy],
+            "ALAudioRecorder": [ALAudioRecorder(self.recorders[1])],
         }
+        simulation.holds += [self.clients.behind, background.holds]
 
     def closing(self) -> list[Callable[[], None]]:
         """Steps that complete recordings and call no client any more; blocking."""
@@ -73,11 +65,7 @@ class AudioModules:
 
 
 class SpeechModules:
-    """ALTextToSpeech and ALAnimatedSpeech of one robot.
-
-    Args:
-        broker: Finds modules that a text calls: `service(name)`.
-    """
+    """ALTextToSpeech and ALAnimatedSpeech of one robot; the broker finds modules that a text calls."""
 
     def __init__(
         self,
@@ -91,29 +79,27 @@ class SpeechModules:
         self._broker = broker
         self._closed = False
         self.studio = studio
-        self.speaker = Speaker(simulation, self.studio)
+        self.speaker = Speaker(simulation, studio)
         self.animator = Animator(simulation)
         self.library = load_animations()
-        self._settings = VoiceSettings(studio.engines, files)
+        settings = VoiceSettings(studio.engines, files)
         events = SpeechEvents(memory, lambda: simulation.sound.time)
         self.speaker.listeners.append(events)
-        self._text_to_speech = ALTextToSpeech(self.speaker, self.studio, self._settings, events, runner, files)
+        self._text_to_speech = ALTextToSpeech(self.speaker, studio, settings, events, runner, files)
         self._animated_speech = ALAnimatedSpeech(
             simulation,
             runner,
             memory,
             self.speaker,
-            self.studio,
-            self._settings,
+            studio,
+            settings,
             files,
             self._call,
             self.animator,
             self.library,
         )
-
-    def modules(self) -> dict[str, list[Any]]:
-        return {
-            "ALTextToSpeech": [self._text_to_speech, self._settings],
+        self.modules: dict[str, list[Any]] = {
+            "ALTextToSpeech": [self._text_to_speech, settings],
             "ALAnimatedSpeech": [self._animated_speech],
         }
 

@@ -25,11 +25,7 @@ MODE_KEY = "bodyLanguageMode"
 
 
 class ALAnimatedSpeech:
-    """ALAnimatedSpeech as the simulated robot offers it.
-
-    Args:
-        simulation: Whose robot it is; touched in the simulation thread only.
-    """
+    """ALAnimatedSpeech as the simulated robot offers it."""
 
     def __init__(
         self,
@@ -119,11 +115,7 @@ class ALAnimatedSpeech:
 
 
 def _mode(value: Any) -> str:
-    """A mode by its name or its number.
-
-    Raises:
-        BadValue: There is no such mode.
-    """
+    """A mode by its name or its number; a BadValue when there is no such mode."""
     if value in MODES:
         return value
     if isinstance(value, int) and not isinstance(value, bool) and 0 <= value < len(MODES):

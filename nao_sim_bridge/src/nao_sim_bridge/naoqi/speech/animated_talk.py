@@ -26,13 +26,8 @@ Caller = Callable[[str, str, list], Task]
 class AnimatedTalk:
     """Reads an annotated text, has it spoken, and moves the robot along.
 
-    Args:
-        text: With instructions and tags.
-        mode: Body language where no instruction says otherwise.
-        call: For the instructions that call methods; None: they are left out.
-
-    Raises:
-        BadValue: The text is too long, or its pauses are together.
+    `mode` is the body language where no instruction says otherwise; without `call`, instructions that call methods are
+    left out. A BadValue when the text is too long, or its pauses are together.
     """
 
     def __init__(

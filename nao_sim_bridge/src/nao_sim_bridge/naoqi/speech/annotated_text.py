@@ -35,17 +35,11 @@ METHOD = re.compile(r"\s*(\w+)\.(\w+)\s*\((.*)\)\s*", re.DOTALL)
 
 @dataclass(frozen=True)
 class Instruction:
-    """Something to do at a place of the text.
+    """Something to do at a place of the text."""
 
-    Attributes:
-        act: start, run, wait or stop an animation, change the mode, call or post a method.
-        kind: What `value` is: an animation's name, a tag, a mode, or a call.
-        value: As it is written.
-    """
-
-    act: str
-    kind: str
-    value: str
+    act: str  # start, run, wait or stop an animation, change the mode, call or post a method
+    kind: str  # what `value` is: an animation's name, a tag, a mode, or a call
+    value: str  # as it is written
 
 
 def read(text: str) -> list[Union[str, Instruction]]:
@@ -71,8 +65,7 @@ def read(text: str) -> list[Union[str, Instruction]]:
 def method_call(text: str) -> Tuple[str, str, list[Any]]:
     """Module, method and arguments of a call as it is written, for example ALLeds.fadeRGB("FaceLeds", "red", 0.5).
 
-    Raises:
-        ValueError: It is no such call.
+    A ValueError when the text is no such call.
     """
     found = METHOD.fullmatch(text)
     if found is None:

@@ -18,9 +18,8 @@ LARGEST = 1_000_000
 def compile_grammar(source: Path, target: Path, language: str) -> None:
     """Check a grammar and write it for `load_grammar`.
 
-    Raises:
-        NaoqiError: The source cannot be read, or is no grammar; the text tells the line.
-        FileTrouble: The target cannot be written.
+    A NaoqiError, which tells the line, when the source cannot be read or is no grammar; a FileTrouble when the target
+    cannot be written.
     """
     text = _text(source)
     _parsed(text, source)
@@ -29,11 +28,7 @@ def compile_grammar(source: Path, target: Path, language: str) -> None:
 
 
 def load_grammar(path: Path) -> BnfGrammar:
-    """A compiled grammar.
-
-    Raises:
-        NaoqiError: The file is none.
-    """
+    """A compiled grammar; a NaoqiError when the file is none."""
     text = _text(path)
     try:
         content = json.loads(text)
@@ -48,8 +43,7 @@ def load_grammar(path: Path) -> BnfGrammar:
 def read_vocabulary(path: Path) -> list[str]:
     """Phrases of a file, one a line; empty lines and lines that begin with # are left out.
 
-    Raises:
-        NaoqiError: The file cannot be read or has none.
+    A NaoqiError when the file cannot be read or has none.
     """
     lines = [line.strip() for line in _text(path).splitlines()]
     phrases = [line for line in lines if line and not line.startswith("#")]

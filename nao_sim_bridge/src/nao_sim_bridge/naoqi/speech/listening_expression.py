@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 
-from nao_sim_bridge.base.samples import Sound, sine
+from nao_sim_bridge.base.samples import sine
 from nao_sim_bridge.body.led_animations import colored
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
@@ -24,12 +24,7 @@ BLUE = (0.0, 0.0, 1.0)
 
 
 class ListeningExpression:
-    """Bips and lights. Any thread.
-
-    Attributes:
-        visual: Whether it shows lights.
-        mode: Which lights, a key of `MODES`.
-    """
+    """Bips and lights, those of a key of `MODES`. Any thread."""
 
     def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
         self._simulation = simulation
@@ -51,7 +46,7 @@ class ListeningExpression:
 
     def _act(self, listens: bool, bips: bool, lights: tuple[str, ...]) -> None:
         if bips:
-            self._simulation.sound.loudspeakers.play(_bip(BIPS[listens]), "bip")
+            self._simulation.sound.loudspeakers.play(sine(BIPS[listens], BIP_S, BIP_AMPLITUDE), "bip")
         with self._lock:
             self._restore()
             if lights:
@@ -70,7 +65,3 @@ class ListeningExpression:
         leds = self._simulation.robot.leds
         leds.set({i: self._before[i] for i, value in self._set.items() if leds.values[i] == value})
         self._before, self._set = {}, {}
-
-
-def _bip(frequency: float) -> Sound:
-    return sine(frequency, BIP_S, BIP_AMPLITUDE)

@@ -40,7 +40,6 @@ class RecognitionEngine(Switch):
     Methods may be called from any thread; events are raised in the recogniser's.
 
     Args:
-        execute: Has something done in the simulation thread: what, and what to call it.
         on_listen: Called with True when listening begins and with False when it ends; it returns how long, in s, what
             is heard next should be left out (the bip that it makes).
         accepts: Tells whether a hypothesis is good enough for its grammar.
@@ -92,22 +91,14 @@ class RecognitionEngine(Switch):
             self._memory.raise_event(STATUS, "Stop")
 
     def check_paused(self, what: str) -> None:
-        """Refuse what must not be changed while the engine listens.
-
-        Raises:
-            NaoqiError: It listens.
-        """
+        """Refuse what must not be changed while the engine listens; a NaoqiError when it listens."""
         if self.runs:
             raise NaoqiError(f"{what} cannot be changed while the engine runs; call pause(True) first")
 
     def listen_for(self, grammars: Sequence[Any], parameters: Mapping[str, float]) -> None:
-        """What to listen for from now on; returns when it is prepared.
+        """What to listen for from now on, with "NbHypotheses" and "Sensitivity"; returns when it is prepared.
 
-        Args:
-            parameters: "NbHypotheses" and "Sensitivity".
-
-        Raises:
-            RecogniserError: It cannot be listened for; the text says why, and what was before stays.
+        A RecogniserError when it cannot be listened for; the text says why, and what was before stays.
         """
         self._recogniser.listen(Listening(tuple(grammars), int(parameters["NbHypotheses"]), parameters["Sensitivity"]))
 
@@ -117,8 +108,6 @@ class RecognitionEngine(Switch):
         if listener is not None:
             listener.close()
         self._recogniser.close()
-
-    # --- inside ---------------------------------------------------------------------------------------------------
 
     def _update(self) -> None:
         runs = self._works

@@ -24,14 +24,7 @@ STATES = (steps.ENQUEUED, steps.STARTED, steps.DONE, steps.STOPPED, steps.THROWN
 
 
 class SpeechEvents:
-    """Raises the events, at the simulated time of what they tell.
-
-    Attributes:
-        enabled: Whether it raises any.
-
-    Args:
-        clock: Simulated time, s.
-    """
+    """Raises the events, while enabled, at the simulated time of what they tell, s of the `clock`."""
 
     def __init__(self, memory: MemoryStore, clock: Callable[[], float]) -> None:
         self._memory = memory

@@ -30,11 +30,7 @@ PARAMETERS: Mapping[str, tuple[float, float, float]] = {"Sensitivity": (0.5, 0.0
 
 
 class ALSpeechRecognition:
-    """ALSpeechRecognition as the simulated robot offers it. Only NAOqi methods are published.
-
-    Args:
-        spare: Where the recogniser's process comes from and goes to; see `Recogniser`.
-    """
+    """ALSpeechRecognition as the simulated robot offers it, with only NAOqi methods. `spare`: see `Recogniser`."""
 
     def __init__(
         self,
@@ -58,9 +54,8 @@ class ALSpeechRecognition:
         self._vocabularies: list[Grammar | None] = []
         self._parameters = {name: value for name, (value, _, _) in PARAMETERS.items()}
 
-    def modules(self) -> dict[str, list[Any]]:
-        """The module by name, as `make_service` wants it."""
-        return {NAME: [self, self._extractor]}
+    def parts(self) -> list[Any]:
+        return [self, self._extractor]
 
     def close(self) -> None:
         self._engine.close()
@@ -213,16 +208,13 @@ class ALSpeechRecognition:
         with self._lock:
             return self._contexts.get(context).parameter(name)
 
-    # --- inside ---------------------------------------------------------------------------------------------------
-
     def _change_context(self, name: str, change: Callable[[Context], Context]) -> None:
         self._change("contexts", lambda: self._contexts.put(name, change(self._contexts.get(name))))
 
     def _change(self, what: str, change: Callable[[], None]) -> None:
         """Change what is listened for; when it cannot be listened for, everything stays as it was.
 
-        Args:
-            what: What is changed, when that is refused while the engine listens; else empty.
+        `what` is changed, when that is refused while the engine listens; else it is empty.
         """
         with self._lock:
             if what:

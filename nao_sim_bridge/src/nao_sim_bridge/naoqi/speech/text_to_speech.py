@@ -25,11 +25,7 @@ PLAYED_FILE = "sayToFileAndPlay.wav"
 
 
 class ALTextToSpeech:
-    """ALTextToSpeech as the simulated robot offers it.
-
-    Args:
-        speaker: The robot's mouth; touched in the simulation thread only.
-    """
+    """ALTextToSpeech as the simulated robot offers it."""
 
     def __init__(
         self,
@@ -88,8 +84,6 @@ class ALTextToSpeech:
 
     def disableNotifications(self) -> None:
         self._events.enabled = False
-
-    # --- inside ---------------------------------------------------------------------------------------------------
 
     def _write(self, text: str, style: Style, path: Any) -> None:
         sound = self._studio.sound(text, style).at_rate(FILE_RATE)

@@ -28,11 +28,7 @@ PREFERENCE_KEYS = ("language", "voice", "volume", "parameters")
 
 
 class VoiceSettings:
-    """Language, voice, parameters, volume and pronunciations. Any thread may call anything.
-
-    Args:
-        engine: Who says which voices can speak.
-    """
+    """Language, voice, parameters, volume and pronunciations; any thread. The engine says which voices can speak."""
 
     def __init__(self, engine: Engines, files: ClientFiles) -> None:
         self._voices = load_voices()
@@ -49,9 +45,7 @@ class VoiceSettings:
     def style(self, language: str | None = None) -> Style:
         """How a text is spoken from now on, in the chosen language or in another one.
 
-        Raises:
-            BadValue: There is no such language.
-            SpeechError: Its engine is missing.
+        A BadValue when there is no such language, a SpeechError when its engine is missing.
         """
         with self._lock:
             other = language is not None and language != self._language.name
@@ -190,8 +184,7 @@ class VoiceSettings:
     def loadVoicePreference(self, name: str) -> None:
         """Take language, voice, volume and parameters from a JSON file, each if it is there; all or nothing.
 
-        Raises:
-            NaoqiError: The file is not what it should be.
+        A NaoqiError when the file is not what it should be.
         """
         path = self._files.to_read(PREFERENCE.format(name))
         try:
@@ -209,12 +202,9 @@ class VoiceSettings:
                 raise
 
     def _take(self, wanted: dict[str, Any]) -> None:
-        if "language" in wanted:
-            self.setLanguage(wanted["language"])
-        if "voice" in wanted:
-            self.setVoice(wanted["voice"])
-        if "volume" in wanted:
-            self.setVolume(wanted["volume"])
+        for key, take in (("language", self.setLanguage), ("voice", self.setVoice), ("volume", self.setVolume)):
+            if key in wanted:
+                take(wanted[key])
         if not isinstance(wanted.get("parameters", {}), dict):
             raise BadValue("parameters", wanted["parameters"], "an object of names and numbers")
         for name, value in wanted.get("parameters", {}).items():

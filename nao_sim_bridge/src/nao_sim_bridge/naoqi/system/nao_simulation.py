@@ -18,9 +18,8 @@ NAME = "NaoSimulation"
 class NaoSimulation:
     """Control of the simulation over libqi; a real robot has no such service.
 
-    Args:
-        host: The server: its `broker`, `runner`, `sounds`, `things`, `hands`, `film`, `health`, `files`, `options`, and
-            its methods `push`, `press`, `picture`, `reset_task`, `factory_reset_task`.
+    The host is the server: its `broker`, `runner`, `sounds`, `things`, `hands`, `film`, `health`, `files`, `options`,
+    and its methods `push`, `press`, `picture`, `reset_task`, `factory_reset_task`.
     """
 
     def __init__(self, host: Any) -> None:
@@ -134,7 +133,7 @@ class NaoSimulation:
     @typed(NAME, qi.Map(qi.String, qi.Dynamic), [])
     def stopFilm(self) -> Any:
         """End the film; returns its path, frames, duration in s, and frames left_out, when the file is complete."""
-        return self._host.film.stop().then(lambda film: film.as_dict())
+        return self._host.film.stop().then(lambda film: {**vars(film), "path": str(film.path)})
 
     @typed(NAME, qi.Void, [qi.Bool])
     def plugCharger(self, plugged: bool) -> Any:

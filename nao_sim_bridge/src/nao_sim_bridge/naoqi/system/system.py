@@ -20,15 +20,9 @@ AS_AT_START = "puts robot and world to where they started"
 
 
 class ALSystem:
-    """ALSystem as the simulated robot offers it.
+    """ALSystem as the simulated robot offers it; `icon` draws a PNG picture of it, so many pixels wide and high.
 
     What would flash the robot's disk or change its users is refused, with what to do instead: a simulation has neither.
-
-    Args:
-        reboot: Puts robot and world to the start.
-        shutdown: Ends the simulator.
-        icon: Draws a PNG picture of the robot, so many pixels wide and high.
-        name: Of the robot, until somebody gives it another one.
     """
 
     def __init__(

@@ -21,12 +21,7 @@ class TimeZone:
     """A time zone that can be changed; at first that of this process: what TZ says, else the computer's own."""
 
     def __init__(self) -> None:
-        self._name, self._zone = _own()
-
-    @property
-    def name(self) -> str:
-        """Its name, for example "Europe/Paris"."""
-        return self._name
+        self.name, self._zone = _own()
 
     def change(self, name: str) -> bool:
         """Change it to one that this machine knows; False when it knows none of this name."""
@@ -40,7 +35,7 @@ class TimeZone:
             self._zone = tz.tzfile(str(file))
         except (OSError, ValueError):  # no name that a file can have; a table of the zones, or something else
             return False
-        self._name = name
+        self.name = name
         return True
 
     def now(self) -> datetime:

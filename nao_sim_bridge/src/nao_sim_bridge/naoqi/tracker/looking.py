@@ -13,7 +13,7 @@ from nao_sim_bridge.control.joints.curves import Ramp
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.model.frames import TORSO
-from nao_sim_bridge.naoqi.binding.arguments import numbers, speed_share
+from nao_sim_bridge.naoqi.binding.arguments import numbers, one_of, speed_share, vector
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.arguments import space_of
 from nao_sim_bridge.naoqi.tracker.tracking import Tracking
@@ -51,8 +51,7 @@ class Looking:
     def pointAt(self, effector: str, position: Any, *rest: Any) -> Task:
         """(arm, position, frame, fraction of the top speed) or without the frame; "Arms" is the nearer one."""
         frame, fraction = _frame_first(rest, 2)
-        if effector not in EFFECTORS or effector == "None":
-            raise BadValue("pEffector", effector, f"one of {', '.join(n for n in EFFECTORS if n != 'None')}")
+        one_of(effector, "pEffector", [name for name in EFFECTORS if name != "None"])
         point, share = _point(position), speed_share(fraction, "pFractionMaxSpeed")
 
         def aim() -> Task:
@@ -109,14 +108,9 @@ class Looking:
 
 
 def robot_position(seen: Sequence[Sequence[float]], known: Sequence[Sequence[float]]) -> list[float]:
-    """The pose that brings places seen from the robot onto their places in a world.
+    """The pose (x, y in m, heading in rad) that brings places seen from the robot onto their places in a world.
 
-    Args:
-        seen: x, y, ... of each in the frame of the robot, m.
-        known: x, y, ... of each in the world, m.
-
-    Returns:
-        x, y in m, heading in rad; empty for less than two.
+    Both are x, y, ... of each in m, in the frame of the robot and in the world. Empty for less than two.
     """
     if len(seen) < 2:
         return []
@@ -134,7 +128,4 @@ def _frame_first(rest: tuple[Any, ...], most: int) -> tuple[Any, ...]:
 
 
 def _point(position: Any) -> list[float]:
-    point = numbers(position, "pPosition", -FARTHEST, FARTHEST)
-    if len(point) != 3:
-        raise BadValue("pPosition", position, "[x, y, z] in m")
-    return point
+    return vector(position, "pPosition", 3, "[x, y, z] in m", -FARTHEST, FARTHEST)

@@ -16,32 +16,20 @@ LARGEST_ID = 10000
 
 @dataclass(frozen=True)
 class Sighting:
-    """Something that was seen or heard.
+    """Something that was seen or heard."""
 
-    Attributes:
-        place: x, y, z in FRAME_ROBOT at the time, m.
-        distance: From the camera or the head, m.
-        number: Of the landmark, or of the face; 0 for what has none.
-    """
-
-    place: Point
-    distance: float
-    number: int = 0
+    place: Point  # x, y, z in FRAME_ROBOT at the time, m
+    distance: float  # from the camera or the head, m
+    number: int = 0  # of the landmark, or of the face; 0 for what has none
 
 
 @dataclass(frozen=True)
 class Parameters:
-    """What a client has registered.
+    """What a client has registered."""
 
-    Attributes:
-        length: Diameter, width or distance, m.
-        numbers: Ids that count; none for all.
-        confidence: Sounds have at least, 0..1.
-    """
-
-    length: float
-    numbers: Tuple[int, ...] = ()
-    confidence: float = 0.0
+    length: float  # diameter, width or distance, m
+    numbers: Tuple[int, ...] = ()  # ids that count; none for all
+    confidence: float = 0.0  # sounds have at least, 0..1
 
 
 Read = Callable[[Any, Parameters], Sequence[Sighting]]

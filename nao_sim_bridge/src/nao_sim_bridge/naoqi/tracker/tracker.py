@@ -8,7 +8,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.model.frames import TORSO
-from nao_sim_bridge.naoqi.binding.arguments import known, number, whole_number
+from nao_sim_bridge.naoqi.binding.arguments import known, number, one_of, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.arguments import space_of
 from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of
@@ -100,15 +100,14 @@ class ALTracker:
         return self._follower.mode.value
 
     def setMode(self, mode: str) -> Task:
-        if mode not in MODES:
-            raise BadValue("pMode", mode, f"one of {', '.join(MODES)}")
+        one_of(mode, "pMode", MODES)
         return self._runner.execute(lambda: setattr(self._follower, "mode", MODES[mode]), "setMode")
 
     def getEffector(self) -> str:
         return self._follower.effector
 
     def setEffector(self, effector: str) -> None:
-        self._follower.effector = _effector(effector)
+        self._follower.effector = one_of(effector, "pEffector", EFFECTORS)
 
     def getRelativePosition(self) -> list[float]:
         relative = self._follower.approach.relative
@@ -197,7 +196,7 @@ class ALTracker:
         return self._runner.execute(reset, "initialize")
 
     def removeEffector(self, effector: str) -> None:
-        if _effector(effector) == self.getEffector():
+        if one_of(effector, "pEffector", EFFECTORS) == self.getEffector():
             self._follower.effector = "None"
 
     # --- older names ----------------------------------------------------------------------------------------------
@@ -218,9 +217,3 @@ class ALTracker:
 
 def _known(target: str) -> str:
     return known(target, "target", TARGETS)
-
-
-def _effector(name: str) -> str:
-    if name not in EFFECTORS:
-        raise BadValue("pEffector", name, f"one of {', '.join(EFFECTORS)}")
-    return name

@@ -5,6 +5,7 @@ Calls of clients and events come in threads of their own; what they are about is
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
@@ -45,6 +46,7 @@ class Tracking:
         timeout: How long after the last sighting a target counts as lost, s.
         max_distance: Sightings further away do not count, m.
         searches: Whether it looks around for a target that is lost.
+        new: Whether the target was seen since somebody asked for its place.
         periods: Of the modules, ms, by name of the target.
         sightings: What was seen last.
     """
@@ -80,14 +82,9 @@ class Tracking:
     def lost(self) -> bool:
         return self._active is None or self._lost
 
-    @property
-    def new(self) -> bool:
-        """Whether the target was seen since somebody asked for its place."""
-        return self._new
-
     def place_in(self, frame: int) -> list[float]:
         """Where the target was seen last in one of ALMotion's frames, m; empty when it is lost."""
-        place, self._new = self._place, False
+        place, self.new = self._place, False
         if place is None or self.lost:
             return []
         model, placed = self._simulation.model, geometry.placement(self._simulation.model, self._runner.snapshot)
@@ -123,7 +120,7 @@ class Tracking:
 
     def _forget(self) -> None:
         self._seen: float | None = None
-        self._lost, self._new = True, False
+        self._lost, self.new = True, False
         self._place: Point | None = None
         self.sightings: Sequence[Sighting] = ()
 
@@ -141,10 +138,8 @@ class Tracking:
         active = self._active
         if active is None or event not in (active.name, TARGETS[active.name].event if active.module else ""):
             return
-        try:
+        with suppress(SimulationStopped):
             self._runner.execute(lambda: self._see(active, value), "track")
-        except SimulationStopped:
-            pass
 
     def _see(self, active: _Active, value: Any) -> None:
         if active is not self._active:
@@ -156,7 +151,7 @@ class Tracking:
         model, placed = self._simulation.model, geometry.placement(self._simulation.model, self._simulation.snapshot)
         frame = WORLD if not active.module and len(value) == 2 and value[1] == WORLD else ROBOT
         self._place = geometry.in_world(model, placed, near[0].place, frame)
-        self._seen, self._new = self._simulation.time, True
+        self._seen, self.new = self._simulation.time, True
         if self._lost:
             self._lost = False
             self._tell(DETECTED)

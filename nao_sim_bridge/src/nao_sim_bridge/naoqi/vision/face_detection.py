@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any, Callable
+
+import numpy as np
+
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.cameras.frame import Frame
+from nao_sim_bridge.cameras.optics import Optics
+from nao_sim_bridge.cameras.stream import CameraClosed
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, text
+from nao_sim_bridge.naoqi.binding.background import Background, Wanted
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.vision.face_detection_learning import FaceLearner
 from nao_sim_bridge.naoqi.vision.face_detection_people import KnownPeople
 from nao_sim_bridge.naoqi.vision.face_detection_value import NamedFace, NamesOnce, faces_value
 from nao_sim_bridge.naoqi.vision.vision_extractor import Sight
-from nao_sim_bridge.naoqi.vision.watching import Watching
+from nao_sim_bridge.naoqi.vision.watching import BGR, Watching
 from nao_sim_bridge.vision.client import VisionProcess
 from nao_sim_bridge.vision.face_memory import POLICIES
 from nao_sim_bridge.vision.faces import FaceSettings, SeenFace
@@ -23,6 +31,14 @@ FPS, VGA = 10, 2
 """In VGA: in QVGA a face two metres away is no larger than the smallest that can be found."""
 DEFAULT_THRESHOLD = 0.4
 LONGEST_NAME = 200
+PICTURES = 5
+"""That learning takes."""
+LEAST_WIDTH = 24.0
+"""Smaller faces are found but not learnt, px in a VGA picture: they show too little."""
+LOOK_AGAIN = 1.0
+"""How long a wait for a picture lasts before it is looked whether it is still wanted, s of wall time."""
+MOST_WAITING = load_sizes().clients.faces
+"""Calls that learn a face at the same time, that is one after the other."""
 
 
 class ALFaceDetection:
@@ -121,6 +137,58 @@ class ALFaceDetection:
     def _nothing(self) -> None:
         self._names = NamesOnce()
         self._sight.nothing()
+
+
+class FaceLearner:
+    """Takes pictures of a face, for one call after the other."""
+
+    def __init__(self, cameras: Any, detector: Any, camera: Callable[[], int]) -> None:
+        self._cameras = cameras
+        self._detector = detector
+        self._camera = camera
+        self._looks = Background()
+
+    def look(self, learn: Callable[[np.ndarray], bool]) -> Task:
+        """Look at the face in view; a BadValue when too many calls wait for their turn.
+
+        The task ends with what `learn` answers, or with False when the pictures do not show exactly one face.
+        """
+        if self._looks.unfinished >= MOST_WAITING:
+            raise BadValue("calls that learn a face", self._looks.unfinished + 1, f"at most {MOST_WAITING}")
+
+        def work(wanted: Wanted) -> bool:
+            try:
+                description = self._describe(wanted)
+            except CameraClosed as error:
+                raise NaoqiError("the cameras were closed before the face was learnt") from error
+            return wanted() and description is not None and learn(description)
+
+        return self._looks.in_turn(work, "learnFace")
+
+    def close(self) -> None:
+        self._looks.stop()
+
+    def _describe(self, wanted: Wanted) -> np.ndarray | None:
+        """What the face in view looks like; None when there is none, or more than one, or it is too far away."""
+        stream = self._cameras.open("learnFace", self._camera(), VGA, BGR, FPS, every=True)
+        try:
+            total, left = 0.0, PICTURES
+            while left:
+                if not wanted():
+                    return None
+                try:
+                    frame = stream.take(LOOK_AGAIN)
+                except TimeoutError:
+                    continue
+                settings = FaceSettings(frame.time, frame.camera)
+                found = self._detector.detect(frame.array(), Optics(frame.hfov, frame.vfov), settings)
+                if len(found) != 1 or found[0].box[2] < LEAST_WIDTH:
+                    return None
+                total, left = total + found[0].description, left - 1
+            return total / np.linalg.norm(total)
+        finally:
+            stream.close()
+            self._detector.close()
 
 
 def _checked(name: str) -> str:

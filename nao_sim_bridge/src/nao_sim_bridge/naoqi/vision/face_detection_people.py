@@ -19,8 +19,7 @@ FILE, OLD_FILE = "faces.npz", "faces_old.npz"
 class KnownPeople:
     """Known people; what changes is on the disk before it counts. Any thread.
 
-    Args:
-        files: Where the file is. One that cannot be read is put aside, as "faces.npz.broken".
+    A file that cannot be read is put aside, as "faces.npz.broken".
     """
 
     def __init__(self, files: ClientFiles) -> None:
@@ -56,8 +55,7 @@ class KnownPeople:
     def take_over(self, policy: str) -> bool:
         """Take in the people of the file `faces_old.npz`, a `faces.npz` of another robot; False when there is none.
 
-        Raises:
-            FaceFileError: It is not such a file.
+        A FaceFileError when it is not such a file.
         """
         path = self._files.to_write(OLD_FILE)
         if not path.is_file():

@@ -24,16 +24,11 @@ SHORT_GAP = 1.0
 
 @dataclass(frozen=True)
 class NamedFace:
-    """A face and whose it is.
-
-    Attributes:
-        name: Of the person, empty when unknown.
-        score: How sure it is, 0..1; of the best guess, also when that was not good enough.
-    """
+    """A face and whose it is."""
 
     face: SeenFace
-    name: str
-    score: float
+    name: str  # of the person, empty when unknown
+    score: float  # how sure it is, 0..1; of the best guess, also when that was not good enough
 
 
 class NamesOnce:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Sequence
+from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.settings import CameraTables
 from nao_sim_bridge.naoqi.binding.switch import SwitchModule
-from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.vision.watching import MOST_FPS, Watching
 
@@ -47,25 +46,11 @@ class VisionExtractor(SwitchModule):
         return True
 
 
-def extractor_parts(
-    module: str,
-    memory: MemoryStore,
-    watching: Watching,
-    tables: CameraTables,
-    events: Sequence[str],
-    keys: Sequence[str] = (),
-) -> list[Any]:
-    """The objects that together have the methods of such a module, without those that it alone has."""
-    extractor = Extractor(module, memory, watching.start, watching.stop, events, keys, changed=watching.changed)
-    return [VisionExtractor(watching, tables), extractor]
-
-
 class Sight:
     """The event of one extractor. Used by its watching only, so in one thread at a time.
 
-    Args:
-        tell_end: Also tell subscribers when nothing is seen any more, with an empty list; else that is only written,
-            for those who read the key.
+    With `tell_end` subscribers are also told when nothing is seen any more, with an empty list; else that is only
+    written, for those who read the key.
     """
 
     def __init__(self, memory: MemoryStore, event: str, tell_end: bool) -> None:

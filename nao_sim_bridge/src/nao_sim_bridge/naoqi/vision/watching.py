@@ -49,14 +49,12 @@ class Watching(Switch):
     that come while it is busy are left out. Any thread may call.
 
     Args:
-        detector: Its detector in the vision process; closed whenever nobody wants results any more, so that it starts
-            afresh.
+        detector: Closed whenever nobody wants results any more, so that it starts afresh.
         on_result: Called in the thread with each picture and what was found in it.
         settings: Called in the thread with each picture for what the detector is to be told.
         on_stop: Called when nothing is looked at any more (nobody is subscribed, or paused), after the last result.
         camera: The camera at the start; None to look through the one that ALVideoDevice has active.
-        resolution: NAOqi's id of the resolution at the start.
-        fps: Pictures a second at the start.
+        resolution: NAOqi's id.
     """
 
     def __init__(
@@ -79,7 +77,7 @@ class Watching(Switch):
         self._settings = settings
         self._on_stop = on_stop
         self._camera = camera
-        self._resolution = resolution
+        self.resolution = resolution
         self._fps = fps
         self._fps_of: dict[str, int] = {}  # subscribers with a rate of their own
         self._subscribers: frozenset[str] = frozenset()
@@ -96,10 +94,6 @@ class Watching(Switch):
     def camera(self) -> int:
         """Index of the camera that it looks through, or would."""
         return self._cameras.active if self._camera is None else self._camera
-
-    @property
-    def resolution(self) -> int:
-        return self._resolution
 
     @property
     def fps(self) -> int:
@@ -129,13 +123,12 @@ class Watching(Switch):
         with self._lock:
             if self._stream is not None:
                 self._stream.resolution = resolution
-            self._resolution = resolution
+            self.resolution = resolution
 
     def set_fps(self, fps: int, subscriber: str | None = None) -> None:
         """The most pictures a second, for everybody or for one subscriber.
 
-        Raises:
-            NaoqiError: There is no such subscriber.
+        A NaoqiError when there is no such subscriber.
         """
         with self._lock:
             if subscriber is None:
@@ -148,8 +141,6 @@ class Watching(Switch):
                 raise NaoqiError(f"{subscriber!r} is not subscribed; subscribed is {known}")
             self._set_stream_rate()
 
-    # --- inside -----------------------------------------------------------------------------------------------------
-
     def _update(self) -> None:
         if self._works and self._stream is None:
             self._begin()
@@ -158,7 +149,7 @@ class Watching(Switch):
 
     def _begin(self) -> None:
         self._stream = self._cameras.open(
-            self._name, self.camera, self._resolution, BGR, self._stream_rate(), every=True
+            self._name, self.camera, self.resolution, BGR, self._stream_rate(), every=True
         )
         self._failed = False
         self._thread = threading.Thread(target=self._run, args=(self._stream,), name=self._name, daemon=True)

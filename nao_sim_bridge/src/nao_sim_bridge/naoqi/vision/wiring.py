@@ -9,9 +9,10 @@ from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.settings import CAMERA_NAMES
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.vision import face_detection, movement_detection
-from nao_sim_bridge.naoqi.vision.vision_extractor import Sight, extractor_parts, in_picture
+from nao_sim_bridge.naoqi.vision.vision_extractor import Sight, VisionExtractor, in_picture
 from nao_sim_bridge.naoqi.vision.watching import QVGA, TOP, Watching
 from nao_sim_bridge.vision.ball import Ball
 from nao_sim_bridge.vision.barcodes import Barcode
@@ -57,25 +58,16 @@ def barcode_value(_frame: Frame, found: list[Barcode]) -> list[Any]:
 
 @dataclass(frozen=True)
 class Detection:
-    """An extractor that raises its event with each picture in which its detector finds something.
+    """An extractor that raises its event with each picture in which its detector finds something."""
 
-    Attributes:
-        module: NAOqi name.
-        detector: Name in the vision process.
-        tell_end: Whether the event is also raised, with an empty list, when nothing is seen any more; else that is
-            only its value then, and nobody is told.
-        fps: Pictures a second at the start.
-        camera: At the start; None: the one that ALVideoDevice has active.
-    """
-
-    module: str
+    module: str  # NAOqi name
     event: str
-    detector: str
+    detector: str  # name in the vision process
     value: Callable[[Frame, Any], list[Any]]
-    tell_end: bool
-    fps: int
+    tell_end: bool  # see `Sight`
+    fps: int  # pictures a second at the start
     resolution: int = QVGA
-    camera: int | None = TOP
+    camera: int | None = TOP  # at the start; None: the one that ALVideoDevice has active
 
     def watching(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess) -> Watching:
         """Looks for it in the cameras of a robot."""
@@ -109,33 +101,27 @@ DETECTIONS = (
 
 
 class VisionModules:
-    """ALRedBallDetection, ALLandMarkDetection, ALBarcodeReader, ALFaceDetection and ALMovementDetection of one robot.
-
-    Args:
-        process: The vision process, which all detectors share; it starts when somebody is subscribed first.
-    """
+    """The modules that look through the cameras of one robot; their process starts with the first subscriber."""
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, files: ClientFiles, process: VisionProcess) -> None:
-        self._memory = memory
-        self._tables = simulation.cameras.tables
-        self._watchings = {one.module: one.watching(simulation, memory, process) for one in DETECTIONS}
-        self._faces = face_detection.ALFaceDetection(simulation, memory, process, files)
-        self._movement = movement_detection.ALMovementDetection(simulation, memory, process)
-        self._watchings[face_detection.NAME] = self._faces.watching
-        self._watchings[movement_detection.NAME] = self._movement.watching
+        faces = face_detection.ALFaceDetection(simulation, memory, process, files)
+        movement = movement_detection.ALMovementDetection(simulation, memory, process)
+        self._learner = faces.learner
+        self._watchings: list[Watching] = []
+        self.modules: dict[str, list[Any]] = {}
 
-    def modules(self) -> dict[str, list[Any]]:
-        faces = self._parts(face_detection.NAME, [face_detection.EVENT])
-        movement = self._parts(movement_detection.NAME, movement_detection.EVENTS, [movement_detection.INFO])
-        return {
-            **{one.module: self._parts(one.module, [one.event]) for one in DETECTIONS},
-            face_detection.NAME: [self._faces, *faces],
-            movement_detection.NAME: [self._movement, *movement],
-        }
+        def add(module: str, own: list[Any], watching: Watching, *events_and_keys: list[str]) -> None:
+            work = (watching.start, watching.stop)
+            extractor = Extractor(module, memory, *work, *events_and_keys, changed=watching.changed)
+            self.modules[module] = [*own, VisionExtractor(watching, simulation.cameras.tables), extractor]
+            self._watchings.append(watching)
+
+        for one in DETECTIONS:
+            add(one.module, [], one.watching(simulation, memory, process), [one.event])
+        add(face_detection.NAME, [faces], faces.watching, [face_detection.EVENT])
+        events, keys = movement_detection.EVENTS, [movement_detection.INFO]
+        add(movement_detection.NAME, [movement], movement.watching, events, keys)
 
     def closing(self) -> list[Callable[[], None]]:
         """Steps after which nothing is looked at any more; blocking."""
-        return [self._faces.learner.close, *(watching.stop for watching in self._watchings.values())]
-
-    def _parts(self, module: str, *events_and_keys: list[str]) -> list[Any]:
-        return extractor_parts(module, self._memory, self._watchings[module], self._tables, *events_and_keys)
+        return [self._learner.close, *(watching.stop for watching in self._watchings)]
