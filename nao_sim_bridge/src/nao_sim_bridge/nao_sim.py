@@ -30,8 +30,8 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.core import sequences
-from nao_sim_bridge.core.memento import Memento
 from nao_sim_bridge.core.robot import SimulatedRobot
+from nao_sim_bridge.core.saved_state import SavedState
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.core.simulation import Simulation
@@ -96,35 +96,6 @@ class Feet:
     left: FootForces
     right: FootForces
     center_of_pressure: tuple[float, float]
-
-
-class State:
-    """What a simulation was like: see `NaoSim.save_state`."""
-
-    def __init__(self, shared: SharedWorld, simulations: Sequence[Simulation]) -> None:
-        self._shared = shared
-        self._physics = shared.physics
-        self._bodies = shared.physics.save()
-        robots = [simulation.robot for simulation in simulations]
-        left_out = [shared, shared.settings, shared.task_ids, shared.guard, shared.physics, shared.things]
-        for simulation in simulations:
-            left_out += [simulation.model, simulation.led_layout, simulation.scene, simulation.physics]
-        self._robots = Memento(robots, left_out)
-        self._kept = [(simulation, simulation.robot, simulation.snapshot) for simulation in simulations]
-        self._ticks = shared.ticks
-        self.restore(shared)  # the engine has forgotten how things touch then, now as at each restore
-
-    def restore(self, shared: SharedWorld) -> None:
-        """Put everything back."""
-        if shared is not self._shared or shared.physics is not self._physics:
-            raise BadValue("state", "one of before", "one of this simulation, saved since its last reset")
-        if not shared.physics.load(self._bodies):
-            raise BadValue("state", "one with other things", "one of a world in which nothing has come or gone since")
-        self._robots.restore()
-        for simulation, robot, snapshot in self._kept:
-            simulation.robot, simulation.snapshot = robot, snapshot
-            robot.tell_motors()
-        shared.ticks = self._ticks
 
 
 class Motion:
@@ -634,7 +605,7 @@ class NaoSim(Nao):
 
         self._do(start_again)
 
-    def save_state(self) -> State:
+    def save_state(self) -> SavedState:
         """The state of robots and world, for `restore_state` of this object.
 
         Raises:
@@ -646,9 +617,9 @@ class NaoSim(Nao):
             robot = simulation.robot
             if robot.locomotion.active or robot.motion.tasks():
                 raise NotAllowed("a state can be saved while no motion and no walk is under way")
-        return State(self._shared, self._own)
+        return SavedState(self._shared, self._own)
 
-    def restore_state(self, state: State) -> None:
+    def restore_state(self, state: SavedState) -> None:
         """Let everything be as it was when a state was saved, as often as one likes; time as well.
 
         Raises:

@@ -1,15 +1,48 @@
-"""What objects were like at a moment, to be put back into the same objects later."""
+"""What a simulation was like at a moment, to be put back into the same objects later."""
 
 from __future__ import annotations
 
 import random
 from collections import deque
 from functools import partial
-from typing import Any, Callable, Iterable
+from typing import Any, Callable, Iterable, Sequence
 
 import numpy as np
 
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.core.shared_world import SharedWorld
+from nao_sim_bridge.core.simulation import Simulation
+
 OURS = "nao_sim_bridge."
+
+
+class SavedState:
+    """What a world and the robots in it were like."""
+
+    def __init__(self, shared: SharedWorld, simulations: Sequence[Simulation]) -> None:
+        self._shared = shared
+        self._physics = shared.physics
+        self._bodies = shared.physics.save()
+        robots = [simulation.robot for simulation in simulations]
+        left_out = [shared, shared.settings, shared.task_ids, shared.guard, shared.physics, shared.things]
+        for simulation in simulations:
+            left_out += [simulation.model, simulation.led_layout, simulation.scene, simulation.physics]
+        self._robots = Memento(robots, left_out)
+        self._kept = [(simulation, simulation.robot, simulation.snapshot) for simulation in simulations]
+        self._ticks = shared.ticks
+        self.restore(shared)  # the engine has forgotten how things touch then, now as at each restore
+
+    def restore(self, shared: SharedWorld) -> None:
+        """Put everything back."""
+        if shared is not self._shared or shared.physics is not self._physics:
+            raise BadValue("state", "one of before", "one of this simulation, saved since its last reset")
+        if not shared.physics.load(self._bodies):
+            raise BadValue("state", "one with other things", "one of a world in which nothing has come or gone since")
+        self._robots.restore()
+        for simulation, robot, snapshot in self._kept:
+            simulation.robot, simulation.snapshot = robot, snapshot
+            robot.tell_motors()
+        shared.ticks = self._ticks
 
 
 class Memento:
