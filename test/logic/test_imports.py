@@ -57,7 +57,7 @@ ROOMS = {
     cameras render.scene render.opengl render sound hearing.grammars hearing speech vision behaviors tracking core
     naoqi.binding naoqi.memory naoqi.motion naoqi.body naoqi.speech naoqi.sound naoqi.vision naoqi.cameras
     naoqi.behaviors naoqi.tracker naoqi.system naoqi.life naoqi
-    server . envs sweep ros testing
+    server library . envs sweep ros testing
     """.split(),
 }
 """Folders of a package from the ground up: each imports only what stands before it; the dot is the package itself."""
@@ -66,7 +66,7 @@ MOST_FILES = 25
 LIBRARY = "nao_library_modules/src/nao_library_modules"
 SIMULATOR = "nao_sim_bridge/src/nao_sim_bridge"
 # What a user of the simulator imports or starts: it may use everything that needs no ROS.
-FRONT = tuple(path.name for path in (ROOT / SIMULATOR).glob("*.py"))
+FRONT = ("library", "envs", "sweep", *(path.name for path in (ROOT / SIMULATOR).glob("*.py")))
 # Clients reach the robot through topics and actions only, and share helpers and errors with the servers.
 CLIENTS = ("process_modules", "behaviors")
 OF_CLIENTS = frozenset({"errors", "definitions", "ros", "library", *CLIENTS})
@@ -77,10 +77,10 @@ LAYERS = (
     Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "cli")),
     *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
     Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi"}),
-    Layer("sim", SIMULATOR, frozenset({"pybullet"}), ("naoqi", "server", "ros", "testing", "envs", "sweep", *FRONT)),
+    Layer("sim", SIMULATOR, frozenset({"pybullet"}), ("naoqi", "server", "ros", "testing", *FRONT)),
     Layer("modules", f"{SIMULATOR}/naoqi", frozenset({"sim", "qi"})),
     Layer("server", f"{SIMULATOR}/server", frozenset({"modules", "sim", "qi"})),
-    *(Layer("front", f"{SIMULATOR}/{name}", frozenset({"server", "sim"})) for name in (*FRONT, "envs", "sweep")),
+    *(Layer("front", f"{SIMULATOR}/{name}", frozenset({"server", "sim"})) for name in FRONT),
     Layer("ros side", f"{SIMULATOR}/ros", frozenset({"server", "modules", "sim", "ros", "definitions"})),
     Layer("testing", f"{SIMULATOR}/testing", frozenset({"server", "sim", "qi", "ros", "definitions"})),
 )
@@ -118,16 +118,9 @@ def layer_of(module: str) -> str | None:
     if root in ROS_LIBRARIES or root.endswith(("_msgs", "_srvs")):
         return "ros"
     if root == "nao_sim_bridge":
-        own = {
-            "naoqi": "modules",
-            "server": "server",
-            "ros": "ros side",
-            "testing": "testing",
-            "envs": "front",
-            "sweep": "front",
-        }
+        own = {"naoqi": "modules", "server": "server", "ros": "ros side", "testing": "testing"}
         first = inner[0] if inner else "__init__"
-        return "front" if f"{first}.py" in FRONT else own.get(first, "sim")
+        return "front" if {first, f"{first}.py"} & {*FRONT} else own.get(first, "sim")
     if root == "nao_library_modules":
         return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "cli") else "library"
     return root if root in ("naoqi", "qi", "pybullet") else None

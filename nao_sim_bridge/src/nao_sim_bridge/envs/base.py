@@ -10,9 +10,9 @@ import numpy as np
 from gymnasium import spaces
 
 from nao_sim_bridge.base.rotations import rotate_back
+from nao_sim_bridge.library.nao_sim import FALLEN, NaoSim
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.nao_sim import FALLEN, NaoSim
 
 UP = (0.0, 0.0, 1.0)
 SCALE_OF_SPEED, SCALE_OF_LOAD = 0.1, 0.02
