@@ -12,8 +12,9 @@ from simulator import PATIENCE, connected
 from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.core.runner import FASTEST
 from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.simulation import SEED_STEP
 from nao_sim_bridge.server.options import ServerOptions
-from nao_sim_bridge.server.robots_server import SEED_STEP, RobotsServer, open_server
+from nao_sim_bridge.server.robots_server import RobotsServer, open_server
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 from nao_sim_bridge.world.places import parse_places
 

@@ -17,12 +17,15 @@ from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture, start_pitch
 from nao_sim_bridge.render.client import Renderer
-from nao_sim_bridge.world.places import RobotPlace
+from nao_sim_bridge.world.places import RobotPlace, checked_places, on_circle
 from nao_sim_bridge.world.render_state import RenderState, RobotLook
 
 if TYPE_CHECKING:
     from nao_sim_bridge.cameras.cameras import Cameras
     from nao_sim_bridge.sound.sound_world import Air, SoundWorld
+
+SEED_STEP = 7919
+"""Between the seeds of two robots of one world, so that no two of them have the same noise."""
 
 
 class Simulation:
@@ -258,3 +261,24 @@ class Simulation:
             self._cameras.begin(self.snapshot, self.scene.seed)
         for call in self.after_reset:
             self.shared.guard.call(call)
+
+
+def robots_in(
+    shared: SharedWorld, scene: Scene, count: int = 1, places: Sequence[RobotPlace] = ()
+) -> tuple[Simulation, ...]:
+    """Put robots into a new world, each with a seed of its own.
+
+    Args:
+        shared: The world, in which nobody is yet.
+        scene: What they start with; the seed is that of the first one.
+        count: How many there are.
+        places: Where they stand; empty for where the world says, or else a circle.
+
+    Raises:
+        BadValue: There are too few places, they are too near to each other, or `count` is out of range.
+    """
+    there = checked_places(places or shared.world.robots or on_circle(count), count)
+    return tuple(
+        Simulation(replace(scene, seed=scene.seed + SEED_STEP * number), shared=shared, place=place)
+        for number, place in enumerate(there)
+    )

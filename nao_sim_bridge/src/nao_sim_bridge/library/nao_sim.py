@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Sequence, TypeVar
@@ -34,12 +34,12 @@ from nao_sim_bridge.core.robot import SimulatedRobot
 from nao_sim_bridge.core.saved_state import SavedState
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.simulation import SEED_STEP, Simulation, robots_in
 from nao_sim_bridge.model.robot_model import joint_names
 from nao_sim_bridge.walk.body import foot_on_ground, robot_on_ground
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
-from nao_sim_bridge.world.places import RobotPlace, checked_places, on_circle
+from nao_sim_bridge.world.places import RobotPlace
 
 if TYPE_CHECKING:
     from nao_sim_bridge.server.simulator_server import SimulatorServer
@@ -50,8 +50,6 @@ LONGEST = 600.0
 ENDLESS = float("inf")
 FALLEN = 1.0
 """Lean of the torso from which on a robot has fallen, rad."""
-SEED_STEP = 1000
-"""Robots of one world have seeds so far apart."""
 
 
 class JointValues(Mapping[str, float]):
@@ -519,7 +517,7 @@ class NaoSim(Nao):
         self._server: SimulatorServer | None = None
         self._viewer: Any = None
         self._pace: float | None = 1.0 if gui else None
-        self._own = _put_into(self._shared, scene, robots, places)
+        self._own = robots_in(self._shared, scene, robots, [RobotPlace(*_finite("place", one, 3)) for one in places])
         self._wake()
         super().__init__(self, 0)
         self.robots = (self, *(Nao(self, number) for number in range(1, robots)))
@@ -788,20 +786,6 @@ class NaoSim(Nao):
 
 SIZES: Mapping[str, Any] = {"ball": 0.03, "box": [0.1, 0.1, 0.1], "cylinder": [0.05, 0.2]}
 """Of things that are placed by their kind alone, m."""
-
-
-def _put_into(
-    shared: SharedWorld, scene: Scene, robots: int, places: Sequence[Sequence[float]]
-) -> tuple[Simulation, ...]:
-    """The robots of a new world."""
-    if robots == 1 and not places:
-        return (Simulation(scene, shared=shared),)
-    wanted = tuple(RobotPlace(*_finite("place", place, 3)) for place in places) or shared.world.robots
-    there = checked_places(wanted or on_circle(robots), robots)
-    return tuple(
-        Simulation(replace(scene, seed=scene.seed + SEED_STEP * number), shared=shared, place=place)
-        for number, place in enumerate(there)
-    )
 
 
 def _each(values: float | Sequence[float], count: int, name: str) -> list[float]:
