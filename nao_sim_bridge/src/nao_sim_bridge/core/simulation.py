@@ -102,7 +102,7 @@ class Simulation:
         It stays at a reset, which ends everything that plays.
         """
         if self._sound is None:
-            self.shared.air  # noqa: B018 with it comes the sound of all robots, who hear each other
+            self.shared.begin_sound()  # of all robots, who hear each other
         return self._sound
 
     @property
