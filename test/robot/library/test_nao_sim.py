@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+import qi
 
 from nao_sim_bridge import NaoSim
 from nao_sim_bridge.base.errors import BadValue, MoveRefused, NotAllowed, UnknownName
@@ -216,6 +217,34 @@ def test_a_picture_of_a_size_that_the_camera_has_not_names_those_it_has(nao):
         nao.camera().picture(100, 100)
 
 
+@pytest.mark.parametrize("served", [False, True])
+def test_pictures_from_outside_show_the_joints_as_they_are_not_as_they_are_measured(monkeypatch, served):
+    drawn = []
+    with NaoSim(noise=1.0, delay=0.2) as nao:
+        address = nao.serve(port=0) if served else ""
+        nao.set_angles("HeadYaw", 1.0)
+        nao.step(0.15)
+        render = nao._simulation.renderer.render
+        monkeypatch.setattr(
+            nao._simulation.renderer, "render", lambda state, *more: drawn.append(state) or render(state, *more)
+        )
+        if served:
+            session = qi.Session()
+            session.connect(address)
+            session.service("NaoSimulation").picture("front", 64, 80)
+            session.close()
+        else:
+            assert nao.picture("front", 64, 80).shape == (80, 64, 3)
+        true = nao.robot._physics.read_joints().positions
+        assert drawn[0].joint_positions == true and abs(nao.angles["HeadYaw"] - true[0]) > 0.2
+
+
+@pytest.mark.parametrize("size", [(0, 64), (64, 5000), (64.0, 64)])
+def test_a_picture_from_outside_of_no_such_size_is_refused(nao, size):
+    with pytest.raises(BadValue, match="4096"):
+        nao.picture("front", *size)
+
+
 def test_robots_of_one_world_move_by_themselves():
     with NaoSim(robots=2, places=[(0.0, 0.0, 0.0), (0.0, 1.0, math.pi / 2.0)]) as sim:
         sim.robots[1].walk_to(0.2)
@@ -224,8 +253,6 @@ def test_robots_of_one_world_move_by_themselves():
 
 
 def test_a_program_for_naoqi_and_a_script_share_the_robot(nao):
-    import qi
-
     session = qi.Session()
     session.connect(nao.serve(port=0))
     walk = session.service("ALMotion").moveTo(0.15, 0.0, 0.0, _async=True)

@@ -681,14 +681,10 @@ class NaoSim(Nao):
 
         Raises:
             UnknownName: There is no such view.
+            BadValue: The size is out of range.
             RenderError: It cannot be drawn.
         """
-        from nao_sim_bridge.world.render_state import preset_camera
-
-        simulation = self._simulation
-        state = simulation.render_state(simulation.snapshot)
-        camera = preset_camera(view, simulation.model, state, width, height)
-        return simulation.renderer.render(state, camera)
+        return self._simulation.picture(view, width, height)
 
     def save_picture(self, path: str | Path, view: str = "three_quarter", width: int = 640, height: int = 480) -> None:
         """As `picture`, written to a PNG file."""
@@ -780,7 +776,7 @@ class NaoSim(Nao):
         self._shared.tick()
         simulation = self._simulation
         if simulation.ticks % 2 == 0:
-            self._viewer.show(simulation.render_state(simulation.snapshot))
+            self._viewer.show(simulation.render_state())
         time.sleep(max(0.0, self.tick_s / self._pace - (time.monotonic() - began)))
 
 
