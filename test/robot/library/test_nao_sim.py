@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -265,6 +266,96 @@ def test_a_program_for_naoqi_and_a_script_share_the_robot(nao):
     with pytest.raises(NotAllowed, match="served already"):
         nao.serve(port=0)
     session.close()
+
+
+@pytest.fixture
+def served(nao):
+    """A client of a robot that is served, in whose world there is a ball."""
+    nao.place("ball", at=(1.0, 0.0, 0.03))
+    session = qi.Session()
+    session.connect(nao.serve(port=0))
+    nao.step(2.0)
+    yield session
+    session.close()
+
+
+def test_a_served_simulation_follows_a_factory_reset(nao, served):
+    nao.set_angles("HeadYaw", 0.5)
+    walk = nao.walk_to(1.0, wait=False)
+    nao.step(1.0)
+    before = nao.robot
+    served.service("NaoSimulation").factoryReset()
+    assert walk.done and nao.robot is not before
+    assert nao.time < 0.1 and nao.angles["HeadYaw"] == pytest.approx(0.0, abs=0.01) and nao.things == {}
+    nao.place("box", at=(0.6, 0.0, 0.05))
+    nao.set_stiffness("Head", 1.0)
+    nao.set_angles("HeadYaw", -0.4)
+    nao.step(1.0)
+    assert nao.time == pytest.approx(1.0, abs=0.1) and "box" in nao.things
+    assert served.service("ALMotion").getAngles("HeadYaw", True)[0] == pytest.approx(-0.4, abs=0.02)
+    nao.reset(2)
+    assert nao.things == {} and nao._simulation.scene.seed == 2
+
+
+def test_a_reset_by_a_client_ends_no_step(nao, served):
+    called = []
+
+    def reset_once(snapshot):
+        if not called:
+            called.append(served.service("NaoSimulation").reset(_async=True))
+
+    nao._simulation.after_tick.append(reset_once)
+    began = nao.time
+    nao.step(3.0)
+    assert called[0].value() is None and nao.time - began == pytest.approx(3.0, abs=0.02)
+
+
+def test_a_robot_whose_address_is_taken_goes_on_without_being_served(nao, served):
+    port = int(served.url().rpartition(":")[2])
+    with NaoSim() as other:
+        for _ in range(2):
+            with pytest.raises(RuntimeError):
+                other.serve(port=port)
+        assert other.walk_to(0.1).wait() is True
+        other.serve(port=0)
+
+
+class Window:
+    """Takes note of the angle of HeadYaw that it is shown."""
+
+    shown: list[float] = []
+    closed = 0
+
+    def __init__(self, *_):
+        self.shown.clear()
+
+    def start(self):
+        return self
+
+    def show(self, state):
+        self.shown.append(state.joint_positions[0])
+
+    def close(self):
+        type(self).closed += 1
+
+
+def test_the_window_shows_a_robot_that_is_told_targets_or_driven_and_time_passes_as_on_the_wall(monkeypatch):
+    monkeypatch.setattr("nao_sim_bridge.render.client.Viewer", Window)
+    with NaoSim(gui=True) as nao:
+        nao.set_angles("HeadYaw", 0.3)
+        began = time.monotonic()
+        nao.step(0.3)
+        assert time.monotonic() - began > 0.29
+        assert len(Window.shown) == 36 and Window.shown[-1] == pytest.approx(0.3, abs=0.02)
+        Window.shown.clear()
+        wanted = np.asarray(nao.commands)
+        wanted[0] = 0.6
+        began = time.monotonic()
+        for _ in range(20):
+            nao.drive(wanted, ticks=3)
+        assert time.monotonic() - began > 0.49
+        assert len(Window.shown) == 20 and Window.shown[-1] == pytest.approx(0.6, abs=0.02)
+    assert Window.closed == 1
 
 
 def test_nobody_who_does_not_look_or_listen_pays_for_it(nao):

@@ -15,15 +15,14 @@ or listens has no cameras, no sound and no process beside it.
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Sequence, TypeVar
+from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from nao_sim_bridge.base.errors import BadValue, NotAllowed, TaskKilled, UnknownName
+from nao_sim_bridge.base.errors import BadValue, NotAllowed, UnknownName
 from nao_sim_bridge.base.readings import FootForces, Pose
 from nao_sim_bridge.base.rotations import Vector3, rotate
 from nao_sim_bridge.base.tasks import Task
@@ -35,19 +34,15 @@ from nao_sim_bridge.core.saved_state import SavedState
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.core.simulation import SEED_STEP, Simulation, robots_in
+from nao_sim_bridge.library.session import ENDLESS, Session
 from nao_sim_bridge.model.robot_model import joint_names
 from nao_sim_bridge.walk.body import foot_on_ground, robot_on_ground
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
 from nao_sim_bridge.world.places import RobotPlace
 
-if TYPE_CHECKING:
-    from nao_sim_bridge.server.simulator_server import SimulatorServer
-
-T = TypeVar("T")
 LONGEST = 600.0
 """s of simulated time that a call waits for what it has begun, if nobody says otherwise."""
-ENDLESS = float("inf")
 FALLEN = 1.0
 """Lean of the torso from which on a robot has fallen, rad."""
 
@@ -99,8 +94,8 @@ class Feet:
 class Motion:
     """Something that a robot does while time passes."""
 
-    def __init__(self, sim: NaoSim, task: Task) -> None:
-        self._sim = sim
+    def __init__(self, session: Session, task: Task) -> None:
+        self._session = session
         self._task = task
 
     @property
@@ -118,12 +113,12 @@ class Motion:
             TimeoutError: It has not ended by then; it goes on.
             SimulationError: What ended it.
         """
-        self._sim._pass_until(lambda: self._task.finished, longest, self._task.name)
+        self._session.advance_until(lambda: self._task.finished, longest, self._task.name)
         return self._task.result(0.0)
 
     def cancel(self) -> None:
         """End it; the joints stay where they are, and a walk comes to a stand within two steps."""
-        self._sim._do(self._task.kill)
+        self._session.do(self._task.kill)
 
 
 class HeadCamera:
@@ -157,15 +152,15 @@ class Nao:
         joint_names: (26,) in the order of the body.
     """
 
-    def __init__(self, sim: NaoSim, number: int) -> None:
-        self._sim = sim
+    def __init__(self, session: Session, number: int) -> None:
+        self._session = session
         self._number = number
         self.joint_names = tuple(joint.name for joint in self._simulation.model.joints)
         self._index = {name: index for index, name in enumerate(self.joint_names)}
 
     @property
     def _simulation(self) -> Simulation:
-        return self._sim._simulation_of(self._number)
+        return self._session.simulations[self._number]
 
     @property
     def robot(self) -> SimulatedRobot:
@@ -286,7 +281,7 @@ class Nao:
         joints = self._simulation.model.joints
         speeds = {index: speed * joints[index].max_velocity for index in indices}
         self.let_go()
-        self._sim._do(lambda: self.robot.motion.set_targets(dict(zip(indices, values)), speeds))
+        self._session.do(lambda: self.robot.motion.set_targets(dict(zip(indices, values)), speeds))
 
     def move_angles(
         self,
@@ -328,7 +323,7 @@ class Nao:
             joints.hold(self.snapshot.positions, [i for i in indices if joints.stiffnesses[i] == 0.0])
             self.robot.motion.set_stiffness_now(dict.fromkeys(indices, stiffness))
 
-        self._sim._do(stiffen)
+        self._session.do(stiffen)
 
     def go_to_posture(self, name: str, speed: float = 0.8, wait: bool = True) -> Motion:
         """Go to one of NAOqi's postures ("Stand", "Sit", "LyingBack"...), over others if need be; getting up included.
@@ -381,7 +376,7 @@ class Nao:
         """
         rate = _finite("velocity", (x, y, theta))
         self.let_go()
-        self._sim._do(lambda: self.robot.locomotion.move(*rate, FeetGait()))
+        self._session.do(lambda: self.robot.locomotion.move(*rate, FeetGait()))
 
     def stop(self, wait: bool = True) -> Motion:
         """End a walk as soon as both feet can stand."""
@@ -407,11 +402,11 @@ class Nao:
             raise BadValue("values", f"{len(values)} of them", f"{len(self.joint_names)}, one for each joint")
         if ticks < 1:
             raise BadValue("ticks", ticks, "1 or more")
-        self._sim._drive(self, mode, values, ticks)
+        self._session.drive(self.robot, mode, values, ticks)
 
     def let_go(self) -> None:
         """End `drive`: the joints stay where they are, and do what other calls want again."""
-        self._sim._do(lambda: self.robot.let_go())
+        self._session.do(lambda: self.robot.let_go())
 
     # --- what happens to it ---------------------------------------------------------------------------------------
 
@@ -430,7 +425,7 @@ class Nao:
         x, y, z = _finite("force", force, 3)
         if not 0.0 < duration < LONGEST:
             raise BadValue("duration", duration, f"above 0, below {LONGEST:g} s")
-        self._sim._do(lambda: self.robot.push((x, y, z), duration, "torso" if link == "Torso" else link))
+        self._session.do(lambda: self.robot.push((x, y, z), duration, "torso" if link == "Torso" else link))
 
     def touch(self, *sensors: str) -> None:
         """Simulated fingers on these touch sensors ("Head/Touch/Front"...) and on no others, from now on.
@@ -438,7 +433,7 @@ class Nao:
         Raises:
             UnknownName: There is no such sensor.
         """
-        self._sim._do(lambda: self.robot.press(sensors))
+        self._session.do(lambda: self.robot.press(sensors))
 
     def protect(self, on: bool) -> None:
         """Switch what ALMotion does on its own on or off, until the next reset.
@@ -455,7 +450,7 @@ class Nao:
             robot.reflexes.smart_stiffness.enabled = robot.reflexes.diagnosis_enabled = on
             robot.stability.balance.enabled = robot.stability.falls.enabled = on
 
-        self._sim._do(switch)
+        self._session.do(switch)
 
     # --- inside -------------------------------------------------------------------------------------------------------
 
@@ -465,7 +460,7 @@ class Nao:
 
     def _begin(self, start: Callable[[], Task], wait: bool) -> Motion:
         self.let_go()
-        motion = Motion(self._sim, self._sim._do(start))
+        motion = Motion(self._session, self._session.do(start))
         if wait:
             motion.wait()
         return motion
@@ -511,20 +506,13 @@ class NaoSim(Nao):
         payload: float = 0.0,
         gui: bool = False,
     ) -> None:
-        self._awake = posture is not None
         scene = Scene(str(world), version, posture or "Crouch", seed, friction, payload, noise, delay)
-        self._shared = SharedWorld(scene)
-        self._server: SimulatorServer | None = None
-        self._viewer: Any = None
-        self._pace: float | None = 1.0 if gui else None
-        self._own = robots_in(self._shared, scene, robots, [RobotPlace(*_finite("place", one, 3)) for one in places])
+        self._places = tuple(RobotPlace(*_finite("place", place, 3)) for place in places)
+        session = Session(robots_in(SharedWorld(scene), scene, robots, self._places), gui)
+        super().__init__(session, 0)
+        self.robots = (self, *(Nao(session, number) for number in range(1, robots)))
+        self._awake = posture is not None
         self._wake()
-        super().__init__(self, 0)
-        self.robots = (self, *(Nao(self, number) for number in range(1, robots)))
-        if gui:
-            from nao_sim_bridge.render.client import Viewer  # nobody else needs a window
-
-            self._viewer = Viewer(scene.world, version).start()
 
     def __enter__(self) -> NaoSim:
         return self
@@ -536,12 +524,7 @@ class NaoSim(Nao):
 
     def close(self) -> None:
         """Free the engine, and end the network and the programs that work for it."""
-        if self._viewer is not None:
-            self._viewer.close()
-        if self._server is not None:
-            self._server.stop()
-        else:
-            self._shared.close()
+        self._session.close()
 
     # --- time ---------------------------------------------------------------------------------------------------------
 
@@ -553,7 +536,7 @@ class NaoSim(Nao):
     @property
     def tick_s(self) -> float:
         """Length of a tick, s: sensors are read and motors are told once in it."""
-        return self._shared.settings.tick_s
+        return self._session.tick_s
 
     def step(self, seconds: float | None = None) -> None:
         """Let time pass.
@@ -567,17 +550,7 @@ class NaoSim(Nao):
         seconds = self.tick_s if seconds is None else seconds
         if not 0.0 <= seconds < ENDLESS:
             raise BadValue("seconds", seconds, "0 or more, finite")
-        left = round(seconds / self.tick_s)
-        if self._server is not None:
-            self._let_pass(left)
-            return
-        if self._viewer is None:
-            tick = self._shared.tick
-            for _ in range(left):
-                tick()
-            return
-        for _ in range(left):
-            self._show_tick()
+        self._session.advance(round(seconds / self.tick_s))
 
     def reset(self, seed: int | None = None, payload: float | None = None, delay: float | None = None) -> None:
         """Put robots and world to their start; what they do ends. What is None stays as it was.
@@ -594,14 +567,14 @@ class NaoSim(Nao):
         changes = {name: value for name, value in changes.items() if value is not None}
 
         def start_again() -> None:
-            for number, simulation in enumerate(self._own):
+            for number, simulation in enumerate(self._session.simulations):
                 if seed is not None:
                     changes["seed"] = seed + SEED_STEP * number
                 simulation.vary(**changes)
-            self._shared.reset()
+            self._session.shared.reset()
             self._wake()
 
-        self._do(start_again)
+        self._session.do(start_again)
 
     def save_state(self) -> SavedState:
         """The state of robots and world, for `restore_state` of this object.
@@ -609,13 +582,12 @@ class NaoSim(Nao):
         Raises:
             NotAllowed: A motion or a walk is under way, or the robot is served.
         """
-        if self._server is not None:
+        if self._session.served:
             raise NotAllowed("the state of a robot that is served cannot be saved")
-        for simulation in self._own:
-            robot = simulation.robot
+        for robot in (simulation.robot for simulation in self._session.simulations):
             if robot.locomotion.active or robot.motion.tasks():
                 raise NotAllowed("a state can be saved while no motion and no walk is under way")
-        return SavedState(self._shared, self._own)
+        return SavedState(self._session.shared, self._session.simulations)
 
     def restore_state(self, state: SavedState) -> None:
         """Let everything be as it was when a state was saved, as often as one likes; time as well.
@@ -623,7 +595,7 @@ class NaoSim(Nao):
         Raises:
             BadValue: The state is of another simulation, or things have come or gone since.
         """
-        self._do(lambda: state.restore(self._shared))
+        self._session.do(lambda: state.restore(self._session.shared))
 
     # --- the world --------------------------------------------------------------------------------------------------
 
@@ -650,12 +622,13 @@ class NaoSim(Nao):
         name = str(entry["name"])
 
         def put() -> None:
-            if name in self._shared.things.things:
-                self._shared.things.move(name, position, None)
+            things = self._session.shared.things
+            if name in things.things:
+                things.move(name, position, None)
             else:
-                self._shared.things.place(read_object(entry, "thing", Path))
+                things.place(read_object(entry, "thing", Path))
 
-        self._do(put)
+        self._session.do(put)
         return name
 
     def remove(self, name: str) -> None:
@@ -664,12 +637,12 @@ class NaoSim(Nao):
         Raises:
             UnknownName: There is none of this name.
         """
-        self._do(lambda: self._shared.things.remove(name))
+        self._session.do(lambda: self._session.shared.things.remove(name))
 
     @property
     def things(self) -> dict[str, tuple[float, ...]]:
         """Where everything is that can move: x, y, z in m, roll, pitch, yaw in rad, by name."""
-        return self._do(self._shared.things.places)
+        return self._session.do(lambda: self._session.shared.things.places())
 
     def picture(self, view: str = "three_quarter", width: int = 640, height: int = 480) -> np.ndarray:
         """A picture from outside, (height, width, 3) uint8 RGB.
@@ -709,75 +682,20 @@ class NaoSim(Nao):
             NotAllowed: It is served already, or there is more than one robot.
             RuntimeError: The address cannot be had.
         """
-        if self._server is not None:
-            raise NotAllowed("this robot is served already")
-        if len(self.robots) > 1:
-            raise NotAllowed("only a robot that is alone in its world is served; see nao_robots.launch for several")
-        from nao_sim_bridge.server.options import ServerOptions
-        from nao_sim_bridge.server.simulator_server import SimulatorServer  # the wheel qi, and all modules
-
-        simulation = self._simulation
-        options = ServerOptions(simulation.scene, address, port, speed or ENDLESS, paused=speed is None)
-        self._server = SimulatorServer(options, simulation)
-        self._server.start()
-        return f"tcp://{address}:{self._server.broker.port}"
+        return self._session.serve(port, address, speed, self._places)
 
     # --- inside -------------------------------------------------------------------------------------------------------
 
-    def _simulation_of(self, number: int) -> Simulation:
-        return self._own[number] if self._server is None else self._server.simulation
-
-    def _drive(self, nao: Nao, mode: str, values: Sequence[float], ticks: int) -> None:
-        if self._server is not None:
-            raise NotAllowed("a robot that is served is driven by its NAOqi alone")
-        nao.robot.drive(mode, values)
-        shared = self._shared
-        if all(simulation.robot.driven for simulation in self._own):
-            shared.leap(ticks)
-            return
-        for _ in range(ticks):
-            shared.tick()
-
     def _wake(self) -> None:
         """Begin: the robots are stiff, and time passes until their feet have felt the floor."""
+        simulations = self._session.simulations
         if self._awake:
-            for simulation in self._own:
+            for simulation in simulations:
                 everything = range(len(simulation.model.joints))
                 simulation.robot.motion.set_stiffness_now(dict.fromkeys(everything, 1.0))
-        latest = max(simulation.scene.sensor_delay for simulation in self._own)
+        latest = max(simulation.scene.sensor_delay for simulation in simulations)
         for _ in range(1 + round(latest / self.tick_s)):
-            self._shared.tick()
-
-    def _do(self, command: Callable[[], T]) -> T:
-        """Run a command where the simulation runs."""
-        return command() if self._server is None else self._server.runner.call(command)
-
-    def _pass_until(self, over: Callable[[], bool], longest: float, what: str) -> None:
-        """Let time pass, tick by tick, until something is over."""
-        end = self.time + longest
-        while not over():
-            if self.time > end:
-                raise TimeoutError(f"{what} has not ended within {longest:g} s of simulated time")
-            self.step()
-
-    def _let_pass(self, ticks: int) -> None:
-        """Have the simulation's thread let time pass, or wait as long as it does so by itself."""
-        runner = self._server.runner
-        if runner.paused:
-            runner.advance(ticks * self.tick_s).result()
-            return
-        end = runner.ticks + ticks
-        while runner.ticks < end:
-            if runner.wait_for_tick(end - 1, 1.0) is None and not runner.running:
-                raise TaskKilled("the simulation has ended")
-
-    def _show_tick(self) -> None:
-        began = time.monotonic()
-        self._shared.tick()
-        simulation = self._simulation
-        if simulation.ticks % 2 == 0:
-            self._viewer.show(simulation.render_state())
-        time.sleep(max(0.0, self.tick_s / self._pace - (time.monotonic() - began)))
+            self._session.shared.tick()
 
 
 SIZES: Mapping[str, Any] = {"ball": 0.03, "box": [0.1, 0.1, 0.1], "cylinder": [0.05, 0.2]}
