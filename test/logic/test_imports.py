@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -211,6 +213,12 @@ def test_modules_are_told_apart_and_relative_imports_followed(monkeypatch, tmp_p
     file.write_text("from . import led\nfrom ..lights import NaoLights\nif True:\n    import qi.path\n")
     found = ["nao_library_modules.driver.led", "nao_library_modules.lights.NaoLights", "qi.path"]
     assert list(imported(file)) == found
+
+
+def test_the_package_of_the_simulator_alone_loads_neither_the_engine_nor_arrays():
+    program = "import sys, nao_sim_bridge; print(sorted({'pybullet', 'numpy'} & {*sys.modules}), nao_sim_bridge.NaoSim)"
+    told = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True).stdout
+    assert told.endswith("[] <class 'nao_sim_bridge.library.nao_sim.NaoSim'>\n")
 
 
 def test_messages_and_actions_are_apart():
