@@ -6,6 +6,7 @@ import math
 import time
 
 import numpy as np
+import pybullet
 import pytest
 import qi
 
@@ -153,6 +154,41 @@ def test_a_state_is_refused_where_it_does_not_fit(nao):
     nao.reset()
     with pytest.raises(BadValue, match="since its last reset"):
         nao.restore_state(state)
+
+
+def test_a_state_knows_a_thing_that_has_moved_and_one_that_has_taken_the_name_of_another(nao):
+    nao.place("box", at=(0.8, 0.0, 0.05), mass=0.0)
+    state = nao.save_state()
+    nao.place("box", at=(0.8, 1.0, 0.05))
+    nao.restore_state(state)
+    nao.step()
+    assert nao.snapshot.objects["box"].position == pytest.approx((0.8, 0.0, 0.05)) and nao.things["box"][1] == 0.0
+    nao.remove("box")
+    nao.place("box", at=(0.8, 0.0, 0.15), box=[0.3, 0.3, 0.3], mass=0.0)
+    with pytest.raises(BadValue, match="nothing has come or gone"):
+        nao.restore_state(state)
+
+
+def test_the_engine_keeps_no_state_that_nobody_holds(nao, monkeypatch):
+    freed, remove = [], pybullet.removeState
+    monkeypatch.setattr(pybullet, "removeState", lambda state, **client: freed.append(state) or remove(state, **client))
+    states = [nao.save_state() for _ in range(200)]
+    assert freed == []
+    del states[1:]
+    nao.step()
+    assert len(freed) == 199
+    for _ in range(200):
+        state = nao.save_state()
+    nao.step()
+    assert len(freed) == 199 + 199
+    (kept,) = states
+    for _ in range(2):
+        kept.drop()
+        nao.step()
+    assert len(freed) == 199 + 199 + 1
+    with pytest.raises(BadValue, match="dropped"):
+        nao.restore_state(kept)
+    nao.restore_state(state)
 
 
 def test_things_come_move_and_go(nao):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import weakref
 from collections import deque
 from functools import partial
 from typing import Any, Callable, Iterable, Sequence
@@ -17,12 +18,14 @@ OURS = "nao_sim_bridge."
 
 
 class SavedState:
-    """What a world and the robots in it were like."""
+    """What a world and the robots in it were like; what the engine keeps of it is freed with it, or by `drop`."""
 
     def __init__(self, shared: SharedWorld, simulations: Sequence[Simulation]) -> None:
         self._shared = shared
         self._physics = shared.physics
         self._bodies = shared.physics.save()
+        self._free = weakref.finalize(self, shared.physics.drop, self._bodies)
+        self._free.atexit = False
         robots = [simulation.robot for simulation in simulations]
         left_out = [shared, shared.settings, shared.task_ids, shared.guard, shared.physics, shared.things]
         for simulation in simulations:
@@ -33,7 +36,13 @@ class SavedState:
         self.restore(shared)  # the engine has forgotten how things touch then, now as at each restore
 
     def restore(self, shared: SharedWorld) -> None:
-        """Put everything back."""
+        """Put everything back, as often as one likes.
+
+        Raises:
+            BadValue: It is of another simulation, was dropped, or things have come or gone since.
+        """
+        if not self._free.alive:
+            raise BadValue("state", "one that was dropped", "one that is kept")
         if shared is not self._shared or shared.physics is not self._physics:
             raise BadValue("state", "one of before", "one of this simulation, saved since its last reset")
         if not shared.physics.load(self._bodies):
@@ -43,6 +52,10 @@ class SavedState:
             simulation.robot, simulation.snapshot = robot, snapshot
             robot.tell_motors()
         shared.ticks = self._ticks
+
+    def drop(self) -> None:
+        """Free what the engine keeps of it, a quarter of a megabyte; it cannot be restored any more."""
+        self._free()
 
 
 class Memento:
