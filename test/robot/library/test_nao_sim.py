@@ -119,6 +119,19 @@ def test_balance_begins_anew_with_a_reset(nao):
     assert pushed() == once
 
 
+def test_friction_and_payload_last_until_the_next_reset_and_come_back_with_a_state(nao):
+    once = stumble(nao)
+    nao.reset(1, payload=1.0)
+    nao.robot.scale_friction(0.1)
+    state = nao.save_state()
+    slipped = stumble(nao)
+    for _ in range(2):  # the first one has built the world once more
+        nao.reset(1, payload=0.0)
+        assert stumble(nao) == once != slipped
+    nao.restore_state(state)
+    assert stumble(nao) == slipped
+
+
 def test_a_reset_takes_back_what_was_placed(nao):
     once = stumble(nao)
     nao.place("box", at=(0.6, 0.0, 0.05))

@@ -79,7 +79,10 @@ class PhysicsWorld:
     def restore(self) -> bool:
         """Put all bodies, to the last bit, to where they were at `keep`, if it can; what motors were told stays."""
         # What can roll away is not put back to the last bit.
-        return self._kept is not None and not self.bodies.loose and self.load(self._kept)
+        if self._kept is None or self.bodies.loose or not self.fits(self._kept):
+            return False
+        self.load(self._kept)
+        return True
 
     def save(self) -> SavedBodies:
         """The state of all bodies, for `load`; the engine keeps it until `drop`, or as long as the world."""
@@ -87,10 +90,12 @@ class PhysicsWorld:
         state = pybullet.saveState(physicsClientId=self.client)
         return SavedBodies(state, pybullet.getNumBodies(physicsClientId=self.client), self.bodies.inventory())
 
-    def load(self, saved: SavedBodies) -> bool:
-        """Put all bodies to where they were at `save`; False where something has come or gone since."""
-        if saved.count != pybullet.getNumBodies(physicsClientId=self.client) or not self.bodies.fits(saved.things):
-            return False
+    def fits(self, saved: SavedBodies) -> bool:
+        """Whether nothing has come or gone since `save`."""
+        return saved.count == pybullet.getNumBodies(physicsClientId=self.client) and self.bodies.fits(saved.things)
+
+    def load(self, saved: SavedBodies) -> None:
+        """Put all bodies, which `fits` must say are the same, to where they were at `save`."""
         # The engine keeps what it knows of two bodies as long as they touch, and would begin with forces of before.
         for number, robot in enumerate(self.robots):
             away = (0.0, 0.0, AWAY * (number + 1))
@@ -98,7 +103,6 @@ class PhysicsWorld:
         pybullet.performCollisionDetection(physicsClientId=self.client)
         pybullet.restoreState(stateId=saved.state, physicsClientId=self.client)
         self.bodies.believe(saved.things)
-        return True
 
     def drop(self, saved: SavedBodies) -> None:
         """Free what the engine keeps of a state, which is of no use from now on, with the next step or `save`.

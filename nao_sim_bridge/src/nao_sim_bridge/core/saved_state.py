@@ -31,7 +31,7 @@ class SavedState:
         for simulation in simulations:
             left_out += [simulation.model, simulation.led_layout, simulation.scene, simulation.physics]
         self._robots = Memento(robots, left_out)
-        self._kept = [(simulation, simulation.robot, simulation.snapshot) for simulation in simulations]
+        self._kept = [(one, one.robot, one.snapshot, one.physics.payload, one.physics.friction) for one in simulations]
         self._ticks = shared.ticks
         self.restore(shared)  # the engine has forgotten how things touch then, now as at each restore
 
@@ -45,10 +45,14 @@ class SavedState:
             raise BadValue("state", "one that was dropped", "one that is kept")
         if shared is not self._shared or shared.physics is not self._physics:
             raise BadValue("state", "one of before", "one of this simulation, saved since its last reset")
-        if not shared.physics.load(self._bodies):
+        if not shared.physics.fits(self._bodies):
             raise BadValue("state", "one with other things", "one of a world in which nothing has come or gone since")
+        for simulation, _, _, payload, friction in self._kept:  # first: they count where bodies touch
+            simulation.physics.carry(payload)
+            simulation.physics.scale_friction(friction)
+        shared.physics.load(self._bodies)
         self._robots.restore()
-        for simulation, robot, snapshot in self._kept:
+        for simulation, robot, snapshot, _, _ in self._kept:
             simulation.robot, simulation.snapshot = robot, snapshot
             robot.tell_motors()
         shared.ticks = self._ticks
