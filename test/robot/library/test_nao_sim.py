@@ -91,6 +91,15 @@ def test_a_pushed_robot_without_protection_falls_and_gets_up(nao):
     assert nao.go_to_posture("Stand").wait() is True and not nao.fallen
 
 
+@pytest.mark.parametrize(
+    "posture, lean", [("Stand", 0.0), ("StandInit", 0.0), ("LyingBack", math.pi / 2.0), ("LyingBelly", math.pi / 2.0)]
+)
+def test_a_robot_leans_by_the_angle_from_upright_and_has_fallen_when_it_lies(posture, lean):
+    with NaoSim(posture=posture) as nao:
+        nao.step(0.5)
+        assert nao.lean == pytest.approx(lean, abs=0.35) and nao.fallen is (lean > 1.0)
+
+
 @pytest.mark.parametrize("noise, delay", [(0.0, 0.0), (1.0, 0.03)])
 def test_equal_seeds_and_calls_are_equal_to_the_last_bit(noise, delay):
     with NaoSim(seed=3, noise=noise, delay=delay) as first, NaoSim(seed=3, noise=noise, delay=delay) as second:

@@ -10,7 +10,7 @@ import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.readings import FootForces, Pose
-from nao_sim_bridge.base.rotations import rotate
+from nao_sim_bridge.base.rotations import rotate_back
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.control.joints.curves import SmoothCurve
@@ -23,6 +23,7 @@ from nao_sim_bridge.walk.body import foot_on_ground, robot_on_ground
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
 
+UP = (0.0, 0.0, 1.0)
 LONGEST = 600.0
 """s of simulated time that a call waits for what it has begun, if nobody says otherwise."""
 FALLEN = 1.0
@@ -227,9 +228,15 @@ class Nao:
         return self.snapshot.sonars
 
     @property
+    def lean(self) -> float:
+        """Angle between the torso and upright, truly, in rad: 0 stands straight, pi is head down."""
+        x, y, z = rotate_back(self.snapshot.torso.orientation, UP)
+        return math.atan2(math.hypot(x, y), z)
+
+    @property
     def fallen(self) -> bool:
         """Whether the torso leans by more than 1 rad: it lies, or is about to."""
-        return rotate(self.snapshot.torso.orientation, (0.0, 0.0, 1.0))[2] < math.cos(FALLEN)
+        return self.lean > FALLEN
 
     def camera(self, name: str = "top") -> HeadCamera:
         """A camera of the head, "top" or "bottom".
