@@ -40,6 +40,7 @@ def test_every_example_of_the_library_runs_without_ros(library, tmp_path):
     sources, python = library
     blocks = BLOCK.findall((ROOT / "docs" / "library.md").read_text(encoding="utf-8"))
     assert len(blocks) >= 8
+    assert blocks[0] in (sources / "examples" / "nao_in_ten_lines.py").read_text(encoding="utf-8")
     page = tmp_path / "page.py"
     page.write_text("\n".join(blocks), encoding="utf-8")
     told = python(page, cwd=tmp_path)
