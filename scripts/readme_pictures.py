@@ -31,6 +31,7 @@ FOLDER = ROOT / "docs" / "images"
 ARCHITECTURE = ROOT / "docs" / "architecture.dot"
 EXAMPLES = ROOT / "nao_library_modules" / "examples"
 PLOT_WALK, PLOT_SOUND = EXAMPLES / "plot_walk.py", EXAMPLES / "plot_sound.py"
+TEN_LINES = ROOT / "nao_sim_bridge" / "examples" / "nao_in_ten_lines.py"
 VIEW, SIZE = "three_quarter", 320
 ROOM_SIZE = (640, 400)
 POSTURES = {"standing": "Stand", "sitting": "Sit", "lying": "LyingBelly"}
@@ -120,6 +121,14 @@ def draw_dialogue(folder: Path) -> None:
         subprocess.run([*command, "--output", str(folder / "dialogue.png")], check=True, timeout=LIMIT)
 
 
+def draw_library(folder: Path) -> None:
+    """Keep what the ten lines of the library draw."""
+    with tempfile.TemporaryDirectory() as here:
+        subprocess.run([sys.executable, str(TEN_LINES)], cwd=here, check=True, timeout=LIMIT)
+        shutil.copy(Path(here) / "nao.png", folder / "library.png")
+    print("library.png", flush=True)
+
+
 def draw_architecture(folder: Path) -> None:
     """Have graphviz draw the architecture."""
     picture = folder / f"{ARCHITECTURE.stem}.png"
@@ -141,6 +150,7 @@ def main() -> int:
     print("sight.png", flush=True)
     draw_walk(folder)
     draw_dialogue(folder)
+    draw_library(folder)
     return 0
 
 

@@ -9,6 +9,7 @@ paid (Mania, Guy and Recht 2018, without their scaling of states). The rollouts 
 from __future__ import annotations
 
 import argparse
+from contextlib import closing
 from pathlib import Path
 
 import gymnasium
@@ -18,46 +19,50 @@ from nao_sim_bridge import NaoSim
 from nao_sim_bridge.sweep import sweep
 
 ENVIRONMENT = "nao_sim_bridge.envs:NaoStand-v0"
+WIDTH, RATE = 0.03, 0.02
+"""How far a direction is tried, and how far the policy goes along those that paid."""
+FIRST_SEED = 1000
+"""Of the pushes of the first iteration; each has its own."""
 
 
-def environment(push: float, made: dict[float, gymnasium.Env] = {}) -> gymnasium.Env:  # noqa: B006 one a process
-    """Building one takes longer than putting it back."""
-    if push not in made:
-        made[push] = gymnasium.make(ENVIRONMENT, randomization={"push": push, "noise": 1.0, "delay": 0.01})
-    return made[push]
+def environment(push: float) -> gymnasium.Env:
+    """Where the robot stands as noisy and late as a real one, with pushes of up to so much momentum, N s."""
+    return gymnasium.make(ENVIRONMENT, randomization={"push": push, "noise": 1.0, "delay": 0.01})
 
 
 def rollout(policy: np.ndarray, seed: int, push: float) -> tuple[float, bool]:
     """Sum of rewards of an episode, and whether the robot stood to its end."""
-    env = environment(push)
-    seen, _ = env.reset(seed=seed)
     total, over, late = 0.0, False, False
-    while not (over or late):
-        seen, reward, over, late, _ = env.step(np.tanh(policy @ seen))
-        total += reward
+    with closing(environment(push)) as env:
+        seen, _ = env.reset(seed=seed)
+        while not (over or late):
+            seen, reward, over, late, _ = env.step(np.tanh(policy @ seen))
+            total += reward
     return total, not over
+
+
+def improved(policy: np.ndarray, ways: np.ndarray, seed: int, push: float, workers: int | None) -> np.ndarray:
+    """A policy that has gone along the directions (ways, actions, observations) that paid."""
+
+    def tried(seed: int, way: int, sign: int) -> float:
+        return rollout(policy + sign * WIDTH * ways[way], seed, push)[0]
+
+    table = sweep(tried, seeds=[seed], workers=workers, progress=False, way=list(range(len(ways))), sign=[1, -1])
+    if table.errors:
+        raise RuntimeError(f"a rollout failed: {table.errors[0]['error']}")
+    rewards = np.array([row["result"] for row in table.rows]).reshape(-1, 2)
+    print(f"iteration {seed - FIRST_SEED + 1}: {rewards.mean():.1f} of 400")
+    steps = (rewards[:, 0] - rewards[:, 1])[:, None, None] * ways
+    return policy + RATE / (rewards.std() + 1e-6) * steps.mean(axis=0)
 
 
 def train(iterations: int, directions: int, push: float, workers: int | None) -> np.ndarray:
     """A policy, (actions, observations)."""
-    env = environment(push)
-    policy = np.zeros((env.action_space.shape[0], env.observation_space.shape[0]))
-    chance, width, rate = np.random.default_rng(0), 0.03, 0.02
-    for iteration in range(iterations):
-        ways = chance.standard_normal((directions, *policy.shape))
-
-        def tried(seed: int, way: int, sign: int, now=policy, ways=ways) -> float:
-            return rollout(now + sign * width * ways[way], seed, push)[0]
-
-        table = sweep(
-            tried, seeds=[1000 + iteration], workers=workers, progress=False, way=list(range(directions)), sign=[1, -1]
-        )
-        if table.errors:
-            raise RuntimeError(f"a rollout failed: {table.errors[0]['error']}")
-        rewards = np.array([row["result"] for row in table.rows]).reshape(directions, 2)
-        steps = (rewards[:, 0] - rewards[:, 1])[:, None, None] * ways
-        policy = policy + rate / (rewards.std() + 1e-6) * steps.mean(axis=0)
-        print(f"iteration {iteration + 1}: {rewards.mean():.1f} of 400")
+    with closing(environment(push)) as env:
+        policy = np.zeros((*env.action_space.shape, *env.observation_space.shape))
+    chance = np.random.default_rng(0)
+    for seed in range(FIRST_SEED, FIRST_SEED + iterations):
+        policy = improved(policy, chance.standard_normal((directions, *policy.shape)), seed, push, workers)
     return policy
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,7 +59,7 @@ ROOMS = {
     cameras render.scene render.opengl render sound hearing.grammars hearing speech vision behaviors tracking core
     naoqi.binding naoqi.memory naoqi.motion naoqi.body naoqi.speech naoqi.sound naoqi.vision naoqi.cameras
     naoqi.behaviors naoqi.tracker naoqi.system naoqi.life naoqi
-    server . envs sweep ros testing
+    server library . envs sweep ros testing
     """.split(),
 }
 """Folders of a package from the ground up: each imports only what stands before it; the dot is the package itself."""
@@ -66,7 +68,7 @@ MOST_FILES = 25
 LIBRARY = "nao_library_modules/src/nao_library_modules"
 SIMULATOR = "nao_sim_bridge/src/nao_sim_bridge"
 # What a user of the simulator imports or starts: it may use everything that needs no ROS.
-FRONT = tuple(path.name for path in (ROOT / SIMULATOR).glob("*.py"))
+FRONT = ("library", "envs", "sweep", *(path.name for path in (ROOT / SIMULATOR).glob("*.py")))
 # Clients reach the robot through topics and actions only, and share helpers and errors with the servers.
 CLIENTS = ("process_modules", "behaviors")
 OF_CLIENTS = frozenset({"errors", "definitions", "ros", "library", *CLIENTS})
@@ -77,10 +79,10 @@ LAYERS = (
     Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "cli")),
     *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
     Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi"}),
-    Layer("sim", SIMULATOR, frozenset({"pybullet"}), ("naoqi", "server", "ros", "testing", "envs", "sweep", *FRONT)),
+    Layer("sim", SIMULATOR, frozenset({"pybullet"}), ("naoqi", "server", "ros", "testing", *FRONT)),
     Layer("modules", f"{SIMULATOR}/naoqi", frozenset({"sim", "qi"})),
     Layer("server", f"{SIMULATOR}/server", frozenset({"modules", "sim", "qi"})),
-    *(Layer("front", f"{SIMULATOR}/{name}", frozenset({"server", "sim"})) for name in (*FRONT, "envs", "sweep")),
+    *(Layer("front", f"{SIMULATOR}/{name}", frozenset({"server", "sim"})) for name in FRONT),
     Layer("ros side", f"{SIMULATOR}/ros", frozenset({"server", "modules", "sim", "ros", "definitions"})),
     Layer("testing", f"{SIMULATOR}/testing", frozenset({"server", "sim", "qi", "ros", "definitions"})),
 )
@@ -118,16 +120,9 @@ def layer_of(module: str) -> str | None:
     if root in ROS_LIBRARIES or root.endswith(("_msgs", "_srvs")):
         return "ros"
     if root == "nao_sim_bridge":
-        own = {
-            "naoqi": "modules",
-            "server": "server",
-            "ros": "ros side",
-            "testing": "testing",
-            "envs": "front",
-            "sweep": "front",
-        }
+        own = {"naoqi": "modules", "server": "server", "ros": "ros side", "testing": "testing"}
         first = inner[0] if inner else "__init__"
-        return "front" if f"{first}.py" in FRONT else own.get(first, "sim")
+        return "front" if {first, f"{first}.py"} & {*FRONT} else own.get(first, "sim")
     if root == "nao_library_modules":
         return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "cli") else "library"
     return root if root in ("naoqi", "qi", "pybullet") else None
@@ -218,6 +213,12 @@ def test_modules_are_told_apart_and_relative_imports_followed(monkeypatch, tmp_p
     file.write_text("from . import led\nfrom ..lights import NaoLights\nif True:\n    import qi.path\n")
     found = ["nao_library_modules.driver.led", "nao_library_modules.lights.NaoLights", "qi.path"]
     assert list(imported(file)) == found
+
+
+def test_the_package_of_the_simulator_alone_loads_neither_the_engine_nor_arrays():
+    program = "import sys, nao_sim_bridge; print(sorted({'pybullet', 'numpy'} & {*sys.modules}), nao_sim_bridge.NaoSim)"
+    told = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True).stdout
+    assert told.endswith("[] <class 'nao_sim_bridge.library.nao_sim.NaoSim'>\n")
 
 
 def test_messages_and_actions_are_apart():

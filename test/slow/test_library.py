@@ -22,26 +22,37 @@ def run(*command, **options):
     return done.stdout
 
 
-@pytest.mark.timeout(900)
-def test_every_example_of_the_library_runs_without_ros(tmp_path):
-    venv = tmp_path / "venv"
-    run(sys.executable, "-m", "venv", venv)
-    python = venv / "bin" / "python"
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    """Runs Python in an environment that pip has made, from a copy of the package: (folder of the copy, function)."""
+    folder = tmp_path_factory.mktemp("library")
+    run(sys.executable, "-m", "venv", folder / "venv")
+    python = folder / "venv" / "bin" / "python"
     clean = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "ROS", "CMAKE"))}
-    sources = tmp_path / "nao_sim_bridge"
+    sources = folder / "nao_sim_bridge"
     run("cp", "-r", ROOT / "nao_sim_bridge", sources)  # pip builds in the folder
-    run(python, "-m", "pip", "install", "--quiet", f"{sources}[naoqi,rl,sweep]", env=clean)
+    run(python, "-m", "pip", "install", "--quiet", f"{sources}[naoqi,rl,sweep]", "pytest", env=clean)
+    return sources, lambda *arguments, cwd: run(python, *arguments, cwd=cwd, env=clean)
+
+
+@pytest.mark.timeout(900)
+def test_every_example_of_the_library_runs_without_ros(library, tmp_path):
+    sources, python = library
     blocks = BLOCK.findall((ROOT / "docs" / "library.md").read_text(encoding="utf-8"))
     assert len(blocks) >= 8
+    assert blocks[0] in (sources / "examples" / "nao_in_ten_lines.py").read_text(encoding="utf-8")
     page = tmp_path / "page.py"
     page.write_text("\n".join(blocks), encoding="utf-8")
-    told = run(python, page, cwd=tmp_path, env=clean)
+    told = python(page, cwd=tmp_path)
     assert (tmp_path / "nao.png").stat().st_size > 10_000 and (tmp_path / "pushes.png").exists()
     assert re.search(r"^ *0\.0 +4 +0 ", told, re.MULTILINE) and re.search(r"^ *4\.0 +4 +1 ", told, re.MULTILINE), told
-    checks = "from gymnasium.utils.env_checker import check_env; import gymnasium, warnings, nao_sim_bridge.envs as e;"
-    checks += "warnings.simplefilter('error'); "
-    checks += "[check_env(gymnasium.make(f'{name}-v0').unwrapped, skip_render_check=True) for name in e.STEPS]"
-    run(python, "-c", checks, cwd=tmp_path, env=clean)
     example = sources / "examples" / "train_stand.py"
-    told = run(python, example, "--iterations", 1, "--directions", 1, "--episodes", 1, cwd=tmp_path, env=clean)
+    told = python(example, "--iterations", 1, "--directions", 1, "--episodes", 1, cwd=tmp_path)
     assert "own balance" in told and (tmp_path / "train_stand" / "compared.png").exists()
+
+
+@pytest.mark.timeout(600)
+def test_environments_are_what_their_page_says(library, tmp_path):
+    file = tmp_path / "test_environments.py"  # away from the conftest.py of this project
+    file.write_text((Path(__file__).parent / "environments.py").read_text(encoding="utf-8"), encoding="utf-8")
+    library[1]("-m", "pytest", "-q", file, cwd=tmp_path)

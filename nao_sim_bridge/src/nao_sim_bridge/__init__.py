@@ -10,7 +10,7 @@ __all__ = ["NaoSim"]
 def __getattr__(name: str) -> Any:
     """What a program imports from here is loaded when it does: ROS nodes and workers need little of it."""
     if name == "NaoSim":
-        from nao_sim_bridge.nao_sim import NaoSim
+        from nao_sim_bridge.library.nao_sim import NaoSim
 
         return NaoSim
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

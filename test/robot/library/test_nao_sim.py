@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
+import pybullet
 import pytest
+import qi
 
 from nao_sim_bridge import NaoSim
 from nao_sim_bridge.base.errors import BadValue, MoveRefused, NotAllowed, UnknownName
@@ -88,6 +91,15 @@ def test_a_pushed_robot_without_protection_falls_and_gets_up(nao):
     assert nao.go_to_posture("Stand").wait() is True and not nao.fallen
 
 
+@pytest.mark.parametrize(
+    "posture, lean", [("Stand", 0.0), ("StandInit", 0.0), ("LyingBack", math.pi / 2.0), ("LyingBelly", math.pi / 2.0)]
+)
+def test_a_robot_leans_by_the_angle_from_upright_and_has_fallen_when_it_lies(posture, lean):
+    with NaoSim(posture=posture) as nao:
+        nao.step(0.5)
+        assert nao.lean == pytest.approx(lean, abs=0.35) and nao.fallen is (lean > 1.0)
+
+
 @pytest.mark.parametrize("noise, delay", [(0.0, 0.0), (1.0, 0.03)])
 def test_equal_seeds_and_calls_are_equal_to_the_last_bit(noise, delay):
     with NaoSim(seed=3, noise=noise, delay=delay) as first, NaoSim(seed=3, noise=noise, delay=delay) as second:
@@ -114,6 +126,19 @@ def test_balance_begins_anew_with_a_reset(nao):
     once = pushed()
     nao.reset(1)
     assert pushed() == once
+
+
+def test_friction_and_payload_last_until_the_next_reset_and_come_back_with_a_state(nao):
+    once = stumble(nao)
+    nao.reset(1, payload=1.0)
+    nao.robot.scale_friction(0.1)
+    state = nao.save_state()
+    slipped = stumble(nao)
+    for _ in range(2):  # the first one has built the world once more
+        nao.reset(1, payload=0.0)
+        assert stumble(nao) == once != slipped
+    nao.restore_state(state)
+    assert stumble(nao) == slipped
 
 
 def test_a_reset_takes_back_what_was_placed(nao):
@@ -151,6 +176,41 @@ def test_a_state_is_refused_where_it_does_not_fit(nao):
     nao.reset()
     with pytest.raises(BadValue, match="since its last reset"):
         nao.restore_state(state)
+
+
+def test_a_state_knows_a_thing_that_has_moved_and_one_that_has_taken_the_name_of_another(nao):
+    nao.place("box", at=(0.8, 0.0, 0.05), mass=0.0)
+    state = nao.save_state()
+    nao.place("box", at=(0.8, 1.0, 0.05))
+    nao.restore_state(state)
+    nao.step()
+    assert nao.snapshot.objects["box"].position == pytest.approx((0.8, 0.0, 0.05)) and nao.things["box"][1] == 0.0
+    nao.remove("box")
+    nao.place("box", at=(0.8, 0.0, 0.15), box=[0.3, 0.3, 0.3], mass=0.0)
+    with pytest.raises(BadValue, match="nothing has come or gone"):
+        nao.restore_state(state)
+
+
+def test_the_engine_keeps_no_state_that_nobody_holds(nao, monkeypatch):
+    freed, remove = [], pybullet.removeState
+    monkeypatch.setattr(pybullet, "removeState", lambda state, **client: freed.append(state) or remove(state, **client))
+    states = [nao.save_state() for _ in range(200)]
+    assert freed == []
+    del states[1:]
+    nao.step()
+    assert len(freed) == 199
+    for _ in range(200):
+        state = nao.save_state()
+    nao.step()
+    assert len(freed) == 199 + 199
+    (kept,) = states
+    for _ in range(2):
+        kept.drop()
+        nao.step()
+    assert len(freed) == 199 + 199 + 1
+    with pytest.raises(BadValue, match="dropped"):
+        nao.restore_state(kept)
+    nao.restore_state(state)
 
 
 def test_things_come_move_and_go(nao):
@@ -216,6 +276,34 @@ def test_a_picture_of_a_size_that_the_camera_has_not_names_those_it_has(nao):
         nao.camera().picture(100, 100)
 
 
+@pytest.mark.parametrize("served", [False, True])
+def test_pictures_from_outside_show_the_joints_as_they_are_not_as_they_are_measured(monkeypatch, served):
+    drawn = []
+    with NaoSim(noise=1.0, delay=0.2) as nao:
+        address = nao.serve(port=0) if served else ""
+        nao.set_angles("HeadYaw", 1.0)
+        nao.step(0.15)
+        render = nao._simulation.renderer.render
+        monkeypatch.setattr(
+            nao._simulation.renderer, "render", lambda state, *more: drawn.append(state) or render(state, *more)
+        )
+        if served:
+            session = qi.Session()
+            session.connect(address)
+            session.service("NaoSimulation").picture("front", 64, 80)
+            session.close()
+        else:
+            assert nao.picture("front", 64, 80).shape == (80, 64, 3)
+        true = nao.robot._physics.read_joints().positions
+        assert drawn[0].joint_positions == true and abs(nao.angles["HeadYaw"] - true[0]) > 0.2
+
+
+@pytest.mark.parametrize("size", [(0, 64), (64, 5000), (64.0, 64)])
+def test_a_picture_from_outside_of_no_such_size_is_refused(nao, size):
+    with pytest.raises(BadValue, match="4096"):
+        nao.picture("front", *size)
+
+
 def test_robots_of_one_world_move_by_themselves():
     with NaoSim(robots=2, places=[(0.0, 0.0, 0.0), (0.0, 1.0, math.pi / 2.0)]) as sim:
         sim.robots[1].walk_to(0.2)
@@ -224,8 +312,6 @@ def test_robots_of_one_world_move_by_themselves():
 
 
 def test_a_program_for_naoqi_and_a_script_share_the_robot(nao):
-    import qi
-
     session = qi.Session()
     session.connect(nao.serve(port=0))
     walk = session.service("ALMotion").moveTo(0.15, 0.0, 0.0, _async=True)
@@ -238,6 +324,96 @@ def test_a_program_for_naoqi_and_a_script_share_the_robot(nao):
     with pytest.raises(NotAllowed, match="served already"):
         nao.serve(port=0)
     session.close()
+
+
+@pytest.fixture
+def served(nao):
+    """A client of a robot that is served, in whose world there is a ball."""
+    nao.place("ball", at=(1.0, 0.0, 0.03))
+    session = qi.Session()
+    session.connect(nao.serve(port=0))
+    nao.step(2.0)
+    yield session
+    session.close()
+
+
+def test_a_served_simulation_follows_a_factory_reset(nao, served):
+    nao.set_angles("HeadYaw", 0.5)
+    walk = nao.walk_to(1.0, wait=False)
+    nao.step(1.0)
+    before = nao.robot
+    served.service("NaoSimulation").factoryReset()
+    assert walk.done and nao.robot is not before
+    assert nao.time < 0.1 and nao.angles["HeadYaw"] == pytest.approx(0.0, abs=0.01) and nao.things == {}
+    nao.place("box", at=(0.6, 0.0, 0.05))
+    nao.set_stiffness("Head", 1.0)
+    nao.set_angles("HeadYaw", -0.4)
+    nao.step(1.0)
+    assert nao.time == pytest.approx(1.0, abs=0.1) and "box" in nao.things
+    assert served.service("ALMotion").getAngles("HeadYaw", True)[0] == pytest.approx(-0.4, abs=0.02)
+    nao.reset(2)
+    assert nao.things == {} and nao._simulation.scene.seed == 2
+
+
+def test_a_reset_by_a_client_ends_no_step(nao, served):
+    called = []
+
+    def reset_once(snapshot):
+        if not called:
+            called.append(served.service("NaoSimulation").reset(_async=True))
+
+    nao._simulation.after_tick.append(reset_once)
+    began = nao.time
+    nao.step(3.0)
+    assert called[0].value() is None and nao.time - began == pytest.approx(3.0, abs=0.02)
+
+
+def test_a_robot_whose_address_is_taken_goes_on_without_being_served(nao, served):
+    port = int(served.url().rpartition(":")[2])
+    with NaoSim() as other:
+        for _ in range(2):
+            with pytest.raises(RuntimeError):
+                other.serve(port=port)
+        assert other.walk_to(0.1).wait() is True
+        other.serve(port=0)
+
+
+class Window:
+    """Takes note of the angle of HeadYaw that it is shown."""
+
+    shown: list[float] = []
+    closed = 0
+
+    def __init__(self, *_):
+        self.shown.clear()
+
+    def start(self):
+        return self
+
+    def show(self, state):
+        self.shown.append(state.joint_positions[0])
+
+    def close(self):
+        type(self).closed += 1
+
+
+def test_the_window_shows_a_robot_that_is_told_targets_or_driven_and_time_passes_as_on_the_wall(monkeypatch):
+    monkeypatch.setattr("nao_sim_bridge.render.client.Viewer", Window)
+    with NaoSim(gui=True) as nao:
+        nao.set_angles("HeadYaw", 0.3)
+        began = time.monotonic()
+        nao.step(0.3)
+        assert time.monotonic() - began > 0.29
+        assert len(Window.shown) == 36 and Window.shown[-1] == pytest.approx(0.3, abs=0.02)
+        Window.shown.clear()
+        wanted = np.asarray(nao.commands)
+        wanted[0] = 0.6
+        began = time.monotonic()
+        for _ in range(20):
+            nao.drive(wanted, ticks=3)
+        assert time.monotonic() - began > 0.49
+        assert len(Window.shown) == 20 and Window.shown[-1] == pytest.approx(0.6, abs=0.02)
+    assert Window.closed == 1
 
 
 def test_nobody_who_does_not_look_or_listen_pays_for_it(nao):

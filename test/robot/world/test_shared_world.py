@@ -116,7 +116,7 @@ def test_each_robot_sees_what_the_others_look_like_now(company):
     robots[1].robot.leds.set({0: 0.25})
     robots[2].robot.push((0.0, 40.0, 0.0), 0.2)
     robots[0].run(0.3)
-    seen = robots[0].render_state(robots[0].snapshot).others
+    seen = robots[0].render_state().others
     assert [look.base_position for look in seen] == [one.snapshot.torso.position for one in robots[1:]]
     assert [look.joint_positions for look in seen] == [one.snapshot.positions for one in robots[1:]]
     assert seen[0].led_values[0] == 0.25 and seen[0].led_values == robots[1].robot.leds.values

@@ -12,8 +12,9 @@ from simulator import PATIENCE, connected
 from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.core.runner import FASTEST
 from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.simulation import SEED_STEP
 from nao_sim_bridge.server.options import ServerOptions
-from nao_sim_bridge.server.robots_server import SEED_STEP, RobotsServer, open_server
+from nao_sim_bridge.server.robots_server import RobotsServer, open_server
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 from nao_sim_bridge.world.places import parse_places
 
@@ -95,7 +96,7 @@ def test_what_one_is_told_only_one_does_and_others_see_it(robots):
     assert (first.robotIsWakeUp(), second.robotIsWakeUp()) == (True, False)
     heights = [service.torsoPose()[2] for service in robots.of("NaoSimulation")]
     assert heights[0] > 0.32 > heights[1]
-    (other,) = robots.server.servers[0].pictures.state().others
+    (other,) = robots.server.servers[0].simulation.render_state().others
     assert other.base_position == robots.server.servers[1].runner.snapshot.torso.position
     x, y, z, w = other.base_orientation
     assert abs(math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))) == pytest.approx(math.pi, abs=0.05)

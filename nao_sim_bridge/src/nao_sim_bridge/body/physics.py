@@ -53,6 +53,8 @@ class Physics:
         start: Where on the floor it starts.
         links: Link name to PyBullet's index; the torso is -1.
         torque_limits: (26,) most that the motors give, N m.
+        payload: What the torso carries, kg.
+        friction: Share of their friction that body and soles have.
 
     Args:
         world: What else there is; or a world that there is already, and that others may be in.
@@ -90,8 +92,8 @@ class Physics:
         self._forget_efforts()
         keep_apart(self.client, self.robot, model, self.links)
         set_friction(self.client, self.robot, settings.contact, self.links)
-        self._payload = 0.0
-        self._carry(payload)
+        self.payload, self.friction = 0.0, 1.0
+        self.carry(payload)
         speeds = self._to_engine_speeds([j.max_velocity for j in model.joints])
         limit_speeds(self.client, self.robot, dict(zip(self._indices, speeds)))
         couple_hips(self.client, self.robot, joints, settings.motor.coupling_force_n)
@@ -104,12 +106,23 @@ class Physics:
     def forget(self, payload: float) -> None:
         """The world was put to its start: what the motors were told before counts no more."""
         self._forget_efforts()
-        self._carry(payload)
+        self.carry(payload)
+        self.scale_friction(1.0)
 
-    def _carry(self, payload: float) -> None:
-        if payload != self._payload:
-            load_torso(self.client, self.robot, payload - self._payload)
-            self._payload = payload
+    def carry(self, payload: float) -> None:
+        """Let the torso carry this mass, kg, and no other."""
+        if payload != self.payload:
+            load_torso(self.client, self.robot, payload - self.payload)
+            self.payload = payload
+
+    def scale_friction(self, share: float) -> None:
+        """Let body and soles have this share of their friction, until the world is put to its start."""
+        if share != self.friction:
+            contact = self._settings.contact
+            body, sole = share * contact.body_friction, share * contact.sole_friction
+            scaled = replace(contact, body_friction=body, sole_friction=sole)
+            set_friction(self.client, self.robot, scaled, self.links)
+            self.friction = share
 
     def restart(self, angles: Sequence[float], pitch: float | None = None) -> None:
         """Put the robot to where it started, at rest; what its motors were told is forgotten."""
@@ -118,6 +131,7 @@ class Physics:
 
     def restart_beside_others(self, angles: Sequence[float], pitch: float | None = None) -> None:
         """As `restart`, but where something is there, at the nearest place around that is free, if there is one."""
+        self.scale_friction(1.0)
         for x, y in places_around(self.start):
             self._forget_efforts()
             self.place(angles, self.start.yaw, (x, y), pitch)
@@ -194,13 +208,6 @@ class Physics:
             forces=self._forces,
             **self._gains,
         )
-
-    def scale_friction(self, share: float) -> None:
-        contact = self._settings.contact
-        scaled = replace(
-            contact, body_friction=share * contact.body_friction, sole_friction=share * contact.sole_friction
-        )
-        set_friction(self.client, self.robot, scaled, self.links)
 
     def drive_positions(self, angles: Sequence[float]) -> None:
         """Send all joints to (26,) angles, rad (hands 0..1), with the full torque and the gains of their motors."""

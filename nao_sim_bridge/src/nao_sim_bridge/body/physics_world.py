@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Callable, Sequence
 
 import pybullet
 
 from nao_sim_bridge.base.settings import Settings
-from nao_sim_bridge.world.bodies import WorldBodies
+from nao_sim_bridge.world.bodies import Inventory, WorldBodies
 from nao_sim_bridge.world.world import FLOOR, World
 
 DISTANCE = 8
@@ -16,6 +17,21 @@ AWAY = 100.0
 """m, in which nothing touches a robot."""
 DEEPEST = 0.002
 """What is inside the robot by less only touches it, m."""
+
+
+@dataclass(frozen=True)
+class SavedBodies:
+    """Where all bodies were at a moment, for `PhysicsWorld.load`.
+
+    Attributes:
+        state: The engine's number of its own record.
+        count: How many bodies there were, robots included.
+        things: Which of them were things.
+    """
+
+    state: int
+    count: int
+    things: Inventory
 
 
 class PhysicsWorld:
@@ -40,10 +56,13 @@ class PhysicsWorld:
         )
         self.bodies = WorldBodies(world, self.client)
         self.robots: list[int] = []
-        self._kept: int | None = None
+        self._kept: SavedBodies | None = None
+        self._dropped: list[int] = []
 
     def step(self, pushes: Sequence[Callable[[], None]] = ()) -> None:
         """Advance by one tick; `pushes` are called before each step, for the engine forgets forces after one."""
+        if self._dropped:
+            self._free()
         for _ in range(self._steps):
             for push in pushes:
                 push()
@@ -51,8 +70,7 @@ class PhysicsWorld:
 
     def keep(self) -> None:
         """Remember all bodies as they are now, for `restore`."""
-        self._kept = pybullet.saveState(physicsClientId=self.client)
-        self.bodies.mark()
+        self._kept = self.save()
 
     def lose(self) -> None:
         """Forget what was kept: the engine is not to be trusted any more."""
@@ -60,30 +78,42 @@ class PhysicsWorld:
 
     def restore(self) -> bool:
         """Put all bodies, to the last bit, to where they were at `keep`, if it can; what motors were told stays."""
-        if self._kept is None or not self.bodies.restore():
+        # What can roll away is not put back to the last bit.
+        if self._kept is None or self.bodies.loose or not self.fits(self._kept):
             return False
-        self._put_back(self._kept)
+        self.load(self._kept)
         return True
 
-    def _put_back(self, state: int) -> None:
+    def save(self) -> SavedBodies:
+        """The state of all bodies, for `load`; the engine keeps it until `drop`, or as long as the world."""
+        self._free()
+        state = pybullet.saveState(physicsClientId=self.client)
+        return SavedBodies(state, pybullet.getNumBodies(physicsClientId=self.client), self.bodies.inventory())
+
+    def fits(self, saved: SavedBodies) -> bool:
+        """Whether nothing has come or gone since `save`."""
+        return saved.count == pybullet.getNumBodies(physicsClientId=self.client) and self.bodies.fits(saved.things)
+
+    def load(self, saved: SavedBodies) -> None:
+        """Put all bodies, which `fits` must say are the same, to where they were at `save`."""
         # The engine keeps what it knows of two bodies as long as they touch, and would begin with forces of before.
         for number, robot in enumerate(self.robots):
             away = (0.0, 0.0, AWAY * (number + 1))
             pybullet.resetBasePositionAndOrientation(robot, away, (0.0, 0.0, 0.0, 1.0), physicsClientId=self.client)
         pybullet.performCollisionDetection(physicsClientId=self.client)
-        pybullet.restoreState(stateId=state, physicsClientId=self.client)
+        pybullet.restoreState(stateId=saved.state, physicsClientId=self.client)
+        self.bodies.believe(saved.things)
 
-    def save(self) -> tuple[int, Mapping[str, int]]:
-        """The state of all bodies, for `load`; the engine keeps it as long as the world."""
-        return pybullet.saveState(physicsClientId=self.client), dict(self.bodies.ids)
+    def drop(self, saved: SavedBodies) -> None:
+        """Free what the engine keeps of a state, which is of no use from now on, with the next step or `save`.
 
-    def load(self, saved: tuple[int, Mapping[str, int]]) -> bool:
-        """Put all bodies to where they were at `save`; False where something has come or gone since."""
-        state, ids = saved
-        if self.bodies.ids != ids:
-            return False
-        self._put_back(state)
-        return True
+        Any thread: the garbage collector may call this in the midst of another call of the engine.
+        """
+        self._dropped.append(saved.state)
+
+    def _free(self) -> None:
+        while self._dropped:
+            pybullet.removeState(self._dropped.pop(), physicsClientId=self.client)
 
     def inside(self, robot: int) -> dict[str, float]:
         """How deep a robot is in what is there, m: in things by name, in "robot 1"...; what only touches is left out.

@@ -210,7 +210,7 @@ class SimulatedRobot:
             self.joints.hold(self._measured, range(len(self._measured)))
 
     def scale_friction(self, share: float) -> None:
-        """Let body and soles have this share of their friction; it stays at a reset.
+        """Let body and soles have this share of their friction until the next reset.
 
         Raises:
             BadValue: It is not above 0, or above 10.

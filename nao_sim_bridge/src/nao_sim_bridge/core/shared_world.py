@@ -106,19 +106,6 @@ class SharedWorld:
         return self.ticks * self.settings.tick_s
 
     @property
-    def air(self) -> Air:
-        """What sounds, and the clock of sound; made when somebody first asks for it, and it stays at a reset."""
-        if self._air is None:
-            from nao_sim_bridge.sound.sound_world import Air  # a world without sound needs nothing of it
-
-            self._air = Air(self.task_ids, self.settings.tick_s)
-            if self.ticks:
-                self._air.tick(self.ticks)
-            for robot in self.robots:
-                robot.begin_sound(self._air)
-        return self._air
-
-    @property
     def next_place(self) -> RobotPlace:
         """Where the world has the next robot that joins: at the origin when it does not say."""
         places = self.world.robots[len(self.robots) :]
@@ -143,6 +130,18 @@ class SharedWorld:
             self.things.begin(self.physics)
         robot.begin(self.physics)
         if self._air is not None:
+            robot.begin_sound(self._air)
+
+    def begin_sound(self) -> None:
+        """From now on there is sound, and all robots have voices and ears; it stays at a reset."""
+        if self._air is not None:
+            return
+        from nao_sim_bridge.sound.sound_world import Air  # a world without sound needs nothing of it
+
+        self._air = Air(self.task_ids, self.settings.tick_s)
+        if self.ticks:
+            self._air.tick(self.ticks)
+        for robot in self.robots:
             robot.begin_sound(self._air)
 
     def reset(self) -> None:

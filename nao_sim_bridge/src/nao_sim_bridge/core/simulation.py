@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Callable, Sequence
 
+import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.body.physics import Physics
 from nao_sim_bridge.body.physics_world import PhysicsWorld
@@ -17,12 +20,19 @@ from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture, start_pitch
 from nao_sim_bridge.render.client import Renderer
-from nao_sim_bridge.world.places import RobotPlace
-from nao_sim_bridge.world.render_state import RenderState, RobotLook
+from nao_sim_bridge.world.places import RobotPlace, checked_places, on_circle
+from nao_sim_bridge.world.render_state import RenderState, RobotLook, preset_camera
 
 if TYPE_CHECKING:
     from nao_sim_bridge.cameras.cameras import Cameras
     from nao_sim_bridge.sound.sound_world import Air, SoundWorld
+
+SEED_STEP = 7919
+"""Between the seeds of two robots of one world, so that no two of them have the same noise."""
+MAX_PIXELS = 4096
+"""Of a picture from outside, each way."""
+PICTURE_TIMEOUT = 30.0
+"""s that a picture from outside may take, which somebody waits for."""
 
 
 class Simulation:
@@ -99,7 +109,7 @@ class Simulation:
         It stays at a reset, which ends everything that plays.
         """
         if self._sound is None:
-            self.shared.air  # noqa: B018 with it comes the sound of all robots, who hear each other
+            self.shared.begin_sound()  # of all robots, who hear each other
         return self._sound
 
     @property
@@ -172,18 +182,41 @@ class Simulation:
         torso = self.snapshot.torso
         return RobotLook(torso.position, torso.orientation, self.robot.true_positions, self.robot.leds.values)
 
-    def render_state(self, snapshot: Snapshot) -> RenderState:
-        """What there is to see at a snapshot, which is the last one. Any thread."""
+    def render_state(self, snapshot: Snapshot | None = None) -> RenderState:
+        """What there is to see, with the joints as they truly are. Any thread.
+
+        Args:
+            snapshot: The last one, which is taken if nobody gives it.
+        """
+        now = snapshot or self.snapshot
         return RenderState(
-            snapshot.torso.position,
-            snapshot.torso.orientation,
+            now.torso.position,
+            now.torso.orientation,
             self.robot.true_positions,
             self.robot.leds.values,
-            snapshot.objects,
-            snapshot.placed,
-            snapshot.gone,
+            now.objects,
+            now.placed,
+            now.gone,
             self.shared.looks_beside(self),
         )
+
+    def picture(self, view: str, width: int = 640, height: int = 480) -> np.ndarray:
+        """A picture from outside, (height, width, 3) uint8 RGB. Any thread.
+
+        Args:
+            view: One of `PRESETS`, which look at this robot.
+            width: Pixels.
+            height: Pixels.
+
+        Raises:
+            UnknownName: There is no such view.
+            BadValue: The size is out of range.
+            RenderError: It cannot be drawn.
+        """
+        if not all(isinstance(size, int) and 1 <= size <= MAX_PIXELS for size in (width, height)):
+            raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
+        state = self.render_state()
+        return self.renderer.render(state, preset_camera(view, self.model, state, width, height), PICTURE_TIMEOUT)
 
     def close(self) -> None:
         """Free the engine, for all robots of the world."""
@@ -258,3 +291,24 @@ class Simulation:
             self._cameras.begin(self.snapshot, self.scene.seed)
         for call in self.after_reset:
             self.shared.guard.call(call)
+
+
+def robots_in(
+    shared: SharedWorld, scene: Scene, count: int = 1, places: Sequence[RobotPlace] = ()
+) -> tuple[Simulation, ...]:
+    """Put robots into a new world, each with a seed of its own.
+
+    Args:
+        shared: The world, in which nobody is yet.
+        scene: What they start with; the seed is that of the first one.
+        count: How many there are.
+        places: Where they stand; empty for where the world says, or else a circle.
+
+    Raises:
+        BadValue: There are too few places, they are too near to each other, or `count` is out of range.
+    """
+    there = checked_places(places or shared.world.robots or on_circle(count), count)
+    return tuple(
+        Simulation(replace(scene, seed=scene.seed + SEED_STEP * number), shared=shared, place=place)
+        for number, place in enumerate(there)
+    )

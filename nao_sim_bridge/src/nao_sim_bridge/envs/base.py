@@ -10,11 +10,11 @@ import numpy as np
 from gymnasium import spaces
 
 from nao_sim_bridge.base.rotations import rotate_back
+from nao_sim_bridge.library.nao import UP
+from nao_sim_bridge.library.nao_sim import NaoSim
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.nao_sim import FALLEN, NaoSim
 
-UP = (0.0, 0.0, 1.0)
 SCALE_OF_SPEED, SCALE_OF_LOAD = 0.1, 0.02
 """Joint speeds are observed times this, s/rad, and the load of a foot times this, 1/N: both are then about 1."""
 
@@ -104,7 +104,16 @@ class NaoEnv(gymnasium.Env):
         return self._sim
 
     def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[Any, dict]:
-        """Begin an episode."""
+        """Begin an episode.
+
+        Args:
+            seed: Of all that is random from now on; None goes on with the one before.
+            options: What the episode is about, where the environment has a word for it ("command" of NaoWalk-v0,
+                "point" of NaoReach-v0); what is not given is drawn.
+
+        Raises:
+            BadValue: A number of the options is not finite, or there are too few or too many.
+        """
         super().reset(seed=seed)
         chance = self.np_random
         wide, number = self.randomization, int(chance.integers(1 << 30))
@@ -119,7 +128,7 @@ class NaoEnv(gymnasium.Env):
             self._sim.robot.scale_friction(friction)
         self._action[:] = 0.0
         self._plan_push()
-        self._begin()
+        self._begin(options or {})
         return self._observe(), {}
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict]:
@@ -136,12 +145,10 @@ class NaoEnv(gymnasium.Env):
         self._sim.drive(values.tolist(), self._drive, self.TICKS)
         reward, over = self._judge(action)
         self._action = action
-        if self.render_mode == "human":
-            self.render()
         return self._observe(), float(reward), bool(over), False, {}
 
     def render(self) -> np.ndarray | None:
-        """A picture from outside, (480, 640, 3) uint8; a window shows itself."""
+        """A picture from outside, (480, 640, 3) uint8; None for "human", whose window shows each step by itself."""
         return self.sim.picture() if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
@@ -152,8 +159,8 @@ class NaoEnv(gymnasium.Env):
 
     # --- for the environments -----------------------------------------------------------------------------------------
 
-    def _begin(self) -> None:
-        """Draw what an episode is about; robot and world are at their start."""
+    def _begin(self, options: Mapping[str, Any]) -> None:
+        """Take from the options of `reset`, or draw, what an episode is about; robot and world are at their start."""
 
     def _judge(self, action: np.ndarray) -> tuple[float, bool]:
         """Reward of the step that has just been made, and whether the episode has failed."""
@@ -180,13 +187,6 @@ class NaoEnv(gymnasium.Env):
             dtype=np.float32,
         )
         return np.clip(seen, -LARGEST, LARGEST)
-
-    def _upright(self) -> float:
-        """Cosine of the lean of the torso: 1 upright, 0 lying."""
-        return rotate_back(self._sim.snapshot.torso.orientation, UP)[2]
-
-    def _has_fallen(self) -> bool:
-        return self._upright() < np.cos(FALLEN)
 
     def _plan_push(self) -> None:
         wide = self.randomization

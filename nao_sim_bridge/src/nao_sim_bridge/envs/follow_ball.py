@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium import spaces
 
 from nao_sim_bridge.base.errors import MoveRefused
-from nao_sim_bridge.nao_sim import NaoSim
+from nao_sim_bridge.library.nao_sim import NaoSim
 
 WIDTH, HEIGHT = 80, 60
 STEP = 0.2

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any, Mapping
+
 import numpy as np
 
 from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
 from nao_sim_bridge.envs.base import NaoEnv
+from nao_sim_bridge.library.nao import finite_numbers
 from nao_sim_bridge.model.frames import frame_of
 
 NEAR = 0.02
@@ -31,20 +34,16 @@ class NaoReachEnv(NaoEnv):
         self._body = body_kinematics(self._model)
         self._frame = frame_of(self._model, "RArm")
 
-    def reset(self, *, seed=None, options=None):  # noqa: D102 as in the base
-        self._point = None if options is None else options.get("point")
-        return super().reset(seed=seed, options=options)
-
-    def _begin(self) -> None:
+    def _begin(self, options: Mapping[str, Any]) -> None:
         drawn = CENTER + WIDE * self.np_random.uniform(-1.0, 1.0, 3)
-        self._point = drawn if self._point is None else np.asarray(self._point, dtype=float)
+        self._point = np.array(finite_numbers("point", options.get("point", drawn), 3))
 
     def _hand(self) -> np.ndarray:
         return self._body.at(self._sim.snapshot.positions).pose(self._frame)[:3, 3]
 
     def _judge(self, action: np.ndarray) -> tuple[float, bool]:
         distance = float(np.linalg.norm(self._hand() - self._point))
-        return -distance / 0.1 + float(distance < NEAR), self._has_fallen()
+        return -distance / 0.1 + float(distance < NEAR), self._sim.fallen
 
     def _more(self) -> np.ndarray:
         return np.concatenate((self._point, self._hand()))

@@ -28,4 +28,4 @@ class NaoStandEnv(NaoEnv):
     def _judge(self, action: np.ndarray) -> tuple[float, bool]:
         change = float(np.square(action - self._action).mean())
         effort = float(np.square(action).mean())
-        return 1.0 - 2.0 * (1.0 - self._upright()) - 0.1 * effort - 0.1 * change, self._has_fallen()
+        return 1.0 - 2.0 * (1.0 - np.cos(self._sim.lean)) - 0.1 * effort - 0.1 * change, self._sim.fallen

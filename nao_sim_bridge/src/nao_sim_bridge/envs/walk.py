@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any, Mapping
+
 import numpy as np
 
 from nao_sim_bridge.envs.base import ARMS, LEGS, NaoEnv
+from nao_sim_bridge.library.nao import finite_numbers
 
 FASTEST = np.array((0.12, 0.08, 0.5))
 """Velocities that are asked for, at most: ahead and to the left in m/s, to the left in rad/s."""
@@ -25,13 +28,9 @@ class NaoWalkEnv(NaoEnv):
     REACH = 0.8
     EXTRA = 6
 
-    def reset(self, *, seed=None, options=None):  # noqa: D102 as in the base
-        self._command = None if options is None else options.get("command")
-        return super().reset(seed=seed, options=options)
-
-    def _begin(self) -> None:
+    def _begin(self, options: Mapping[str, Any]) -> None:
         drawn = self.np_random.uniform(-1.0, 1.0, 3) * FASTEST
-        self._command = drawn if self._command is None else np.asarray(self._command, dtype=float)
+        self._command = np.array(finite_numbers("command", options.get("command", drawn), 3))
 
     def _velocity(self) -> np.ndarray:
         now = self._sim.snapshot
@@ -40,7 +39,7 @@ class NaoWalkEnv(NaoEnv):
     def _judge(self, action: np.ndarray) -> tuple[float, bool]:
         errors = (self._velocity() - self._command) / WIDTH
         change = float(np.square(action - self._action).mean())
-        return float(np.exp(-np.square(errors)).mean()) - 0.05 * change, self._has_fallen()
+        return float(np.exp(-np.square(errors)).mean()) - 0.05 * change, self._sim.fallen
 
     def _more(self) -> np.ndarray:
         return np.concatenate((self._command / FASTEST, self._velocity()))

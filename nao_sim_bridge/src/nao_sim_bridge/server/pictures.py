@@ -10,19 +10,16 @@ from typing import TYPE_CHECKING
 
 from PIL import Image
 
-from nao_sim_bridge.base.errors import BadValue, SimulationStopped
+from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.render.client import RenderError, Viewer
-from nao_sim_bridge.world.render_state import RenderState, preset_camera
 
 if TYPE_CHECKING:
     from nao_sim_bridge.render.window import Ray
 
 log = logging.getLogger("nao_sim.pictures")
 
-MAX_PIXELS = 4096
-TIMEOUT = 30.0
 WINDOW_PERIOD = 1.0 / 30.0
 
 
@@ -43,25 +40,10 @@ class Pictures:
             viewer.close()
             self.open_window()
 
-    def state(self) -> RenderState:
-        """What is to be seen now."""
-        simulation = self._simulation
-        return simulation.render_state(simulation.snapshot)
-
     def png(self, view: str, width: int, height: int) -> bytes:
-        """A PNG picture of the robot from a named view.
-
-        An UnknownName when there is no such view, a BadValue when the size is out of range, a RenderError when the
-        picture process failed.
-        """
-        whole = isinstance(width, int) and isinstance(height, int)
-        if not whole or not (1 <= width <= MAX_PIXELS and 1 <= height <= MAX_PIXELS):
-            raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
-        simulation = self._simulation
-        state = simulation.render_state(simulation.snapshot)
-        camera = preset_camera(view, simulation.model, state, width, height)
+        """A PNG picture from outside; see `Simulation.picture`."""
         buffer = io.BytesIO()
-        Image.fromarray(simulation.renderer.render(state, camera, TIMEOUT), "RGB").save(buffer, "PNG")
+        Image.fromarray(self._simulation.picture(view, width, height), "RGB").save(buffer, "PNG")
         return buffer.getvalue()
 
     def open_window(self) -> None:
@@ -91,7 +73,7 @@ class Pictures:
     def _mirror(self, viewer: Viewer) -> None:
         while not self._closing.wait(WINDOW_PERIOD):
             try:
-                viewer.show(self.state())
+                viewer.show(self._simulation.render_state())
             except RenderError as error:
                 if not self._closing.is_set() and viewer is self._viewer:
                     log.warning("the window is gone: %s", error)

@@ -12,14 +12,11 @@ from nao_sim_bridge.base.closing import Step, close_all
 from nao_sim_bridge.base.errors import BadValue, NotAllowed, SimulationStopped
 from nao_sim_bridge.core.runner import SimulationRunner
 from nao_sim_bridge.core.shared_world import SharedWorld
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.simulation import Simulation, robots_in
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.server.simulator_server import SimulatorServer, renderer_for, scene_in
-from nao_sim_bridge.world.places import checked_places, on_circle
 
-SEED_STEP = 7919
-"""Between the seeds of two robots, so that no two of them have the same noise."""
 HIGHEST_PORT = 65535
 ANSWER_TIME = 0.5
 """How long who shuts a robot down has to be answered before it leaves the network, s of wall time."""
@@ -145,14 +142,10 @@ def open_server(options: ServerOptions) -> SimulatorServer | RobotsServer:
     return SimulatorServer(options) if options.robots == 1 else RobotsServer(options)
 
 
-def _simulations(options: ServerOptions, renderer: str | Renderer) -> list[Simulation]:
+def _simulations(options: ServerOptions, renderer: str | Renderer) -> tuple[Simulation, ...]:
     """All robots, in a new world."""
     shared = SharedWorld(options.scene, renderer=renderer)
-    places = checked_places(options.places or shared.world.robots or on_circle(options.robots), options.robots)
-    simulations = [
-        Simulation(replace(options.scene, seed=options.scene.seed + SEED_STEP * number), shared=shared, place=place)
-        for number, place in enumerate(places)
-    ]
+    simulations = robots_in(shared, options.scene, options.robots, options.places)
     _refuse_overlaps(shared, keep_renderer=isinstance(renderer, Renderer))
     return simulations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Mapping, Sequence
 
 import pybullet
@@ -17,6 +18,23 @@ NEARLY = 0.02
 """What is nearer is woken by a change, m."""
 DISTANCE = 8
 """Column of PyBullet's closest points."""
+
+
+@dataclass(frozen=True)
+class Inventory:
+    """Which things were there, and where those were that no physics moves.
+
+    Attributes:
+        ids: As of `WorldBodies`.
+        placed: As there.
+        gone: As there.
+        fixed: Poses in world, by name.
+    """
+
+    ids: Mapping[str, int]
+    placed: tuple[WorldObject, ...]
+    gone: frozenset[str]
+    fixed: Mapping[str, Pose]
 
 
 class WorldBodies:
@@ -39,24 +57,24 @@ class WorldBodies:
         self._loose = {thing.name: self.ids[thing.name] for thing in world.objects if thing.mass > 0.0}
         # What cannot be moved by the physics is where it was put last: no need to ask the engine.
         self._fixed: dict[str, Pose] = {}
-        self._marked: tuple[dict[str, int], dict[str, Pose]] = ({}, {})
 
-    def mark(self) -> None:
-        """Remember what is there, and where; see `PhysicsWorld.keep`."""
-        self._marked = dict(self.ids), dict(self._fixed)
+    def inventory(self) -> Inventory:
+        """What is there now, and where."""
+        return Inventory(dict(self.ids), self.placed, self.gone, dict(self._fixed))
 
-    def restore(self) -> bool:
-        """Believe what is there to be where it was at `mark`.
+    def fits(self, then: Inventory) -> bool:
+        """Whether nothing has come or gone since then; the engine gives numbers of removed bodies to new ones."""
+        same = [*map(id, self.placed)] == [*map(id, then.placed)]
+        return same and self.ids == then.ids and self.gone == then.gone
 
-        Returns:
-            False where something has come or gone since, or can be moved: the engine does not put such bodies back to
-            the last bit.
-        """
-        ids, fixed = self._marked
-        if self.ids != ids or self._loose:
-            return False
-        self._fixed = dict(fixed)
-        return True
+    def believe(self, then: Inventory) -> None:
+        """Take what no physics moves to be where it was then."""
+        self._fixed = dict(then.fixed)
+
+    @property
+    def loose(self) -> bool:
+        """Whether the physics can move something."""
+        return bool(self._loose)
 
     @property
     def things(self) -> Mapping[str, WorldObject]:

@@ -42,7 +42,7 @@ class Bare:
     def __init__(self, simulation: Simulation, width: int, height: int) -> None:
         self._client = pybullet.connect(pybullet.DIRECT)
         self._size = (width, height)
-        state = simulation.render_state(simulation.snapshot)
+        state = simulation.render_state()
         world = load_world(WORLD)
         stage = Stage(world, simulation.scene.version, self._client, floor=True, paint_lamps=False)
         stage.show(state, headless=True)

@@ -24,7 +24,7 @@ TICKS = 3
 
 def bare_steps(nao: NaoSim, count: int):
     """Steps of the engine alone, in the world of a robot."""
-    client = nao._shared.physics.client
+    client = nao._session.shared.physics.client
     step = pybullet.stepSimulation
 
     def run() -> None:
@@ -59,7 +59,7 @@ def driven(rounds: int) -> list[Sample]:
     """What a step of an environment lets the simulator do, against as many steps of the engine."""
     with NaoSim() as nao:
         stand = list(nao.commands.values())
-        count = TICKS * nao._shared.settings.steps_per_tick
+        count = TICKS * nao._session.shared.settings.steps_per_tick
         return interleave([lambda: nao.drive(stand, ticks=TICKS), bare_steps(nao, count)], rounds, warm_up=50)
 
 

@@ -1,0 +1,262 @@
+"""A simulated NAO as a library: no ROS and no network, as fast as this computer goes.
+
+    from nao_sim_bridge import NaoSim
+
+    with NaoSim(posture="Stand", seed=1) as nao:
+        nao.walk_to(0.5, 0.0, 0.3)
+        print(nao.angles["HeadYaw"], nao.pose_torso_in_world, nao.imu.angles, nao.feet.center_of_pressure)
+
+Time passes in `step`, and in the calls that wait for what they have begun. Units are SI (m, rad, s, N, kg), hands are 0
+(closed) to 1 (open), frames those of REP 103: x ahead, y to the left, z up. Arrays of joints are in ALMotion's order
+of the body, which is that of `joint_names`. Nothing is built before it is asked for: a simulation in which nobody looks
+or listens has no cameras, no sound and no process beside it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from nao_sim_bridge.base.errors import BadValue, NotAllowed
+from nao_sim_bridge.core.saved_state import SavedState
+from nao_sim_bridge.core.scene import Scene
+from nao_sim_bridge.core.shared_world import SharedWorld
+from nao_sim_bridge.core.simulation import SEED_STEP, robots_in
+from nao_sim_bridge.library.nao import Nao, finite_numbers
+from nao_sim_bridge.library.session import ENDLESS, Session
+from nao_sim_bridge.world.places import RobotPlace
+
+SIZES: Mapping[str, Any] = {"ball": 0.03, "box": [0.1, 0.1, 0.1], "cylinder": [0.05, 0.2]}
+"""Of things that are placed by their kind alone, m."""
+
+
+class NaoSim(Nao):
+    """A world with one NAO or more, in which time passes when it is told to. It is also its first robot.
+
+    Attributes:
+        robots: All robots, itself first.
+
+    Args:
+        posture: In which the robots start, awake and stiff; None for limp ones that crouch, as after boot.
+        seed: Of all random numbers: equal seeds and equal calls give equal runs, to the last bit.
+        world: Name of a world that comes along, or path of a world file; see docs/worlds.md.
+        robots: How many there are.
+        places: Where they stand, (x, y, yaw) each; those of the world, or a circle, if nobody says.
+        version: Of the robots, "V6" or "V5".
+        noise: Scale of the sensors' errors: 0 none, 1 those of a real robot.
+        delay: How late joint angles, inertial unit and foot forces arrive, s.
+        friction: Coefficient between soles and floor; None for what the world says.
+        payload: Mass that the torso carries besides its own, kg.
+        gui: Show it in a window; time then passes no faster than the clock on the wall.
+
+    Raises:
+        SimulationError: World, posture or places cannot be used.
+    """
+
+    def __init__(
+        self,
+        posture: str | None = "Stand",
+        seed: int = 0,
+        world: str | Path = "empty",
+        robots: int = 1,
+        places: Sequence[Sequence[float]] = (),
+        version: str = "V6",
+        noise: float = 0.0,
+        delay: float = 0.0,
+        friction: float | None = None,
+        payload: float = 0.0,
+        gui: bool = False,
+    ) -> None:
+        scene = Scene(str(world), version, posture or "Crouch", seed, friction, payload, noise, delay)
+        self._places = tuple(RobotPlace(*finite_numbers("place", place, 3)) for place in places)
+        session = Session(robots_in(SharedWorld(scene), scene, robots, self._places), gui)
+        super().__init__(session, 0)
+        self.robots = (self, *(Nao(session, number) for number in range(1, robots)))
+        self._awake = posture is not None
+        self._wake()
+
+    def __enter__(self) -> NaoSim:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the engine, and end the network and the programs that work for it."""
+        self._session.close()
+
+    # --- time ---------------------------------------------------------------------------------------------------------
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return self._simulation.time
+
+    @property
+    def tick_s(self) -> float:
+        """Length of a tick, s: sensors are read and motors are told once in it."""
+        return self._session.tick_s
+
+    def step(self, seconds: float | None = None) -> None:
+        """Let time pass.
+
+        Args:
+            seconds: Simulated, rounded to ticks; None for one tick.
+
+        Raises:
+            BadValue: It is negative or not finite.
+        """
+        seconds = self.tick_s if seconds is None else seconds
+        if not 0.0 <= seconds < ENDLESS:
+            raise BadValue("seconds", seconds, "0 or more, finite")
+        self._session.advance(round(seconds / self.tick_s))
+
+    def reset(self, seed: int | None = None, payload: float | None = None, delay: float | None = None) -> None:
+        """Put robots and world to their start; what they do ends. What is None stays as it was.
+
+        Args:
+            seed: Of what is random from now on.
+            payload: As for the constructor.
+            delay: As for the constructor.
+
+        Raises:
+            BadValue: A number is not in its range.
+        """
+        changes = {"payload": payload, "sensor_delay": delay}
+        changes = {name: value for name, value in changes.items() if value is not None}
+
+        def start_again() -> None:
+            for number, simulation in enumerate(self._session.simulations):
+                if seed is not None:
+                    changes["seed"] = seed + SEED_STEP * number
+                simulation.vary(**changes)
+            self._session.shared.reset()
+            self._wake()
+
+        self._session.do(start_again)
+
+    def save_state(self) -> SavedState:
+        """The state of robots and world, for `restore_state` of this object; a quarter of a megabyte while it is held.
+
+        Raises:
+            NotAllowed: A motion or a walk is under way, or the robot is served.
+        """
+        if self._session.served:
+            raise NotAllowed("the state of a robot that is served cannot be saved")
+        for robot in (simulation.robot for simulation in self._session.simulations):
+            if robot.locomotion.active or robot.motion.tasks():
+                raise NotAllowed("a state can be saved while no motion and no walk is under way")
+        return SavedState(self._session.shared, self._session.simulations)
+
+    def restore_state(self, state: SavedState) -> None:
+        """Let everything be as it was when a state was saved, as often as one likes; time as well.
+
+        Raises:
+            BadValue: The state is of another simulation, was dropped, or things have come or gone since.
+        """
+        self._session.do(lambda: state.restore(self._session.shared))
+
+    # --- the world --------------------------------------------------------------------------------------------------
+
+    def place(self, thing: str | Mapping[str, Any], at: Sequence[float], **more: Any) -> str:
+        """Put a thing into the world, or elsewhere when there is one of its name already.
+
+        Args:
+            thing: "ball" (a red one of 6 cm), "box", "cylinder", "person" or another kind of a world file, which then
+                is its name, too; or a whole entry of a world file. See docs/worlds.md.
+            at: [x, y, z] of its centre, m.
+            more: Further fields of the entry: `name`, `color`, `mass`, `ball=0.05` for the radius...
+
+        Returns:
+            Its name.
+
+        Raises:
+            SimulationError: There is no such thing, or a robot is where it should be.
+        """
+        from nao_sim_bridge.world.objects import read_object  # a world without things needs nothing of it
+
+        position = list(finite_numbers("at", at, 3))
+        entry = dict(thing) if isinstance(thing, Mapping) else {"name": thing, thing: SIZES.get(thing, {})}
+        entry.update(more, position=position)
+        name = str(entry["name"])
+
+        def put() -> None:
+            things = self._session.shared.things
+            if name in things.things:
+                things.move(name, position, None)
+            else:
+                things.place(read_object(entry, "thing", Path))
+
+        self._session.do(put)
+        return name
+
+    def remove(self, name: str) -> None:
+        """Take a thing out of the world.
+
+        Raises:
+            UnknownName: There is none of this name.
+        """
+        self._session.do(lambda: self._session.shared.things.remove(name))
+
+    @property
+    def things(self) -> dict[str, tuple[float, ...]]:
+        """Where everything is that can move: x, y, z in m, roll, pitch, yaw in rad, by name."""
+        return self._session.do(lambda: self._session.shared.things.places())
+
+    def picture(self, view: str = "three_quarter", width: int = 640, height: int = 480) -> np.ndarray:
+        """A picture from outside, (height, width, 3) uint8 RGB.
+
+        Args:
+            view: "front", "three_quarter", "side", "back", "far", "face", "room", "robots".
+            width: Pixels.
+            height: Pixels.
+
+        Raises:
+            UnknownName: There is no such view.
+            BadValue: The size is out of range.
+            RenderError: It cannot be drawn.
+        """
+        return self._simulation.picture(view, width, height)
+
+    def save_picture(self, path: str | Path, view: str = "three_quarter", width: int = 640, height: int = 480) -> None:
+        """As `picture`, written to a PNG file."""
+        from nao_sim_bridge.render.png import write_png
+
+        write_png(Path(path), self.picture(view, width, height))
+
+    # --- NAOqi ------------------------------------------------------------------------------------------------------
+
+    def serve(self, port: int = 9559, address: str = "127.0.0.1", speed: float | None = None) -> str:
+        """Let programs for NAOqi work with the first robot, while this object looks on and into the world.
+
+        Args:
+            port: To listen on; 0 takes a free one.
+            address: To listen on; "0.0.0.0" for the whole network.
+            speed: Simulated seconds a second in which time passes by itself; None: time passes in `step` only.
+
+        Returns:
+            What a program connects to, "tcp://127.0.0.1:9559".
+
+        Raises:
+            NotAllowed: It is served already, or there is more than one robot.
+            RuntimeError: The address cannot be had.
+        """
+        return self._session.serve(port, address, speed, self._places)
+
+    # --- inside -------------------------------------------------------------------------------------------------------
+
+    def _wake(self) -> None:
+        """Begin: the robots are stiff, and time passes until their feet have felt the floor."""
+        simulations = self._session.simulations
+        if self._awake:
+            for simulation in simulations:
+                everything = range(len(simulation.model.joints))
+                simulation.robot.motion.set_stiffness_now(dict.fromkeys(everything, 1.0))
+        latest = max(simulation.scene.sensor_delay for simulation in simulations)
+        for _ in range(1 + round(latest / self.tick_s)):
+            self._session.shared.tick()
