@@ -14,7 +14,6 @@ from nao_sim_bridge.core.hands import COME_TIME, LEAVE_TIME
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.touch_names import CHEST_BUTTON, HEAD, SENSORS
-from nao_sim_bridge.server.pictures import Pictures
 from nao_sim_bridge.world.objects import read_object
 
 MODEL = load_model()
@@ -78,7 +77,7 @@ def test_a_robot_with_noise_feels_errors_of_its_seed_but_the_truth_stays_true(be
 def test_a_picture_shows_the_joints_as_they_are_not_as_noisy_sensors_say(bench):
     one = bench("Crouch", sensor_noise=1.0)
     one.run(0.1)
-    shown = Pictures(one.simulation, None).state()
+    shown = one.simulation.render_state()
     assert shown.joint_positions == one.robot.true_positions != one.now.positions
 
 
