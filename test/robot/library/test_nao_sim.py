@@ -254,6 +254,23 @@ def test_a_robot_that_was_driven_walks_afterwards(nao):
     assert nao.walk_to(0.1).wait() is True
 
 
+def test_a_reset_after_a_fall_is_a_fresh_start():
+    def struggles(sim, seed):
+        sim.reset(3)
+        chance = np.random.default_rng(seed)
+        for step in range(30):
+            if step == 5:
+                sim.push("Torso", (80.0, 30.0, 0.0), 0.1)
+            sim.drive(np.asarray(sim.angles) + chance.uniform(-0.5, 0.5, 26), ticks=3)
+            yield sim.pose_torso_in_world, tuple(sim.angles.values())
+
+    with NaoSim(seed=3) as sim, NaoSim(seed=3) as other:
+        for seed in range(4):
+            again = list(struggles(other, seed))
+            assert other.fallen
+        assert again == list(struggles(sim, seed))
+
+
 def test_a_reset_after_driving_is_a_fresh_start(nao):
     nao.reset(1)
     once = felt(nao)

@@ -13,8 +13,8 @@ from nao_sim_bridge.world.world import FLOOR, World
 
 DISTANCE = 8
 """Column of PyBullet's closest points."""
-AWAY = 100.0
-"""m, in which nothing touches a robot."""
+MOVING, ALL = 1, -1
+"""Group of the engine for what moves, and the mask of what meets every group."""
 DEEPEST = 0.002
 """What is inside the robot by less only touches it, m."""
 
@@ -58,6 +58,7 @@ class PhysicsWorld:
         self.robots: list[int] = []
         self._kept: SavedBodies | None = None
         self._dropped: list[int] = []
+        self._groups: dict[tuple[int, int], int] = {}
 
     def step(self, pushes: Sequence[Callable[[], None]] = ()) -> None:
         """Advance by one tick; `pushes` are called before each step, for the engine forgets forces after one."""
@@ -96,11 +97,11 @@ class PhysicsWorld:
 
     def load(self, saved: SavedBodies) -> None:
         """Put all bodies, which `fits` must say are the same, to where they were at `save`."""
-        # The engine keeps what it knows of two bodies as long as they touch, and would begin with forces of before.
-        for number, robot in enumerate(self.robots):
-            away = (0.0, 0.0, AWAY * (number + 1))
-            pybullet.resetBasePositionAndOrientation(robot, away, (0.0, 0.0, 0.0, 1.0), physicsClientId=self.client)
-        pybullet.performCollisionDetection(physicsClientId=self.client)
+        # The engine keeps pairs of shapes that are near each other, in the order and with the forces of before. It
+        # forgets those of a link that is put into its groups anew.
+        for robot in self.robots:
+            for link in range(-1, pybullet.getNumJoints(robot, physicsClientId=self.client)):
+                self.let_meet(robot, link, self.groups(robot, link))
         pybullet.restoreState(stateId=saved.state, physicsClientId=self.client)
         self.bodies.believe(saved.things)
 
@@ -114,6 +115,15 @@ class PhysicsWorld:
     def _free(self) -> None:
         while self._dropped:
             pybullet.removeState(self._dropped.pop(), physicsClientId=self.client)
+
+    def groups(self, robot: int, link: int) -> int:
+        """The groups that a link of a robot is in, as bits."""
+        return self._groups.get((robot, link), MOVING)
+
+    def let_meet(self, robot: int, link: int, groups: int) -> None:
+        """Put a link (-1: the torso) of a robot into groups, as bits; it meets what is in any, and what meets them."""
+        self._groups[robot, link] = groups
+        pybullet.setCollisionFilterGroupMask(robot, link, groups, ALL, physicsClientId=self.client)
 
     def inside(self, robot: int) -> dict[str, float]:
         """How deep a robot is in what is there, m: in things by name, in "robot 1"...; what only touches is left out.

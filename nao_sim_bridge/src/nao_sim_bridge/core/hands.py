@@ -34,9 +34,8 @@ PATIENCE = 1.5
 LONGEST_TOUCH = 600.0
 STROKE_BEGIN, STROKE_SHARE = 0.15, 0.55
 """A stroke moves in the middle of its time, as shares of it: the hand is a little late, and must arrive."""
-# PyBullet's groups of collisions: what moves, and from which bit on they are free; a link is in one more for each hand
-# that touches it.
-MOVING, ALL, FIRST_BIT = 1, -1, 1 << 8
+FIRST_BIT = 1 << 8
+"""From here on the engine's groups are free; a link is in one more for each hand that touches it."""
 UNTURNED = (0.0, 0.0, 0.0, 1.0)
 COMING, TOUCHING, LEAVING = "coming", "touching", "leaving"
 
@@ -75,14 +74,13 @@ class Hands:
         self._physics: Physics | None = None
         self._robot: SimulatedRobot | None = None
         self._hands: Dict[str, _Hand] = {}
-        self._groups: Dict[int, int] = {}
 
     def begin(self, physics: Physics, robot: SimulatedRobot) -> None:
         """Start all over with a robot: no hand is there any more."""
         if self._physics is not None and self._physics.shared is physics.shared:
             for hand in list(self._hands.values()):
                 self._remove(hand)
-        ended, self._hands, self._groups = self._hands, {}, {}
+        ended, self._hands = self._hands, {}
         self._physics, self._robot = physics, robot
         for hand in ended.values():
             hand.task.kill()
@@ -255,12 +253,9 @@ class Hands:
 
         By groups, not by pairs: those belong to the number of a body, which the engine gives to others afterwards.
         """
-        index = self._index(link)
-        self._groups[index] = self._groups.get(index, MOVING) | bit if touch else self._groups[index] & ~bit
-        physics = self._physics
-        pybullet.setCollisionFilterGroupMask(
-            physics.robot, index, self._groups[index], ALL, physicsClientId=physics.client
-        )
+        index, physics = self._index(link), self._physics
+        groups = physics.shared.groups(physics.robot, index)
+        physics.shared.let_meet(physics.robot, index, groups | bit if touch else groups & ~bit)
 
     def _index(self, link: str) -> int:
         return self._physics.links.get(self._model.link(link).alt_name, -1)
