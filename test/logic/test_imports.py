@@ -79,7 +79,8 @@ LAYERS = (
     Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "cli")),
     *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
     Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi"}),
-    Layer("sim", SIMULATOR, frozenset({"pybullet"}), ("naoqi", "server", "ros", "testing", *FRONT)),
+    Layer("engine", f"{SIMULATOR}/base/engine.py", frozenset({"pybullet"})),
+    Layer("sim", SIMULATOR, frozenset({"engine"}), ("base/engine.py", "naoqi", "server", "ros", "testing", *FRONT)),
     Layer("modules", f"{SIMULATOR}/naoqi", frozenset({"sim", "qi"})),
     Layer("server", f"{SIMULATOR}/server", frozenset({"modules", "sim", "qi"})),
     *(Layer("front", f"{SIMULATOR}/{name}", frozenset({"server", "sim"})) for name in FRONT),
@@ -122,6 +123,8 @@ def layer_of(module: str) -> str | None:
     if root == "nao_sim_bridge":
         own = {"naoqi": "modules", "server": "server", "ros": "ros side", "testing": "testing"}
         first = inner[0] if inner else "__init__"
+        if inner[:2] == ["base", "engine"]:
+            return "engine"
         return "front" if {first, f"{first}.py"} & {*FRONT} else own.get(first, "sim")
     if root == "nao_library_modules":
         return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "cli") else "library"

@@ -10,9 +10,9 @@ import numpy as np
 import pybullet
 import pytest
 
+from nao_sim_bridge.base.engine import LOAD_FLAGS
 from nao_sim_bridge.model.appearance import load_appearance
 from nao_sim_bridge.model.body_mass import center_of_links
-from nao_sim_bridge.model.collision import LOAD_FLAGS
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model

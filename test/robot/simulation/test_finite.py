@@ -2,7 +2,6 @@
 
 import math
 
-import pybullet
 import pytest
 
 from nao_sim_bridge.base.errors import NotFinite, check_finite
@@ -91,7 +90,7 @@ def test_a_world_whose_engine_has_lost_a_body_begins_anew(bench, world_file, bod
     walk = one.robot.motion.follow("glide", [0], lambda _: {0: SmoothCurve((0.0, 5.0), (0.0, 1.0))})
     physics, before = one.simulation._physics, one.simulation.ticks
     number = physics.robot if body == "robot" else physics.bodies.ids["ball"]
-    pybullet.resetBaseVelocity(number, (NAN, 0.0, 0.0), (0.0, 0.0, 0.0), physicsClientId=physics.client)
+    physics.engine.resetBaseVelocity(number, (NAN, 0.0, 0.0), (0.0, 0.0, 0.0))
     one.run(0.1)
     (failure,) = one.simulation.shared.guard.failures()
     assert failure.culprit == "physics, which begins anew," and "numbers must be finite" in failure.error

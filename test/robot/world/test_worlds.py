@@ -3,11 +3,11 @@
 import math
 from pathlib import Path
 
-import pybullet
 import pytest
 import yaml
 from sounds import sound_of
 
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.rotations import roll_pitch_yaw, rotate
 from nao_sim_bridge.base.samples import sine
@@ -37,43 +37,37 @@ def world(*objects, **floor):
     return read_world({"floor": {"friction": 1.0, **floor}, "objects": list(objects)}, "test", "test.yaml")
 
 
-class Engine:
+class Bare(Engine):
     """A physics engine without a robot."""
 
-    def __init__(self):
-        self.client = pybullet.connect(pybullet.DIRECT)
-
-    def of(self, function, *arguments, **options):
-        return getattr(pybullet, function)(*arguments, physicsClientId=self.client, **options)
-
     def build(self, of, visual=False):
-        return build_world(of, self.client, visual=visual)
+        return build_world(of, self, visual=visual)
 
     def settle(self, seconds=2.0):
-        self.of("setGravity", 0, 0, -9.81)
+        self.setGravity(0, 0, -9.81)
         for _ in range(round(240 * seconds)):
-            self.of("stepSimulation")
+            self.stepSimulation()
 
     def pose(self, body):
-        return self.of("getBasePositionAndOrientation", body)
+        return self.getBasePositionAndOrientation(body)
 
     def hit(self, start, end):
         """(body, place) that a ray meets."""
-        (hit,) = self.of("rayTestBatch", [start], [end])
+        (hit,) = self.rayTestBatch([start], [end])
         return hit[0], hit[3]
 
     def friction(self, body):
-        return self.of("getDynamicsInfo", body, -1)[1]
+        return self.getDynamicsInfo(body, -1)[1]
 
     def colors(self, body):
-        return {tuple(look[7][:3]) for look in self.of("getVisualShapeData", body)}
+        return {tuple(look[7][:3]) for look in self.getVisualShapeData(body)}
 
 
 @pytest.fixture
 def engine():
-    made = Engine()
+    made = Bare()
     yield made
-    made.of("disconnect")
+    made.disconnect()
 
 
 def test_things_fall_lie_and_are_seen_at_their_places(engine):
@@ -83,9 +77,9 @@ def test_things_fall_lie_and_are_seen_at_their_places(engine):
     for thing in seen.objects:
         assert engine.pose(bodies[thing.name])[0] == pytest.approx(thing.position)
         assert list(engine.colors(bodies[thing.name])) == [pytest.approx(thing.parts[0].color)]
-    engine.of("resetSimulation")
+    engine.resetSimulation()
     bodies = engine.build(world({**CUBE, "position": [1.0, 0.0, 0.4]}, TABLE))
-    assert engine.friction(bodies["floor"]) == 1.0 and engine.of("getDynamicsInfo", bodies["table"], -1)[0] == 0.0
+    assert engine.friction(bodies["floor"]) == 1.0 and engine.getDynamicsInfo(bodies["table"], -1)[0] == 0.0
     engine.settle()
     assert engine.pose(bodies["ball"])[0] == pytest.approx((1.0, 0.0, 0.34), abs=2e-3)
 
@@ -99,7 +93,7 @@ def test_an_object_of_parts_is_one_body_with_its_frame_in_its_centre_of_mass(eng
     position, orientation = engine.pose(body)
     assert position == pytest.approx(chair.position, abs=2e-3)
     assert roll_pitch_yaw(orientation) == pytest.approx((0.0, 0.0, 0.5), abs=2e-3)
-    engine.of("resetSimulation")
+    engine.resetSimulation()
     engine.build(world(CHAIR))
     heights = [engine.hit((x, 1.0, 1.0), (x, 1.0, -0.1))[1][2] for x in (2.0, 1.81, 2.3)]
     assert heights == pytest.approx([0.31, 0.61, 0.0], abs=2e-3)
@@ -114,7 +108,7 @@ def test_all_bumps_can_be_felt_and_have_the_friction_of_the_floor_and_rugs_are_o
         x, y, _ = plate.xyz
         body, place = engine.hit((x, y, 0.1), (x, y, -0.1))
         assert body != floor and place[2] >= plate.size[2] - 1e-4 and engine.friction(body) == 0.9
-    engine.of("resetSimulation")
+    engine.resetSimulation()
     floor = engine.build(world(rugs=[RUG]))["floor"]
     body, place = engine.hit((1.0, 0.5, 0.1), (1.0, 0.5, -0.1))
     assert body == floor and place[2] == pytest.approx(0.0, abs=1e-6)

@@ -9,8 +9,6 @@ from dataclasses import replace
 from functools import partial
 from typing import Callable, Collection, Mapping, Sequence
 
-import pybullet
-
 from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.readings import BodyReadings, Contact, JointReadings, Pose
 from nao_sim_bridge.base.rotations import Vector3
@@ -47,7 +45,7 @@ class Physics:
 
     Attributes:
         shared: The world that it is in.
-        client: PyBullet's physics client.
+        engine: The world in the physics engine.
         bodies: The floor and the things of the world.
         robot: PyBullet's body id of the NAO.
         start: Where on the floor it starts.
@@ -77,12 +75,12 @@ class Physics:
         self._settings = settings
         self.shared = world if isinstance(world, PhysicsWorld) else PhysicsWorld(world, settings)
         self._floor = self.shared.world.floor
-        self.client = self.shared.client
+        self.engine = self.shared.engine
         self.bodies = self.shared.bodies
-        self.robot = load_robot(self.client, model)
+        self.robot = load_robot(self.engine, model)
         self.shared.robots.append(self.robot)
-        self.links = index_by(self.client, self.robot, LINK_NAME)
-        joints = index_by(self.client, self.robot, JOINT_NAME)
+        self.links = index_by(self.engine, self.robot, LINK_NAME)
+        joints = index_by(self.engine, self.robot, JOINT_NAME)
         self._indices = [joints[j.name] for j in model.joints]
         self._travel = model.simulated_hand.travel
         self._hands = [i for i, j in enumerate(model.joints) if j.is_hand]
@@ -90,16 +88,16 @@ class Physics:
         gains = {"positionGains": settings.motor.position_gain, "velocityGains": settings.motor.velocity_gain}
         self._gains = {name: [gain] * len(self._indices) for name, gain in gains.items()}
         self._forget_efforts()
-        keep_apart(self.client, self.robot, model, self.links)
-        set_friction(self.client, self.robot, settings.contact, self.links)
+        keep_apart(self.engine, self.robot, model, self.links)
+        set_friction(self.engine, self.robot, settings.contact, self.links)
         self.payload, self.friction = 0.0, 1.0
         self.carry(payload)
         speeds = self._to_engine_speeds([j.max_velocity for j in model.joints])
-        limit_speeds(self.client, self.robot, dict(zip(self._indices, speeds)))
-        couple_hips(self.client, self.robot, joints, settings.motor.coupling_force_n)
-        local_position, local_orientation = pybullet.getDynamicsInfo(self.robot, -1, physicsClientId=self.client)[3:5]
+        limit_speeds(self.engine, self.robot, dict(zip(self._indices, speeds)))
+        couple_hips(self.engine, self.robot, joints, settings.motor.coupling_force_n)
+        local_position, local_orientation = self.engine.getDynamicsInfo(self.robot, -1)[3:5]
         self._torso_to_com = (local_position, local_orientation)
-        self._com_to_torso = pybullet.invertTransform(local_position, local_orientation)
+        self._com_to_torso = self.engine.invertTransform(local_position, local_orientation)
         self.start = place
         self.restart(angles, pitch)
 
@@ -112,7 +110,7 @@ class Physics:
     def carry(self, payload: float) -> None:
         """Let the torso carry this mass, kg, and no other."""
         if payload != self.payload:
-            load_torso(self.client, self.robot, payload - self.payload)
+            load_torso(self.engine, self.robot, payload - self.payload)
             self.payload = payload
 
     def scale_friction(self, share: float) -> None:
@@ -121,7 +119,7 @@ class Physics:
             contact = self._settings.contact
             body, sole = share * contact.body_friction, share * contact.sole_friction
             scaled = replace(contact, body_friction=body, sole_friction=sole)
-            set_friction(self.client, self.robot, scaled, self.links)
+            set_friction(self.engine, self.robot, scaled, self.links)
             self.friction = share
 
     def restart(self, angles: Sequence[float], pitch: float | None = None) -> None:
@@ -169,18 +167,18 @@ class Physics:
         """
         check_finite("angles of the robot", angles)
         for index, angle in zip(self._indices, self._to_engine(angles)):
-            pybullet.resetJointState(self.robot, index, angle, 0.0, physicsClientId=self.client)
+            self.engine.resetJointState(self.robot, index, angle, 0.0)
         if pitch is not None:
-            orientation = pybullet.getQuaternionFromEuler((roll, pitch, yaw))
+            orientation = self.engine.getQuaternionFromEuler((roll, pitch, yaw))
             self._put_over_floor((0.0, 0.0), REACH, orientation)
             self._put_over_floor(xy, REACH - self._clearance(), orientation)
             return
         self._reset_base((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
         foot_orientation = self.link_pose("l_ankle").orientation
-        upright = pybullet.invertTransform((0, 0, 0), foot_orientation)[1]
-        heading = pybullet.getEulerFromQuaternion(upright)[2]
-        turn = pybullet.getQuaternionFromEuler((0, 0, yaw - heading))
-        orientation = pybullet.multiplyTransforms((0, 0, 0), turn, (0, 0, 0), upright)[1]
+        upright = self.engine.invertTransform((0, 0, 0), foot_orientation)[1]
+        heading = self.engine.getEulerFromQuaternion(upright)[2]
+        turn = self.engine.getQuaternionFromEuler((0, 0, yaw - heading))
+        orientation = self.engine.multiplyTransforms((0, 0, 0), turn, (0, 0, 0), upright)[1]
         self._reset_base((0.0, 0.0, 0.0), orientation)
         soles = [self.link_pose(f).position[2] - self._model.sole_height for f in ("l_ankle", "r_ankle")]
         self._put_over_floor(xy, -min(soles), orientation)
@@ -202,7 +200,7 @@ class Physics:
                 targets[index], velocities[index] = rests[index], 0.0
         check_finite("targets, speeds and torques of the motors", [*targets, *velocities, *self._forces])
         self._control(
-            pybullet.POSITION_CONTROL,
+            self.engine.POSITION_CONTROL,
             targetPositions=targets,
             targetVelocities=velocities,
             forces=self._forces,
@@ -213,25 +211,25 @@ class Physics:
         """Send all joints to (26,) angles, rad (hands 0..1), with the full torque and the gains of their motors."""
         self._efforts = ()  # `drive` has to tell forces anew
         targets = self._to_engine(angles)
-        self._control(pybullet.POSITION_CONTROL, targetPositions=targets, forces=self.torque_limits, **self._gains)
+        self._control(self.engine.POSITION_CONTROL, targetPositions=targets, forces=self.torque_limits, **self._gains)
 
     def drive_velocities(self, speeds: Sequence[float]) -> None:
         """Let all joints turn at (26,) speeds, rad/s (hands 1/s), with at most the torque of their motors."""
         self._efforts = ()
         targets = self._to_engine_speeds(speeds)
-        self._control(pybullet.VELOCITY_CONTROL, targetVelocities=targets, forces=self.torque_limits)
+        self._control(self.engine.VELOCITY_CONTROL, targetVelocities=targets, forces=self.torque_limits)
 
     def free_joints(self) -> None:
         """Let nothing but `turn_joints` turn the joints; their gears have no friction then."""
         self._efforts = ()
-        self._control(pybullet.VELOCITY_CONTROL, forces=[0.0] * len(self._indices))
+        self._control(self.engine.VELOCITY_CONTROL, forces=[0.0] * len(self._indices))
 
     def turn_joints(self, torques: Sequence[float]) -> None:
         """Apply (26,) torques, N m (hands N m of their simulated finger), in the coming step of the engine alone."""
-        self._control(pybullet.TORQUE_CONTROL, forces=torques)
+        self._control(self.engine.TORQUE_CONTROL, forces=torques)
 
     def _control(self, mode: int, **wanted: Sequence[float]) -> None:
-        pybullet.setJointMotorControlArray(self.robot, self._indices, mode, physicsClientId=self.client, **wanted)
+        self.engine.setJointMotorControlArray(self.robot, self._indices, mode, **wanted)
 
     def _forget_efforts(self) -> None:
         self._efforts: Sequence[float] = ()
@@ -262,13 +260,11 @@ class Physics:
     def _push(self, link: str, force: Vector3) -> None:
         index = self.links.get(link, -1)
         position = (
-            pybullet.getBasePositionAndOrientation(self.robot, physicsClientId=self.client)[0]
+            self.engine.getBasePositionAndOrientation(self.robot)[0]
             if index < 0
-            else pybullet.getLinkState(self.robot, index, physicsClientId=self.client)[0]
+            else self.engine.getLinkState(self.robot, index)[0]
         )
-        pybullet.applyExternalForce(
-            self.robot, index, force, position, pybullet.WORLD_FRAME, physicsClientId=self.client
-        )
+        self.engine.applyExternalForce(self.robot, index, force, position, self.engine.WORLD_FRAME)
 
     # --- reading --------------------------------------------------------------------------------------------------
 
@@ -278,7 +274,7 @@ class Physics:
         Raises:
             NotFinite: The engine has lost the body.
         """
-        states = pybullet.getJointStates(self.robot, self._indices, physicsClientId=self.client)
+        states = self.engine.getJointStates(self.robot, self._indices)
         positions, velocities, _, torques = map(list, zip(*states))
         check_finite("joints of the robot", positions)
         for index in self._hands:
@@ -292,22 +288,18 @@ class Physics:
         Raises:
             NotFinite: The engine has lost the body.
         """
-        com, orientation = pybullet.getBasePositionAndOrientation(self.robot, physicsClientId=self.client)
+        com, orientation = self.engine.getBasePositionAndOrientation(self.robot)
         check_finite("torso of the robot", (*com, *orientation))
-        position, orientation = pybullet.multiplyTransforms(com, orientation, *self._com_to_torso)
-        velocity, angular = pybullet.getBaseVelocity(self.robot, physicsClientId=self.client)
+        position, orientation = self.engine.multiplyTransforms(com, orientation, *self._com_to_torso)
+        velocity, angular = self.engine.getBaseVelocity(self.robot)
         rx, ry, rz = position[0] - com[0], position[1] - com[1], position[2] - com[2]
         wx, wy, wz = angular
-        linear = (
-            velocity[0] + wy * rz - wz * ry,
-            velocity[1] + wz * rx - wx * rz,
-            velocity[2] + wx * ry - wy * rx,
-        )
+        linear = (velocity[0] + wy * rz - wz * ry, velocity[1] + wz * rx - wx * rz, velocity[2] + wx * ry - wy * rx)
         return BodyReadings(Pose(position, orientation), linear, angular)
 
     def read_contacts(self) -> tuple[Contact, ...]:
         """Every point where another body presses on the robot."""
-        points = pybullet.getContactPoints(self.robot, physicsClientId=self.client)
+        points = self.engine.getContactPoints(self.robot)
         robot = self.robot
         found = [
             Contact(c[LINK_A], c[POSITION_ON_A], c[NORMAL_ON_B], c[NORMAL_FORCE])
@@ -318,9 +310,7 @@ class Physics:
 
     def link_pose(self, name: str) -> Pose:
         """Pose of a link frame (not of its centre of mass) in world."""
-        state = pybullet.getLinkState(
-            self.robot, self.links[name], computeForwardKinematics=True, physicsClientId=self.client
-        )
+        state = self.engine.getLinkState(self.robot, self.links[name], computeForwardKinematics=True)
         return Pose(state[4], state[5])
 
     def link_poses(self, links: Collection[int], torso: Pose) -> dict[int, Pose]:
@@ -328,9 +318,7 @@ class Physics:
         poses = {}
         others = [link for link in links if link >= 0]
         if others:
-            states = pybullet.getLinkStates(
-                self.robot, others, computeForwardKinematics=True, physicsClientId=self.client
-            )
+            states = self.engine.getLinkStates(self.robot, others, computeForwardKinematics=True)
             poses = {link: Pose(state[4], state[5]) for link, state in zip(others, states)}
         if -1 in links:
             poses[-1] = torso
@@ -343,27 +331,27 @@ class Physics:
     def free_sight(self, eye: Vector3, direction: Vector3) -> float:
         """How far a line of sight goes before it meets something, m."""
         end = [a + SIGHT * b for a, b in zip(eye, direction)]
-        return SIGHT * pybullet.rayTest(eye, end, physicsClientId=self.client)[0][HIT_FRACTION]
+        return SIGHT * self.engine.rayTest(eye, end)[0][HIT_FRACTION]
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
     def _clearance(self) -> float:
         """Height of the lowest point of the body over the floor, m; below 2 m of it."""
         floor = self.bodies.ids[FLOOR]
-        points = pybullet.getClosestPoints(self.robot, floor, 2.0, physicsClientId=self.client)
+        points = self.engine.getClosestPoints(self.robot, floor, 2.0)
         return min(point[DISTANCE] for point in points)
 
     def _put_over_floor(self, xy: tuple[float, float], height: float, orientation: Sequence[float]) -> None:
         """Put the torso over (x, y) in world, `height` over the floor along its normal; orientation over the floor."""
         floor = self._floor
-        turned = pybullet.multiplyTransforms((0, 0, 0), floor.orientation, (0, 0, 0), orientation)[1]
+        turned = self.engine.multiplyTransforms((0, 0, 0), floor.orientation, (0, 0, 0), orientation)[1]
         self._reset_base((xy[0], xy[1], floor.height_at(xy[0], xy[1], height)), turned)
 
     def _reset_base(self, position: Vector3, orientation: Sequence[float]) -> None:
-        com, turn = pybullet.multiplyTransforms(position, orientation, *self._torso_to_com)
+        com, turn = self.engine.multiplyTransforms(position, orientation, *self._torso_to_com)
         check_finite("place of the robot", (*com, *turn))
-        pybullet.resetBasePositionAndOrientation(self.robot, com, turn, physicsClientId=self.client)
-        pybullet.resetBaseVelocity(self.robot, (0, 0, 0), (0, 0, 0), physicsClientId=self.client)
+        self.engine.resetBasePositionAndOrientation(self.robot, com, turn)
+        self.engine.resetBaseVelocity(self.robot, (0, 0, 0), (0, 0, 0))
 
     def _to_engine(self, angles: Sequence[float]) -> list[float]:
         angles = list(angles)

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import pybullet
-
+from nao_sim_bridge.base.engine import LOAD_FLAGS, Engine
 from nao_sim_bridge.base.settings import ContactSettings
 from nao_sim_bridge.base.whole_file import memory_file
-from nao_sim_bridge.model.collision import LOAD_FLAGS, apart
+from nao_sim_bridge.model.collision import apart
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.urdf.physics import physics_urdf
 
@@ -16,64 +15,57 @@ from nao_sim_bridge.model.urdf.physics import physics_urdf
 JOINT_NAME, LINK_NAME = 1, 12
 
 
-def load_robot(client: int, model: RobotModel) -> int:
+def load_robot(engine: Engine, model: RobotModel) -> int:
     """Put a robot into a world; PyBullet's body id of it."""
     with memory_file(physics_urdf(model).encode()) as path:
-        return pybullet.loadURDF(path, flags=LOAD_FLAGS, physicsClientId=client)
+        return engine.loadURDF(path, flags=LOAD_FLAGS)
 
 
-def index_by(client: int, robot: int, column: int) -> dict[str, int]:
+def index_by(engine: Engine, robot: int, column: int) -> dict[str, int]:
     """PyBullet's index of every joint and of the link behind it, by one of their names.
 
     Args:
         robot: Body id.
         column: JOINT_NAME or LINK_NAME.
     """
-    count = pybullet.getNumJoints(robot, physicsClientId=client)
-    infos = [pybullet.getJointInfo(robot, i, physicsClientId=client) for i in range(count)]
+    count = engine.getNumJoints(robot)
+    infos = [engine.getJointInfo(robot, i) for i in range(count)]
     return {info[column].decode(): info[0] for info in infos}
 
 
-def keep_apart(client: int, robot: int, model: RobotModel, links: Mapping[str, int]) -> None:
+def keep_apart(engine: Engine, robot: int, model: RobotModel, links: Mapping[str, int]) -> None:
     """Leave out the pairs of links that never touch each other: neighbours overlap at their joint."""
     for first, second in apart(model):
         indices = (links.get(first, -1), links.get(second, -1))
-        pybullet.setCollisionFilterPair(robot, robot, *indices, 0, physicsClientId=client)
+        engine.setCollisionFilterPair(robot, robot, *indices, 0)
 
 
-def set_friction(client: int, robot: int, contact: ContactSettings, links: Mapping[str, int]) -> None:
+def set_friction(engine: Engine, robot: int, contact: ContactSettings, links: Mapping[str, int]) -> None:
     """Give the body and the soles their friction; the soles are a little soft."""
     for index in [-1, *links.values()]:
-        pybullet.changeDynamics(
-            robot,
-            index,
-            lateralFriction=contact.body_friction,
-            linearDamping=0.0,
-            angularDamping=0.0,
-            jointDamping=0.0,
-            physicsClientId=client,
+        engine.changeDynamics(
+            robot, index, lateralFriction=contact.body_friction, linearDamping=0.0, angularDamping=0.0, jointDamping=0.0
         )
     for foot in ("l_ankle", "r_ankle"):
         # Without friction anchors a standing robot creeps tens of degrees a minute.
-        pybullet.changeDynamics(
+        engine.changeDynamics(
             robot,
             links[foot],
             lateralFriction=contact.sole_friction,
             frictionAnchor=1,
             contactStiffness=contact.sole_stiffness,
             contactDamping=contact.sole_damping,
-            physicsClientId=client,
         )
 
 
-def load_torso(client: int, robot: int, payload: float) -> None:
+def load_torso(engine: Engine, robot: int, payload: float) -> None:
     """Have the torso carry so much more mass, at its centre of mass, kg."""
-    mass, _, inertia = pybullet.getDynamicsInfo(robot, -1, physicsClientId=client)[:3]
+    mass, _, inertia = engine.getDynamicsInfo(robot, -1)[:3]
     # With a mass alone the engine would take a new inertia from the collision shapes.
-    pybullet.changeDynamics(robot, -1, mass=mass + payload, localInertiaDiagonal=inertia, physicsClientId=client)
+    engine.changeDynamics(robot, -1, mass=mass + payload, localInertiaDiagonal=inertia)
 
 
-def limit_speeds(client: int, robot: int, speeds: Mapping[int, float]) -> None:
+def limit_speeds(engine: Engine, robot: int, speeds: Mapping[int, float]) -> None:
     """Keep the motors to their top speeds: without, one that lags catches up at any speed its torque allows.
 
     Only the call for one joint takes a limit; the engine keeps it when everything else is set anew for all of them.
@@ -83,28 +75,14 @@ def limit_speeds(client: int, robot: int, speeds: Mapping[int, float]) -> None:
         speeds: Index of a joint -> its top speed, rad/s or m/s.
     """
     for index, speed in speeds.items():
-        pybullet.setJointMotorControl2(
-            robot,
-            index,
-            pybullet.POSITION_CONTROL,
-            targetPosition=0.0,
-            force=0.0,
-            maxVelocity=speed,
-            physicsClientId=client,
+        engine.setJointMotorControl2(
+            robot, index, engine.POSITION_CONTROL, targetPosition=0.0, force=0.0, maxVelocity=speed
         )
 
 
-def couple_hips(client: int, robot: int, joints: Mapping[str, int], force: float) -> None:
+def couple_hips(engine: Engine, robot: int, joints: Mapping[str, int], force: float) -> None:
     """Both HipYawPitch joints turn with one motor: a gear of ratio 1 between the two, of at most `force` N."""
-    gear = pybullet.createConstraint(
-        robot,
-        joints["LHipYawPitch"],
-        robot,
-        joints["RHipYawPitch"],
-        pybullet.JOINT_GEAR,
-        (0, 1, 0),
-        (0, 0, 0),
-        (0, 0, 0),
-        physicsClientId=client,
+    gear = engine.createConstraint(
+        robot, joints["LHipYawPitch"], robot, joints["RHipYawPitch"], engine.JOINT_GEAR, (0, 1, 0), (0, 0, 0), (0, 0, 0)
     )
-    pybullet.changeConstraint(gear, gearRatio=-1, erp=0.2, maxForce=force, physicsClientId=client)
+    engine.changeConstraint(gear, gearRatio=-1, erp=0.2, maxForce=force)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Callable, Sequence
 
-import pybullet
-
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.world.bodies import Inventory, WorldBodies
 from nao_sim_bridge.world.world import FLOOR, World
@@ -38,7 +37,7 @@ class PhysicsWorld:
     """A world with gravity; whoever calls this owns it: one thread only.
 
     Attributes:
-        client: PyBullet's physics client.
+        engine: The world in the physics engine.
         bodies: The floor and the things of the world.
         robots: PyBullet's body ids of the robots.
     """
@@ -46,15 +45,14 @@ class PhysicsWorld:
     def __init__(self, world: World, settings: Settings) -> None:
         self.world = world
         self._steps = settings.steps_per_tick
-        self.client = pybullet.connect(pybullet.DIRECT)
-        pybullet.setGravity(0, 0, -settings.gravity_m_s2, physicsClientId=self.client)
-        pybullet.setPhysicsEngineParameter(
+        self.engine = Engine()
+        self.engine.setGravity(0, 0, -settings.gravity_m_s2)
+        self.engine.setPhysicsEngineParameter(
             fixedTimeStep=settings.time_step_s,
             numSolverIterations=settings.solver_iterations,
             deterministicOverlappingPairs=1,
-            physicsClientId=self.client,
         )
-        self.bodies = WorldBodies(world, self.client)
+        self.bodies = WorldBodies(world, self.engine)
         self.robots: list[int] = []
         self._kept: SavedBodies | None = None
         self._dropped: list[int] = []
@@ -67,7 +65,7 @@ class PhysicsWorld:
         for _ in range(self._steps):
             for push in pushes:
                 push()
-            pybullet.stepSimulation(physicsClientId=self.client)
+            self.engine.stepSimulation()
 
     def keep(self) -> None:
         """Remember all bodies as they are now, for `restore`."""
@@ -88,21 +86,21 @@ class PhysicsWorld:
     def save(self) -> SavedBodies:
         """The state of all bodies, for `load`; the engine keeps it until `drop`, or as long as the world."""
         self._free()
-        state = pybullet.saveState(physicsClientId=self.client)
-        return SavedBodies(state, pybullet.getNumBodies(physicsClientId=self.client), self.bodies.inventory())
+        state = self.engine.saveState()
+        return SavedBodies(state, self.engine.getNumBodies(), self.bodies.inventory())
 
     def fits(self, saved: SavedBodies) -> bool:
         """Whether nothing has come or gone since `save`."""
-        return saved.count == pybullet.getNumBodies(physicsClientId=self.client) and self.bodies.fits(saved.things)
+        return saved.count == self.engine.getNumBodies() and self.bodies.fits(saved.things)
 
     def load(self, saved: SavedBodies) -> None:
         """Put all bodies, which `fits` must say are the same, to where they were at `save`."""
         # The engine keeps pairs of shapes that are near each other, in the order and with the forces of before. It
         # forgets those of a link that is put into its groups anew.
         for robot in self.robots:
-            for link in range(-1, pybullet.getNumJoints(robot, physicsClientId=self.client)):
+            for link in range(-1, self.engine.getNumJoints(robot)):
                 self.let_meet(robot, link, self.groups(robot, link))
-        pybullet.restoreState(stateId=saved.state, physicsClientId=self.client)
+        self.engine.restoreState(stateId=saved.state)
         self.bodies.believe(saved.things)
 
     def drop(self, saved: SavedBodies) -> None:
@@ -114,7 +112,7 @@ class PhysicsWorld:
 
     def _free(self) -> None:
         while self._dropped:
-            pybullet.removeState(self._dropped.pop(), physicsClientId=self.client)
+            self.engine.removeState(self._dropped.pop())
 
     def groups(self, robot: int, link: int) -> int:
         """The groups that a link of a robot is in, as bits."""
@@ -123,7 +121,7 @@ class PhysicsWorld:
     def let_meet(self, robot: int, link: int, groups: int) -> None:
         """Put a link (-1: the torso) of a robot into groups, as bits; it meets what is in any, and what meets them."""
         self._groups[robot, link] = groups
-        pybullet.setCollisionFilterGroupMask(robot, link, groups, ALL, physicsClientId=self.client)
+        self.engine.setCollisionFilterGroupMask(robot, link, groups, ALL)
 
     def inside(self, robot: int) -> dict[str, float]:
         """How deep a robot is in what is there, m: in things by name, in "robot 1"...; what only touches is left out.
@@ -136,9 +134,9 @@ class PhysicsWorld:
         return {name: depth for name, depth in depths.items() if depth > DEEPEST}
 
     def _depth(self, robot: int, body: int) -> float:
-        points = pybullet.getClosestPoints(robot, body, 0.0, physicsClientId=self.client)
+        points = self.engine.getClosestPoints(robot, body, 0.0)
         return max((-point[DISTANCE] for point in points), default=0.0)
 
     def close(self) -> None:
         """Free the engine's memory; the object and its robots are of no use afterwards."""
-        pybullet.disconnect(physicsClientId=self.client)
+        self.engine.disconnect()

@@ -9,8 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Dict, Sequence
 
-import pybullet
-
 from nao_sim_bridge.base.errors import BadValue, NotAllowed, SimulationError, check_finite
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.tasks import Task, TaskIds
@@ -176,12 +174,8 @@ class Hands:
         """Pull a hand to where it is to be at the end of this tick."""
         pose = self._aim(hand.path, *self._where(hand))
         check_finite(hand.name, (*pose.position, *pose.orientation))
-        pybullet.changeConstraint(
-            hand.constraint,
-            jointChildPivot=pose.position,
-            jointChildFrameOrientation=pose.orientation,
-            maxForce=FORCE,
-            physicsClientId=self._physics.client,
+        self._physics.engine.changeConstraint(
+            hand.constraint, jointChildPivot=pose.position, jointChildFrameOrientation=pose.orientation, maxForce=FORCE
         )
 
     def _where(self, hand: _Hand) -> tuple[float, float]:
@@ -197,40 +191,38 @@ class Hands:
         """In world."""
         link = self._physics.pose_of(self._model.link(path.link).alt_name)
         position, turn = path.at(share, off)
-        return Pose(*pybullet.multiplyTransforms(link.position, link.orientation, position, turn))
+        return Pose(*self._physics.engine.multiplyTransforms(link.position, link.orientation, position, turn))
 
     # --- bodies ---------------------------------------------------------------------------------------------------
 
     def _bring(self, name: str, path: HandPath) -> int:
         """Make a hand that collides with one part of the robot only; the constraint that holds it."""
-        bodies, client = self._physics.bodies, self._physics.client
+        bodies, engine = self._physics.bodies, self._physics.engine
         bodies.add(make_hand(name))
         path.lifts = [self._lift(path, number) for number in range(len(path.sensors))]
         start = self._aim(path, 0.0, AWAY)
         bodies.put(name, start)
         body = bodies.ids[name]
-        pybullet.changeDynamics(
+        engine.changeDynamics(
             body,
             -1,
             localInertiaDiagonal=(INERTIA, INERTIA, INERTIA),
-            activationState=pybullet.ACTIVATION_STATE_DISABLE_SLEEPING,
-            physicsClientId=client,
+            activationState=self._physics.engine.ACTIVATION_STATE_DISABLE_SLEEPING,
         )
         bit = self._bit(name)
-        pybullet.setCollisionFilterGroupMask(body, -1, bit, bit, physicsClientId=client)
+        engine.setCollisionFilterGroupMask(body, -1, bit, bit)
         self._let_touch(path.link, bit, True)
-        return pybullet.createConstraint(
+        return engine.createConstraint(
             body,
             -1,
             -1,
             -1,
-            pybullet.JOINT_FIXED,
+            self._physics.engine.JOINT_FIXED,
             (0.0, 0.0, 0.0),
             (0.0, 0.0, 0.0),
             start.position,
             UNTURNED,
             start.orientation,
-            physicsClientId=client,
         )
 
     def _lift(self, path: HandPath, number: int) -> float:
@@ -238,12 +230,12 @@ class Hands:
         link = self._physics.pose_of(self._model.link(path.link).alt_name)
         position, normal = path.sensor(number)
         ends = [
-            pybullet.multiplyTransforms(
+            self._physics.engine.multiplyTransforms(
                 link.position, link.orientation, [p + off * n for p, n in zip(position, normal)], UNTURNED
             )[0]
             for off in (AWAY, -AWAY)
         ]
-        body, index, share = pybullet.rayTest(*ends, physicsClientId=self._physics.client)[0][:3]
+        body, index, share = self._physics.engine.rayTest(*ends)[0][:3]
         if (body, index) != (self._physics.robot, self._index(path.link)):
             return 0.0
         return AWAY - share * 2.0 * AWAY
@@ -266,7 +258,7 @@ class Hands:
     def _remove(self, hand: _Hand) -> None:
         self._let_touch(hand.path.link, self._bit(hand.name), False)
         if hand.name in self._physics.bodies.ids:
-            pybullet.removeConstraint(hand.constraint, physicsClientId=self._physics.client)
+            self._physics.engine.removeConstraint(hand.constraint)
             self._physics.bodies.remove(hand.name)
 
     def _free_name(self) -> str:

@@ -102,7 +102,7 @@ class SimulatedRobot:
         self._imu = InertialUnit(model.imu["Accelerometer"].position, settings.gravity_m_s2, physics.start.yaw)
         self._imperfection = self._imperfect(scene)
         self._odometry: Odometry | None = None
-        self._sonars = Sonars(model, PhysicalSurroundings(physics.client, physics.robot))
+        self._sonars = Sonars(model, PhysicalSurroundings(physics.engine, physics.robot))
         self.power = PowerSystem(self._sensors.motors.heat_capacities, settings, model.version != "V6")
         self.power.battery.plug(scene.charger)
         self.faults = Faults(model, self._sensors.touch_names)

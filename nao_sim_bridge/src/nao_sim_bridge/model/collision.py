@@ -7,8 +7,6 @@ from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
-import pybullet
-
 from nao_sim_bridge.base.config import check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.model.robot_model import RobotModel
@@ -17,8 +15,6 @@ from nao_sim_bridge.model.shapes import Shape, read_shape, with_right_side
 FILE = "collision.json"
 FINGERS = {"LHand": "LFingers", "RHand": "RFingers"}
 """Finger link of each hand joint."""
-LOAD_FLAGS = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION
-"""For `loadURDF`; `apart` says which pairs to take out afterwards."""
 
 
 def read_collision_shapes(model: RobotModel) -> dict[str, tuple[Shape, ...]]:

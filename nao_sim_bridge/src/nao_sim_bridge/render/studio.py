@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import pybullet
 
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.render.backdrop import Backdrop, Shadow, blur
 from nao_sim_bridge.render.scene.figure import CORE_WHITE
 from nao_sim_bridge.render.scene.stage import Stage
@@ -39,16 +39,16 @@ class Studio:
 
     def __init__(self, world: World, version: str) -> None:
         self._world = world
-        self._client = pybullet.connect(pybullet.DIRECT)
+        self._engine = Engine()
         # The floor is drawn as part of the backdrop.
-        self._stage = Stage(world, version, self._client, floor=False, paint_lamps=False)
+        self._stage = Stage(world, version, self._engine, floor=False, paint_lamps=False)
         self._backdrop = Backdrop(world)
         self._gone: frozenset[str] | None = None
         self._shadow: Shadow | None = None
         self._shadow_of: RenderState | None = None
 
     def close(self) -> None:
-        pybullet.disconnect(physicsClientId=self._client)
+        self._engine.disconnect()
 
     def draw(self, state: RenderState, view: View) -> np.ndarray:
         """The (h, w, 3) uint8 picture of a state."""
@@ -77,7 +77,7 @@ class Studio:
             view.width,
             view.height,
             view.to_camera().T.ravel().tolist(),
-            pybullet.computeProjectionMatrix(aside - right, aside + right, up - top, up + top, NEAR, FAR),
+            self._engine.computeProjectionMatrix(aside - right, aside + right, up - top, up + top, NEAR, FAR),
             shadow=int(view.shadows),
             lightDirection=light.direction,
             lightDistance=LIGHT_DISTANCE,
@@ -98,18 +98,13 @@ class Studio:
         height: int,
         view: Sequence[float],
         projection: Sequence[float],
-        client: int | None = None,
+        engine: Engine | None = None,
         **light: object,
     ) -> tuple:
         """Colours (h, w, 3) and body ids (h, w), -1 where nothing is."""
-        _, _, rgba, _, bodies = pybullet.getCameraImage(
-            width,
-            height,
-            view,
-            projection,
-            renderer=pybullet.ER_TINY_RENDERER,
-            physicsClientId=self._client if client is None else client,
-            **light,
+        engine = engine or self._engine
+        _, _, rgba, _, bodies = engine.getCameraImage(
+            width, height, view, projection, renderer=engine.ER_TINY_RENDERER, **light
         )
         colors = np.asarray(rgba, dtype=np.uint8).reshape(height, width, 4)[..., :3]
         return colors, np.asarray(bodies).reshape(height, width)
@@ -162,12 +157,12 @@ class Studio:
         if not still and not self._world.floor.bumps:
             return None
         bare = replace(self._world, objects=tuple(still))
-        client = pybullet.connect(pybullet.DIRECT)
+        engine = Engine()
         try:
-            pybullet.removeBody(build_world(bare, client, visual=True)[FLOOR], physicsClientId=client)
-            return self._cast(np.zeros(3), STILL_REACH, STILL_PIXELS, client)
+            engine.removeBody(build_world(bare, engine, visual=True)[FLOOR])
+            return self._cast(np.zeros(3), STILL_REACH, STILL_PIXELS, engine)
         finally:
-            pybullet.disconnect(physicsClientId=client)
+            engine.disconnect()
 
     def _cast_shadow(self, state: RenderState) -> Shadow:
         """The shadow of the robot and of what can be moved near it."""
@@ -180,13 +175,13 @@ class Studio:
                 reach = max(reach, distance + 0.3)
         return self._cast(center, reach, min(round(SHADOW_PIXELS * reach / SHADOW_REACH), MOST_SHADOW_PIXELS))
 
-    def _cast(self, center: np.ndarray, reach: float, pixels: int, client: int | None = None) -> Shadow:
+    def _cast(self, center: np.ndarray, reach: float, pixels: int, engine: Engine | None = None) -> Shadow:
         """What the lamp does not see of the floor within `reach` of a point, m."""
         direction = np.array(self._world.light.direction)
         direction /= np.linalg.norm(direction)
-        view = pybullet.computeViewMatrix(center + direction * LAMP_DISTANCE, center, (0.0, 1.0, 0.001))
+        view = self._engine.computeViewMatrix(center + direction * LAMP_DISTANCE, center, (0.0, 1.0, 0.001))
         angle = 2.0 * math.degrees(math.atan(reach / LAMP_DISTANCE))
-        projection = pybullet.computeProjectionMatrixFOV(angle, 1.0, LAMP_DISTANCE - 5.0, LAMP_DISTANCE + 5.0)
-        _, bodies = self._capture(pixels, pixels, view, projection, client, shadow=0)
+        projection = self._engine.computeProjectionMatrixFOV(angle, 1.0, LAMP_DISTANCE - 5.0, LAMP_DISTANCE + 5.0)
+        _, bodies = self._capture(pixels, pixels, view, projection, engine, shadow=0)
         to_clip, to_lamp = (np.array(m).reshape(4, 4).T for m in (projection, view))
         return Shadow(bodies >= 0, to_clip @ to_lamp, center[:2], reach)

@@ -7,8 +7,8 @@ from multiprocessing.connection import Connection
 from typing import NamedTuple, Sequence
 
 import numpy as np
-import pybullet
 
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.rotations import Vector3, vector3
 from nao_sim_bridge.render.scene.stage import Stage
@@ -19,7 +19,7 @@ from nao_sim_bridge.world.world import World
 BUTTON_EVENT, KIND, X, Y, BUTTON, STATE = 2, 0, 1, 2, 3, 4
 MOVE_EVENT, LEFT_BUTTON = 1, 0
 # With these keys the mouse turns the camera.
-CAMERA_KEYS = (pybullet.B3G_CONTROL, pybullet.B3G_ALT)
+CAMERA_KEYS = ("B3G_CONTROL", "B3G_ALT")
 # Columns of PyBullet's debug camera.
 WIDTH, HEIGHT, VIEW, PROJECTION = 0, 1, 2, 3
 PERIOD = 1.0 / 30.0
@@ -50,23 +50,23 @@ def ray_through(view: Sequence[float], projection: Sequence[float], x: float, y:
 
 
 class Pointer:
-    """Follows the left button of the mouse in the window of a PyBullet client."""
+    """Follows the left button of the mouse in the window of an engine."""
 
-    def __init__(self, client: int) -> None:
-        self._client = client
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
         self._down = False
         # Else a click on a body pulls it about.
-        pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_MOUSE_PICKING, 0, physicsClientId=client)
+        engine.configureDebugVisualizer(engine.COV_ENABLE_MOUSE_PICKING, 0)
 
     def news(self) -> list[Ray | None]:
         """Where the mouse has pointed with its button down since the last call; None when the button went up."""
         told: list[Ray | None] = []
-        for event in pybullet.getMouseEvents(physicsClientId=self._client):
+        for event in self._engine.getMouseEvents():
             if event[KIND] == BUTTON_EVENT and event[BUTTON] == LEFT_BUTTON:
-                if event[STATE] & pybullet.KEY_WAS_TRIGGERED and not self._turns_camera():
+                if event[STATE] & self._engine.KEY_WAS_TRIGGERED and not self._turns_camera():
                     self._down = True
                     told.append(self._ray(event[X], event[Y]))
-                elif event[STATE] & pybullet.KEY_WAS_RELEASED and self._down:
+                elif event[STATE] & self._engine.KEY_WAS_RELEASED and self._down:
                     self._down = False
                     told.append(None)
             elif event[KIND] == MOVE_EVENT and self._down:
@@ -74,11 +74,11 @@ class Pointer:
         return told
 
     def _turns_camera(self) -> bool:
-        keys = pybullet.getKeyboardEvents(physicsClientId=self._client)
-        return any(keys.get(key, 0) & pybullet.KEY_IS_DOWN for key in CAMERA_KEYS)
+        keys = self._engine.getKeyboardEvents()
+        return any(keys.get(getattr(self._engine, key), 0) & self._engine.KEY_IS_DOWN for key in CAMERA_KEYS)
 
     def _ray(self, x: float, y: float) -> Ray:
-        camera = pybullet.getDebugVisualizerCamera(physicsClientId=self._client)
+        camera = self._engine.getDebugVisualizerCamera()
         return ray_through(camera[VIEW], camera[PROJECTION], x / camera[WIDTH], y / camera[HEIGHT])
 
 
@@ -94,22 +94,22 @@ class Window:
 
     def __init__(self, pipe: Connection, world: World, version: str) -> None:
         self._pipe = pipe
-        self._client = pybullet.connect(pybullet.GUI)
-        if self._client < 0:
+        self._engine = Engine(gui=True)
+        if self._engine.client < 0:
             raise SimulationError("PyBullet could not open a window on this display")
-        pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_GUI, 0, physicsClientId=self._client)
-        pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_RENDERING, 0, physicsClientId=self._client)
-        self._pointer = Pointer(self._client)
-        self._stage = Stage(world, version, self._client, floor=True, paint_lamps=True)
-        pybullet.resetDebugVisualizerCamera(0.85, 60.0, -14.0, (0.0, 0.0, 0.28), physicsClientId=self._client)
+        self._engine.configureDebugVisualizer(self._engine.COV_ENABLE_GUI, 0)
+        self._engine.configureDebugVisualizer(self._engine.COV_ENABLE_RENDERING, 0)
+        self._pointer = Pointer(self._engine)
+        self._stage = Stage(world, version, self._engine, floor=True, paint_lamps=True)
+        self._engine.resetDebugVisualizerCamera(0.85, 60.0, -14.0, (0.0, 0.0, 0.28))
         lamp = [5.0 * part for part in world.light.direction]
-        pybullet.configureDebugVisualizer(lightPosition=lamp, physicsClientId=self._client)
-        pybullet.configureDebugVisualizer(pybullet.COV_ENABLE_RENDERING, 1, physicsClientId=self._client)
+        self._engine.configureDebugVisualizer(lightPosition=lamp)
+        self._engine.configureDebugVisualizer(self._engine.COV_ENABLE_RENDERING, 1)
 
     def serve(self) -> None:
         """Show what comes, at most thirty times a second, until the pipe or the window is closed."""
         states = StateReceiver()
-        while pybullet.isConnected(self._client):
+        while self._engine.isConnected():
             for ray in self._pointer.news():
                 self._pipe.send(("pointer", ray))
             # Without news, look now and then whether somebody has closed the window.

@@ -37,18 +37,17 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def quiet_import() -> Any:
-    """PyBullet, without the line it prints on import."""
+def quiet_import() -> None:
+    """Import PyBullet without the line it prints then."""
     sys.stderr.flush()
     kept, silence = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     os.dup2(silence, 2)
     try:
-        import pybullet
+        import nao_sim_bridge.base.engine  # noqa: F401
     finally:
         os.dup2(kept, 2)
         os.close(kept)
         os.close(silence)
-    return pybullet
 
 
 def _open_pictures(pipe: Connection, engine: str, world_name: str, version: str) -> tuple[Any, Any]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Mapping, Sequence
 
-import pybullet
-
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Vector3
@@ -46,10 +45,10 @@ class WorldBodies:
         gone: Names of things of the world that were taken away.
     """
 
-    def __init__(self, world: World, client: int) -> None:
+    def __init__(self, world: World, engine: Engine) -> None:
         self._floor = world.floor
-        self._client = client
-        self.ids = build_world(world, client, visual=False)
+        self._engine = engine
+        self.ids = build_world(world, engine, visual=False)
         self._things = {thing.name: thing for thing in world.objects}
         self._of_world = frozenset(self._things)
         self.placed: tuple[WorldObject, ...] = ()
@@ -88,17 +87,17 @@ class WorldBodies:
         """
         poses = {}
         for name, body in self._loose.items():
-            poses[name] = pose = Pose(*pybullet.getBasePositionAndOrientation(body, physicsClientId=self._client))
+            poses[name] = pose = Pose(*self._engine.getBasePositionAndOrientation(body))
             check_finite(name, (*pose.position, *pose.orientation))
         poses.update(self._fixed)
         return poses
 
     def pose(self, name: str) -> Pose:
-        return Pose(*pybullet.getBasePositionAndOrientation(self.ids[name], physicsClientId=self._client))
+        return Pose(*self._engine.getBasePositionAndOrientation(self.ids[name]))
 
     def add(self, thing: WorldObject) -> None:
         """Add a thing, whose name nothing has."""
-        self.ids[thing.name] = build_object(thing, self._floor, self._client, visual=False)
+        self.ids[thing.name] = build_object(thing, self._floor, self._engine, visual=False)
         self._things[thing.name] = thing
         self.placed += (thing,)
         if thing.mass > 0.0:
@@ -109,7 +108,7 @@ class WorldBodies:
 
     def remove(self, name: str) -> None:
         around = self._around(self.ids[name])
-        pybullet.removeBody(self.ids.pop(name), physicsClientId=self._client)
+        self._engine.removeBody(self.ids.pop(name))
         removed = self._things.pop(name)
         self._loose.pop(name, None)
         self._fixed.pop(name, None)
@@ -128,29 +127,27 @@ class WorldBodies:
         check_finite(f"place of {name}", (*pose.position, *pose.orientation, *velocity))
         body = self.ids[name]
         self._wake(self._around(body))
-        pybullet.resetBasePositionAndOrientation(body, pose.position, pose.orientation, physicsClientId=self._client)
+        self._engine.resetBasePositionAndOrientation(body, pose.position, pose.orientation)
         if name in self._loose:
-            pybullet.resetBaseVelocity(body, velocity, UNMOVED, physicsClientId=self._client)
+            self._engine.resetBaseVelocity(body, velocity, UNMOVED)
         else:
             self._fixed[name] = pose
         self._wake(self._around(body))
 
     def depth_in(self, name: str, other: int) -> float:
         """How far a thing is inside another body, m; 0 when it is not."""
-        points: Sequence = pybullet.getClosestPoints(self.ids[name], other, 0.0, physicsClientId=self._client)
+        points: Sequence = self._engine.getClosestPoints(self.ids[name], other, 0.0)
         return max((-point[DISTANCE] for point in points), default=0.0)
 
     def _around(self, body: int) -> set[int]:
         """Bodies that touch another one, or nearly."""
-        low, high = pybullet.getAABB(body, physicsClientId=self._client)
+        low, high = self._engine.getAABB(body)
         low, high = [value - NEARLY for value in low], [value + NEARLY for value in high]
-        found = pybullet.getOverlappingObjects(low, high, physicsClientId=self._client) or ()
+        found = self._engine.getOverlappingObjects(low, high) or ()
         return {entry[0] for entry in found}
 
     def _wake(self, bodies: set[int]) -> None:
         """Let those of the bodies that sleep look whether what they lie on is still there."""
         for body in self._loose.values():
             if body in bodies:
-                pybullet.changeDynamics(
-                    body, -1, activationState=pybullet.ACTIVATION_STATE_WAKE_UP, physicsClientId=self._client
-                )
+                self._engine.changeDynamics(body, -1, activationState=self._engine.ACTIVATION_STATE_WAKE_UP)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import io
 from typing import Sequence
 
-import pybullet
-
-from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw
+from nao_sim_bridge.base.engine import Engine
+from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw, multiply, rotate
 from nao_sim_bridge.base.whole_file import memory_file
 from nao_sim_bridge.model.meshes import Mesh, front_and_rest, merged, tessellate
 from nao_sim_bridge.model.shapes import Shape
@@ -22,7 +21,7 @@ UNTURNED = (0.0, 0.0, 0.0, 1.0)
 WHITE = (1.0, 1.0, 1.0)
 
 
-def build_world(world: World, client: int, visual: bool) -> dict[str, int]:
+def build_world(world: World, engine: Engine, visual: bool) -> dict[str, int]:
     """Put the floor and all objects into a PyBullet world.
 
     Args:
@@ -32,23 +31,23 @@ def build_world(world: World, client: int, visual: bool) -> dict[str, int]:
         PyBullet's body ids by name; `floor` is among them, its bumps are not.
     """
     build_floor = _see_floor if visual else _touch_floor
-    bodies = {FLOOR: build_floor(world.floor, client)}
+    bodies = {FLOOR: build_floor(world.floor, engine)}
     for heap in heaps_of_bumps(world.floor):
-        build_object(heap, world.floor, client, visual)
-    bodies.update({thing.name: build_object(thing, world.floor, client, visual) for thing in world.objects})
+        build_object(heap, world.floor, engine, visual)
+    bodies.update({thing.name: build_object(thing, world.floor, engine, visual) for thing in world.objects})
     return bodies
 
 
-def build_object(thing: WorldObject, floor: Floor, client: int, visual: bool) -> int:
+def build_object(thing: WorldObject, floor: Floor, engine: Engine, visual: bool) -> int:
     """Put one thing into a PyBullet world, where it says; see `build_world`. Returns PyBullet's body id."""
     build = _see_object if visual else _touch_object
-    return build(thing, *place_of(thing, floor), client)
+    return build(thing, *place_of(thing, floor), engine)
 
 
 def place_of(thing: WorldObject, floor: Floor) -> tuple[Vector3, Quaternion]:
     """Position (m) and orientation in world of a thing where it says."""
     turn = from_roll_pitch_yaw(*thing.rpy)
-    return pybullet.multiplyTransforms(NOWHERE, floor.orientation, thing.position, turn)
+    return rotate(floor.orientation, thing.position), multiply(floor.orientation, turn)
 
 
 def heaps_of_bumps(floor: Floor) -> list[WorldObject]:
@@ -63,22 +62,18 @@ def heaps_of_bumps(floor: Floor) -> list[WorldObject]:
 # --- touched ----------------------------------------------------------------------------------------------------------
 
 
-def _touch_floor(floor: Floor, client: int) -> int:
-    touched = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=client)
-    body = pybullet.createMultiBody(0.0, touched, baseOrientation=floor.orientation, physicsClientId=client)
-    pybullet.changeDynamics(body, -1, lateralFriction=floor.friction, physicsClientId=client)
+def _touch_floor(floor: Floor, engine: Engine) -> int:
+    touched = engine.createCollisionShape(engine.GEOM_PLANE)
+    body = engine.createMultiBody(0.0, touched, baseOrientation=floor.orientation)
+    engine.changeDynamics(body, -1, lateralFriction=floor.friction)
     return body
 
 
-def _touch_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], client: int) -> int:
-    body = pybullet.createMultiBody(
-        thing.mass,
-        _collision_shape(thing.touched, client),
-        basePosition=position,
-        baseOrientation=orientation,
-        physicsClientId=client,
+def _touch_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], engine: Engine) -> int:
+    body = engine.createMultiBody(
+        thing.mass, _collision_shape(thing.touched, engine), basePosition=position, baseOrientation=orientation
     )
-    pybullet.changeDynamics(
+    engine.changeDynamics(
         body,
         -1,
         lateralFriction=thing.friction,
@@ -86,56 +81,53 @@ def _touch_object(thing: WorldObject, position: Sequence[float], orientation: Se
         spinningFriction=thing.rolling_friction,
         restitution=thing.restitution,
         # What lies still costs nothing then, until something touches it.
-        activationState=pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
-        physicsClientId=client,
+        activationState=engine.ACTIVATION_STATE_ENABLE_SLEEPING,
     )
     return body
 
 
-def _collision_shape(shapes: Sequence[Shape], client: int) -> int:
+def _collision_shape(shapes: Sequence[Shape], engine: Engine) -> int:
     """One shape of several, in the frame of their body."""
-    return pybullet.createCollisionShapeArray(
-        shapeTypes=[getattr(pybullet, f"GEOM_{shape.kind.upper()}") for shape in shapes],
+    return engine.createCollisionShapeArray(
+        shapeTypes=[getattr(engine, f"GEOM_{shape.kind.upper()}") for shape in shapes],
         # Each list has an entry for each shape, of a meaning or not.
         halfExtents=[[edge / 2.0 for edge in shape.size] if shape.kind == "box" else NOWHERE for shape in shapes],
         radii=[shape.size[0] for shape in shapes],
         lengths=[shape.size[1] if shape.kind in ("cylinder", "capsule") else 0.0 for shape in shapes],
         collisionFramePositions=[shape.xyz for shape in shapes],
         collisionFrameOrientations=[from_roll_pitch_yaw(*shape.rpy) for shape in shapes],
-        physicsClientId=client,
     )
 
 
 # --- seen -------------------------------------------------------------------------------------------------------------
 
 
-def _see_floor(floor: Floor, client: int) -> int:
+def _see_floor(floor: Floor, engine: Engine) -> int:
     extents = (FLOOR_EXTENT, FLOOR_EXTENT, 0.005)
-    seen = pybullet.createVisualShape(
-        pybullet.GEOM_BOX,
+    seen = engine.createVisualShape(
+        engine.GEOM_BOX,
         halfExtents=extents,
         rgbaColor=(*floor.color, 1.0),
         specularColor=NOWHERE,
         # The top face is the floor: half the thickness below it.
         visualFramePosition=(0.0, 0.0, -extents[2]),
-        physicsClientId=client,
     )
     return _body(
-        [seen, *(_see_rug(rug, number, client) for number, rug in enumerate(floor.rugs, 1))],
+        [seen, *(_see_rug(rug, number, engine) for number, rug in enumerate(floor.rugs, 1))],
         NOWHERE,
         floor.orientation,
-        client,
+        engine,
     )
 
 
-def _see_rug(rug: Rug, number: int, client: int) -> int:
+def _see_rug(rug: Rug, number: int, engine: Engine) -> int:
     # Each is higher than the one before it, on which it may lie.
     height = number * RUG_THICKNESS
     shape = Shape("box", (*rug.size, height), (*rug.center, height / 2.0), (0.0, 0.0, rug.yaw))
-    return visual_shape(tessellate(shape).placed(shape), rug.color, client)
+    return visual_shape(tessellate(shape).placed(shape), rug.color, engine)
 
 
-def _see_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], client: int) -> int:
+def _see_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], engine: Engine) -> int:
     by_color: dict[Color, list[Mesh]] = {}
     pictures: list[tuple[WorldPicture, Mesh]] = []
     for part in thing.parts:
@@ -144,18 +136,18 @@ def _see_object(thing: WorldObject, position: Sequence[float], orientation: Sequ
             front, mesh = front_and_rest(mesh)
             pictures.append((part.picture, front.placed(part.shape)))
         by_color.setdefault(part.color, []).append(mesh.placed(part.shape))
-    seen = [visual_shape(merged(meshes), color, client) for color, meshes in by_color.items()]
-    covered = [visual_shape(mesh, WHITE, client) for _, mesh in pictures]
-    body = _body([*seen, *covered], position, orientation, client)
+    seen = [visual_shape(merged(meshes), color, engine) for color, meshes in by_color.items()]
+    covered = [visual_shape(mesh, WHITE, engine) for _, mesh in pictures]
+    body = _body([*seen, *covered], position, orientation, engine)
     for link, (picture, _) in enumerate(pictures, len(seen) - 1):
-        pybullet.changeVisualShape(body, link, textureUniqueId=texture(picture, client), physicsClientId=client)
+        engine.changeVisualShape(body, link, textureUniqueId=texture(picture, engine))
     return body
 
 
-def _body(seen: Sequence[int], position: Sequence[float], orientation: Sequence[float], client: int) -> int:
+def _body(seen: Sequence[int], position: Sequence[float], orientation: Sequence[float], engine: Engine) -> int:
     """One body of several visual shapes: each has one colour, so all but the first are links that never move."""
     count = len(seen) - 1
-    return pybullet.createMultiBody(
+    return engine.createMultiBody(
         0.0,
         -1,
         seen[0],
@@ -169,30 +161,28 @@ def _body(seen: Sequence[int], position: Sequence[float], orientation: Sequence[
         linkInertialFramePositions=[NOWHERE] * count,
         linkInertialFrameOrientations=[UNTURNED] * count,
         linkParentIndices=[0] * count,
-        linkJointTypes=[pybullet.JOINT_FIXED] * count,
+        linkJointTypes=[engine.JOINT_FIXED] * count,
         linkJointAxis=[(0.0, 0.0, 1.0)] * count,
-        physicsClientId=client,
     )
 
 
-def visual_shape(mesh: Mesh, color: Sequence[float], client: int) -> int:
+def visual_shape(mesh: Mesh, color: Sequence[float], engine: Engine) -> int:
     """Id of a visual shape, of a colour in 0..1; those that PyBullet makes itself are a few dozen flat triangles."""
-    return pybullet.createVisualShape(
-        pybullet.GEOM_MESH,
+    return engine.createVisualShape(
+        engine.GEOM_MESH,
         vertices=mesh.vertices.tolist(),
         normals=mesh.normals.tolist(),
         uvs=[(0.0, 0.0)] * len(mesh.vertices) if mesh.uvs is None else mesh.uvs.tolist(),
         indices=mesh.faces.ravel().tolist(),
         rgbaColor=(*color, 1.0),
-        physicsClientId=client,
     )
 
 
-def texture(picture: WorldPicture, client: int) -> int:
+def texture(picture: WorldPicture, engine: Engine) -> int:
     """Id of a texture for `changeVisualShape`; PyBullet takes them from files only."""
     from PIL import Image  # most worlds have no pictures
 
     content = io.BytesIO()
     Image.fromarray(paint(picture)).save(content, "PNG")
     with memory_file(content.getvalue()) as path:
-        return pybullet.loadTexture(path, physicsClientId=client)
+        return engine.loadTexture(path)

@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 import sys
 
-import pybullet
 from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.stats import interleave
 
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.cameras.darkroom import CameraPlaces
 from nao_sim_bridge.cameras.optics import CameraOptics
 from nao_sim_bridge.core.simulation import Scene, Simulation
@@ -40,32 +40,26 @@ class Bare:
     """
 
     def __init__(self, simulation: Simulation, width: int, height: int) -> None:
-        self._client = pybullet.connect(pybullet.DIRECT)
+        self._engine = engine = Engine()
         self._size = (width, height)
         state = simulation.render_state()
         world = load_world(WORLD)
-        stage = Stage(world, simulation.scene.version, self._client, floor=True, paint_lamps=False)
+        stage = Stage(world, simulation.scene.version, engine, floor=True, paint_lamps=False)
         stage.show(state, headless=True)
         eye, orientation = CameraPlaces(simulation.model).in_world(state, TOP)
         axes = quaternion_matrix(orientation)
-        self._view = pybullet.computeViewMatrix(eye, axes[:, 0] + eye, axes[:, 2])
+        self._view = engine.computeViewMatrix(eye, axes[:, 0] + eye, axes[:, 2])
         vfov = math.degrees(CameraOptics(simulation.scene.version, TOP).vfov)
-        self._projection = pybullet.computeProjectionMatrixFOV(vfov, width / height, NEAR, FAR)
+        self._projection = engine.computeProjectionMatrixFOV(vfov, width / height, NEAR, FAR)
 
     def take(self) -> None:
         """One picture."""
-        pybullet.getCameraImage(
-            *self._size,
-            self._view,
-            self._projection,
-            renderer=pybullet.ER_TINY_RENDERER,
-            shadow=1,
-            physicsClientId=self._client,
-        )
+        engine = self._engine
+        engine.getCameraImage(*self._size, self._view, self._projection, renderer=engine.ER_TINY_RENDERER, shadow=1)
 
     def close(self) -> None:
         """Free the engine."""
-        pybullet.disconnect(self._client)
+        self._engine.disconnect()
 
 
 def time_frames(rounds: int, size: str) -> dict[str, list[float]]:

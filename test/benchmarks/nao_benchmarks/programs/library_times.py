@@ -10,7 +10,6 @@ import subprocess
 import sys
 import time
 
-import pybullet
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.stats import Sample, interleave
 
@@ -24,12 +23,11 @@ TICKS = 3
 
 def bare_steps(nao: NaoSim, count: int):
     """Steps of the engine alone, in the world of a robot."""
-    client = nao._session.shared.physics.client
-    step = pybullet.stepSimulation
+    step = nao._session.shared.physics.engine.stepSimulation
 
     def run() -> None:
         for _ in range(count):
-            step(physicsClientId=client)
+            step()
 
     return run
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import sys
 
-import pybullet
 import qi
 from nao_benchmarks.errors import BenchmarkError
 from nao_benchmarks.printing import print_times
@@ -48,12 +47,11 @@ def time_ticks(simulation: Simulation, rounds: int) -> dict[str, list[float]]:
         BenchmarkError: If the two robots are not alike at the end.
     """
     twin = bare_twin(simulation)
-    client, steps = twin.client, range(simulation.settings.steps_per_tick)
-    step = pybullet.stepSimulation
+    step, steps = twin.engine.stepSimulation, range(simulation.settings.steps_per_tick)
 
     def bare_tick() -> None:
         for _ in steps:
-            step(physicsClientId=client)
+            step()
 
     try:
         ours, bare = interleave([simulation.tick, bare_tick], rounds, warm_up=100)

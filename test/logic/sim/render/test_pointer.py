@@ -6,6 +6,7 @@ import numpy as np
 import pybullet
 import pytest
 
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.render.window import Pointer, ray_through
 
 EYE, TARGET = (1.2, -0.7, 0.6), (0.0, 0.0, 0.3)
@@ -24,36 +25,36 @@ def test_the_line_of_sight_through_a_pixel_meets_what_is_seen_there(point):
     assert ray.eye == pytest.approx(EYE) and ray.direction == pytest.approx(wanted / np.linalg.norm(wanted))
 
 
-class Mouse:
-    """Stands for PyBullet with a window: what it reports of mouse and keyboard."""
+class Mouse(Engine):
+    """An engine as one with a window: what it reports of mouse and keyboard."""
 
     def __init__(self):
+        super().__init__()
         self.events, self.keys, self.picking = [], {}, True
 
-    def getMouseEvents(self, physicsClientId):  # PyBullet's names
+    def getMouseEvents(self):  # PyBullet's names
         events, self.events = self.events, []
         return tuple(events)
 
-    def getKeyboardEvents(self, physicsClientId):
+    def getKeyboardEvents(self):
         return self.keys
 
-    def getDebugVisualizerCamera(self, physicsClientId):
+    def getDebugVisualizerCamera(self):
         return (640, 480, *MATRICES)
 
-    def configureDebugVisualizer(self, flag, enable, physicsClientId):
+    def configureDebugVisualizer(self, flag, enable):
         self.picking = bool(enable)
 
 
 @pytest.fixture
-def mouse(monkeypatch):
+def mouse():
     mouse = Mouse()
-    for name in ("getMouseEvents", "getKeyboardEvents", "getDebugVisualizerCamera", "configureDebugVisualizer"):
-        monkeypatch.setattr(pybullet, name, getattr(mouse, name))
-    return mouse
+    yield mouse
+    mouse.disconnect()
 
 
 def test_the_mouse_points_as_long_as_its_button_is_pressed(mouse):
-    pointer, middle, aside = Pointer(0), ray_through(*MATRICES, 0.5, 0.5), ray_through(*MATRICES, 0.25, 0.75)
+    pointer, middle, aside = Pointer(mouse), ray_through(*MATRICES, 0.5, 0.5), ray_through(*MATRICES, 0.25, 0.75)
     assert not mouse.picking
     for events, news in (
         ([(MOVE, 100.0, 100.0, -1, 0)], []),
@@ -63,6 +64,6 @@ def test_the_mouse_points_as_long_as_its_button_is_pressed(mouse):
     ):
         mouse.events = events
         assert pointer.news() == news
-    mouse.keys = {pybullet.B3G_CONTROL: pybullet.KEY_IS_DOWN}  # turns the view
+    mouse.keys = {mouse.B3G_CONTROL: mouse.KEY_IS_DOWN}  # turns the view
     mouse.events = [(BUTTON, 320.0, 240.0, 0, DOWN), (MOVE, 0.0, 0.0, -1, 0), (BUTTON, 0.0, 0.0, 0, UP)]
     assert pointer.news() == []

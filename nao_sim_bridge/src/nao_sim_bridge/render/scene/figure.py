@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pybullet
 
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.model.appearance import OFF, Appearance
 from nao_sim_bridge.model.kinematics import matrix_quaternion
 from nao_sim_bridge.model.meshes import Mesh, merged, tessellate
@@ -50,8 +50,8 @@ class Figure:
             later.
     """
 
-    def __init__(self, client: int, model: RobotModel, appearance: Appearance, paint_lamps: bool) -> None:
-        self._client = client
+    def __init__(self, engine: Engine, model: RobotModel, appearance: Appearance, paint_lamps: bool) -> None:
+        self._engine = engine
         self._model = model
         self._appearance = appearance
         self._paint_lamps = paint_lamps
@@ -85,7 +85,7 @@ class Figure:
             self._put(part, *((FAR_AWAY, UNTURNED) if hidden else placed[part.frame]))
 
     def _put(self, part: _Part, position: Sequence[float], orientation: Sequence[float]) -> None:
-        pybullet.resetBasePositionAndOrientation(part.body, position, orientation, physicsClientId=self._client)
+        self._engine.resetBasePositionAndOrientation(part.body, position, orientation)
 
     def _light(self, values: Sequence[float]) -> None:
         lamps = self._appearance.lamps
@@ -95,12 +95,7 @@ class Figure:
             for index in np.flatnonzero(np.any(light != self.lamp_light, axis=1)):
                 level = light[index].max()
                 color = off * (1.0 - level) + light[index]
-                pybullet.changeVisualShape(
-                    self.lamp_bodies[index],
-                    -1,
-                    rgbaColor=[*np.clip(color, 0.0, 1.0), 1.0],
-                    physicsClientId=self._client,
-                )
+                self._engine.changeVisualShape(self.lamp_bodies[index], -1, rgbaColor=[*np.clip(color, 0.0, 1.0), 1.0])
         self.lamp_light = light
 
     def _build_links(self) -> list[_Part]:
@@ -130,5 +125,5 @@ class Figure:
         return bodies
 
     def _build_body(self, mesh: Mesh, color: Sequence[float]) -> int:
-        seen = visual_shape(mesh, color, self._client)
-        return pybullet.createMultiBody(0.0, -1, seen, physicsClientId=self._client)
+        seen = visual_shape(mesh, color, self._engine)
+        return self._engine.createMultiBody(0.0, -1, seen)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Tuple
 
-import pybullet
-
+from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Quaternion, Vector3
@@ -42,14 +41,14 @@ class Stage:
         paint_lamps: See `Figure`.
     """
 
-    def __init__(self, world: World, version: str, client: int, floor: bool, paint_lamps: bool) -> None:
+    def __init__(self, world: World, version: str, engine: Engine, floor: bool, paint_lamps: bool) -> None:
         self._world = world
         self._version = version
-        self._client = client
+        self._engine = engine
         self._paint_lamps = paint_lamps
-        bodies = build_world(world, client, visual=True)
+        bodies = build_world(world, engine, visual=True)
         if not floor:
-            pybullet.removeBody(bodies[FLOOR], physicsClientId=client)
+            engine.removeBody(bodies[FLOOR])
         self._things = {thing.name: self._seen(thing, bodies[thing.name]) for thing in world.objects}
         self._placed: dict[str, _Seen] = {}
         self._placed_of: tuple[WorldObject, ...] = ()
@@ -91,7 +90,7 @@ class Stage:
 
     def _put(self, seen: _Seen, place: Place) -> None:
         if seen.place != place:
-            pybullet.resetBasePositionAndOrientation(seen.body, *place, physicsClientId=self._client)
+            self._engine.resetBasePositionAndOrientation(seen.body, *place)
             seen.place = place
 
     def _show_placed(self, placed: tuple[WorldObject, ...]) -> None:
@@ -101,11 +100,11 @@ class Stage:
         wanted = {thing.name: thing for thing in placed}
         for name, seen in list(self._placed.items()):
             if wanted.get(name) != seen.thing:
-                pybullet.removeBody(seen.body, physicsClientId=self._client)
+                self._engine.removeBody(seen.body)
                 del self._placed[name]
         for name, thing in wanted.items():
             if name not in self._placed:
-                body = build_object(thing, self._world.floor, self._client, visual=True)
+                body = build_object(thing, self._world.floor, self._engine, visual=True)
                 self._placed[name] = self._seen(thing, body)
         self._placed_of = placed
 
@@ -114,4 +113,4 @@ class Stage:
         return _Seen(thing, body, home, home)
 
     def _new_figure(self) -> Figure:
-        return Figure(self._client, load_model(self._version), load_appearance(self._version), self._paint_lamps)
+        return Figure(self._engine, load_model(self._version), load_appearance(self._version), self._paint_lamps)
