@@ -31,6 +31,7 @@ def sweep_stack(
     payload: Sequence[float] = (),
     delay: Sequence[float] = (),
     parameters: Mapping[str, Sequence[str]] | None = None,
+    posture: str = "",
     limit: float = LIMIT,
     launch: Mapping[str, str] | None = None,
     output: str | Path | None = None,
@@ -49,6 +50,7 @@ def sweep_stack(
         payload: kg that the torso carries besides its own.
         delay: How late sensors arrive, s.
         parameters: Of a behaviour: values by name.
+        posture: That the robot takes before, a name of NAOqi; empty: it crouches, motors off, as after its start.
         limit: s of a computer that a run may take; one that takes longer is ended and is a row that says so.
         launch: Further arguments of nao_sim.launch, as `world`.
         output: As `sweep` takes it, as those that follow.
@@ -67,7 +69,7 @@ def sweep_stack(
             raise BadValue("parameter", name, "a name that sweeps have no other use for: leave it at its default")
     varied = {"push": push, "noise": noise, "payload": payload, "delay": delay}
     return sweep(
-        StackRuns(subject, limit, launch or {}),
+        StackRuns(subject, limit, posture, launch or {}),
         seeds,
         output=output,
         workers=workers,

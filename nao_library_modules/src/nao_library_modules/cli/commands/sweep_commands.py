@@ -41,6 +41,7 @@ def _swept(name: str, text: str) -> Any:
 @_swept("payload", "kg that the torso carries besides its own.")
 @_swept("delay", "How late sensors arrive, s.")
 @click.option("--world", default="empty", show_default=True, help="Of the simulated robot.")
+@click.option("--posture", default="", metavar="NAME", help="It begins in.  [default: crouching, motors off]")
 @click.option("--limit", type=Number("duration"), default=300.0, show_default=True, metavar="S", help="For one run.")
 @click.option("--workers", type=click.IntRange(0), metavar="N", help="Without: as many as have a processor and memory.")
 @click.option("--address", metavar="URL", help='Of a Ray cluster that does it: "auto", ray://HOST:10001.')
