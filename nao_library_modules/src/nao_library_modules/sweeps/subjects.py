@@ -25,9 +25,15 @@ class Outcome:
 
 
 class Subject(Protocol):
-    """Something that runs on a stack. `launch`: arguments of nao_sim.launch that it needs."""
+    """Something that runs on a stack.
+
+    Attributes:
+        launch: Arguments of nao_sim.launch that it needs.
+        memory: MiB of a worker with such a stack.
+    """
 
     launch: ClassVar[Mapping[str, str]]
+    memory: ClassVar[float]
 
     def connect(self, robot: Any) -> Any:
         """What it needs of a stack that has just come up; handed to each `run` there. `robot`: `SimulatedRobot`."""
@@ -51,6 +57,7 @@ class BehaviorGoal:
     text: str = ""
     file: str = ""
     launch: ClassVar[Mapping[str, str]] = MappingProxyType({"driver": "false"})  # the action servers alone
+    memory: ClassVar[float] = 750.0
 
     def connect(self, robot: Any) -> Any:
         from nao_library_actions.msg import NaoBehaviorAction
@@ -84,6 +91,7 @@ class PlanProgram:
     program: Path
     arguments: Sequence[str] = ()
     launch: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    memory: ClassVar[float] = 1000.0
 
     def connect(self, robot: Any) -> None:
         pass

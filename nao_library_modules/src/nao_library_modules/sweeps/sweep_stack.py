@@ -17,8 +17,6 @@ from .watch import Push
 
 LIMIT = 300.0
 """s of a computer that a run may take."""
-MEMORY = 800.0
-"""MiB of a worker with its stack."""
 COLUMNS = "fell outcome duration lean moved pushed_at heading told seconds error".split()
 """Of a table, besides the seed and what is swept."""
 
@@ -75,7 +73,7 @@ def sweep_stack(
         workers=workers,
         address=address,
         progress=progress,
-        memory=MEMORY,
+        memory=subject.memory,
         **(parameters or {}),
         **{name: list(map(float, values)) for name, values in varied.items() if len(values)},
     )

@@ -42,6 +42,7 @@ def _swept(name: str, text: str) -> Any:
 @_swept("delay", "How late sensors arrive, s.")
 @click.option("--world", default="empty", show_default=True, help="Of the simulated robot.")
 @click.option("--posture", default="", metavar="NAME", help="It begins in.  [default: crouching, motors off]")
+@click.option("--speed", type=float, default=0.0, show_default=True, help="Over real time; 0: as fast as possible.")
 @click.option("--limit", type=Number("duration"), default=300.0, show_default=True, metavar="S", help="For one run.")
 @click.option("--workers", type=click.IntRange(0), metavar="N", help="Without: as many as have a processor and memory.")
 @click.option("--address", metavar="URL", help='Of a Ray cluster that does it: "auto", ray://HOST:10001.')
@@ -50,7 +51,7 @@ def _swept(name: str, text: str) -> Any:
 @overwrite_option
 @click.pass_context
 def sweep_command(
-    context: click.Context, name: str, words: tuple[str, ...], plot: str, overwrite: bool, world: str, **options: Any
+    context: click.Context, name: str, words: tuple[str, ...], plot: str, overwrite: bool, **options: Any
 ) -> None:
     """How often it falls: runs a behaviour, stored as NAME or in a FILE (.yaml), or the program of a plan (.py).
 
@@ -65,9 +66,10 @@ def sweep_command(
     from ...sweeps import sweep_stack
 
     shown = not settings.json and sys.stderr.isatty()
+    launch = {key: str(options.pop(key)) for key in ("world", "speed")}
     options = {key: value or () if key in VARIED else value for key, value in options.items()}
     try:
-        table = sweep_stack(subject, parameters=parameters, launch={"world": world}, progress=shown, **options)
+        table = sweep_stack(subject, parameters=parameters, launch=launch, progress=shown, **options)
         if picture is not None and _rates(table):
             table.plot(picture, "fell")
     except ImportError as error:
