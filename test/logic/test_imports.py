@@ -51,7 +51,7 @@ ROOMS = {
     driver.life driver.teleop driver
     process_modules.language process_modules.designators process_modules.core process_modules.robot
     process_modules.modules process_modules.action_rules process_modules
-    behaviors.language behaviors.run behaviors cli cli.commands
+    behaviors.language behaviors.run behaviors sweeps cli cli.commands
     """.split(),
     "nao_sim_bridge": """
     base model model.urdf world.painting world body.sensors body
@@ -76,9 +76,10 @@ OF_CLIENTS = frozenset({"errors", "definitions", "ros", "library", *CLIENTS})
 LAYERS = (
     Layer("naoqi", "nao_library_modules/src/naoqi", frozenset({"qi", "sdk", "errors"})),
     Layer("sdk", "nao_library_modules/src", frozenset(), ("naoqi", "nao_library_modules")),
-    Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "cli")),
+    Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "sweeps", "cli")),
     *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
-    Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi"}),
+    Layer("sweeps", f"{LIBRARY}/sweeps", OF_CLIENTS | {"front", "sim", "testing"}),
+    Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi", "sweeps", "sim"}),
     Layer("engine", f"{SIMULATOR}/base/engine.py", frozenset({"pybullet"})),
     Layer("sim", SIMULATOR, frozenset({"engine"}), ("base/engine.py", "naoqi", "server", "ros", "testing", *FRONT)),
     Layer("modules", f"{SIMULATOR}/naoqi", frozenset({"sim", "qi"})),
@@ -127,7 +128,7 @@ def layer_of(module: str) -> str | None:
             return "engine"
         return "front" if {first, f"{first}.py"} & {*FRONT} else own.get(first, "sim")
     if root == "nao_library_modules":
-        return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "cli") else "library"
+        return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "sweeps", "cli") else "library"
     return root if root in ("naoqi", "qi", "pybullet") else None
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.sweep import sweep
+from nao_sim_bridge.sweep.run import _places
 
 OPTIONS = {"workers": 0, "progress": False}
 
@@ -79,3 +80,40 @@ def test_what_no_file_can_keep_is_an_error_of_the_run():
 def test_a_sweep_over_nothing_is_refused(seeds, values):
     with pytest.raises(BadValue):
         sweep(scaled, seeds, factor=values, **OPTIONS)
+
+
+def test_a_table_tells_runs_counts_rates_and_intervals():
+    table = sweep(lambda seed, push: {"fell": seed < push, "lean": 0.5}, 4, push=[0, 3], **OPTIONS)
+    assert table.text("fell").splitlines() == [
+        "push  runs  fell  rate              95 %",
+        "   0     4     0     0       0 to 0.4899",
+        "   3     4     3  0.75  0.3006 to 0.9544",
+    ]
+
+
+class Kept:
+    """A function that keeps something between runs."""
+
+    def __init__(self):
+        self.made = self.closed = 0
+
+    def __call__(self, seed):
+        self.made = self.made or 1
+        return self.made
+
+    def close(self):
+        self.closed += 1
+
+
+def test_what_a_function_keeps_is_closed_after_the_last_run():
+    kept = Kept()
+    sweep(kept, 3, **OPTIONS)
+    assert (kept.made, kept.closed) == (1, 1)
+
+
+@pytest.mark.parametrize("memory, places", [(0, 6), (700, 3), (5000, 1)])
+def test_as_many_workers_as_have_a_processor_and_memory(memory, places):
+    computer = {"Alive": True, "Resources": {"CPU": 4.0, "memory": 1500 * 2**20}}
+    small = {"Alive": True, "Resources": {"CPU": 2.0, "memory": 1000 * 2**20}}
+    gone = {"Alive": False, "Resources": {"CPU": 8.0}}
+    assert _places([computer, small, gone], memory) == places

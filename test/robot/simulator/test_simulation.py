@@ -8,6 +8,8 @@ import pytest
 from PIL import Image
 from simulator import PATIENCE
 
+from nao_sim_bridge.base.errors import BadValue
+
 BALL = "{name: b, ball: 0.03, position: [0.6, 0.2, 0.03]}"
 
 
@@ -66,6 +68,29 @@ def test_a_push_throws_it_over_and_a_reset_sets_it_up_and_ends_its_motions(stiff
     assert simulation.torsoPose()[2] == pytest.approx(0.331, abs=0.005) and simulation.time() == before
     assert [stiff_robot.answer(call) for call in calls] == [None, None]
     assert stiff_robot.ALMotion.getAngles("HeadYaw", False) == [0.0]
+
+
+@pytest.fixture
+def sensed(robot):
+    """Begins anew with other seeds and noise, and answers what the inertial unit has told after a while."""
+
+    def sense(reset=robot.server.reset, **changes):
+        robot.server.vary(**changes)
+        reset()
+        robot.advance(0.2)
+        return robot.now.imu
+
+    yield sense
+    robot.server.vary(seed=0, payload=0.0, sensor_noise=0.0)
+
+
+def test_seed_noise_and_payload_count_from_the_next_reset_on(robot, sensed):
+    first = sensed(seed=3, sensor_noise=1.0)
+    assert sensed(seed=4) != first
+    assert sensed(seed=3) == first == sensed(robot.server.factory_reset)
+    with pytest.raises(BadValue, match="payload is -1.0, allowed is 0 to"):
+        robot.server.vary(seed=5, payload=-1.0)
+    assert sensed() == first
 
 
 def test_fingers_pictures_and_what_cannot_be(robot, simulation, refused):

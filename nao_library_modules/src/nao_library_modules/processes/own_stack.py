@@ -8,7 +8,8 @@ import signal
 import socket
 import subprocess
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 START_LIMIT = 90.0
@@ -41,7 +42,7 @@ class OwnStack:
         # It gets Ctrl-C when this process is killed, and ends its nodes.
         command = ["setpriv", "--pdeathsig", "INT", "roslaunch", "--port", str(self.ros_port), *launch]
         command += [f"{name}:={value}" for name, value in {"nao_port": str(self.nao_port), **arguments}.items()]
-        with log.open("wb") as output:
+        with log.open("wb") as output, _interruptible():
             self._process = subprocess.Popen(
                 command,
                 stdout=output,
@@ -108,6 +109,16 @@ class OwnStack:
 
     def __exit__(self, *_: object) -> None:
         self.stop()
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Programs that are started here can be ended by Ctrl-C, also where this thread blocks it, as in workers of Ray."""
+    before = signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def can_connect(port: int) -> bool:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple, Tuple
 
-from nao_sim_bridge.base.rotations import Quaternion, Vector3
+from nao_sim_bridge.base.rotations import Quaternion, Vector3, rotate_back
+
+UP = (0.0, 0.0, 1.0)
+FALLEN = 1.0
+"""Lean of the torso from which on a robot has fallen, rad."""
 
 
 @dataclass(frozen=True)
@@ -14,6 +19,12 @@ class Pose:
 
     position: Vector3
     orientation: Quaternion
+
+    @property
+    def lean(self) -> float:
+        """Angle between the body and upright, rad: 0 stands straight, pi is head down."""
+        x, y, z = rotate_back(self.orientation, UP)
+        return math.atan2(math.hypot(x, y), z)
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from nao_sim_bridge.base.readings import UP
 from nao_sim_bridge.base.rotations import rotate_back
-from nao_sim_bridge.library.nao import UP
 from nao_sim_bridge.library.nao_sim import NaoSim
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
-from nao_sim_bridge.base.readings import FootForces, Pose
-from nao_sim_bridge.base.rotations import rotate_back
+from nao_sim_bridge.base.readings import FALLEN, FootForces, Pose
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.control.joints.curves import SmoothCurve
@@ -23,11 +21,8 @@ from nao_sim_bridge.walk.body import foot_on_ground, robot_on_ground
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
 
-UP = (0.0, 0.0, 1.0)
 LONGEST = 600.0
 """s of simulated time that a call waits for what it has begun, if nobody says otherwise."""
-FALLEN = 1.0
-"""Lean of the torso from which on a robot has fallen, rad."""
 
 
 class JointValues(Mapping[str, float]):
@@ -230,8 +225,7 @@ class Nao:
     @property
     def lean(self) -> float:
         """Angle between the torso and upright, truly, in rad: 0 stands straight, pi is head down."""
-        x, y, z = rotate_back(self.snapshot.torso.orientation, UP)
-        return math.atan2(math.hypot(x, y), z)
+        return self.snapshot.torso.lean
 
     @property
     def fallen(self) -> bool:

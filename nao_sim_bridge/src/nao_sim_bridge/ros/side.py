@@ -33,9 +33,9 @@ class RosSide:
     ROS API (relative names):
         Publishes `/clock` (rosgraph_msgs/Clock) when asked to.
         Services `~advance` (nao_library_msgs), `~reset`, `~factory_reset`, `~pause`, `~resume` (std_srvs/Empty),
-        `~reset_world`, `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs), with more than one robot
-        `~picture` (nao_library_msgs), which shows the first one, and those of `RosRobot` for each robot, `offer_sounds`
-        and `offer_things`.
+        `~reset_world`, `~vary`, `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs), with more than one
+        robot `~picture` (nao_library_msgs), which shows the first one, and those of `RosRobot` for each robot,
+        `offer_sounds` and `offer_things`.
         Publishes `/diagnostics`, see `RosDiagnostics`.
 
     Time in ROS goes on when a factory reset begins that of the robot anew.
@@ -55,6 +55,7 @@ class RosSide:
         rospy.Service("~reset", Empty, _empty(server.reset))
         rospy.Service("~factory_reset", Empty, _empty(server.factory_reset))
         success_service("~reset_world", srv.ResetWorld, self._reset_world)
+        success_service("~vary", srv.VaryScene, lambda request: server.vary(**_fields(request)))
         rospy.Service("~pause", Empty, _empty(lambda: server.runner.pause()))
         rospy.Service("~resume", Empty, _empty(lambda: server.runner.resume()))
         if several:
@@ -121,6 +122,10 @@ class RosSide:
             return {"success": False, "message": str(error)}
         length = rospy.Duration.from_sec(film.duration)
         return {"success": True, "path": str(film.path), "frames": film.frames, "length": length}
+
+
+def _fields(request: Any) -> dict[str, Any]:
+    return {name: getattr(request, name) for name in request.__slots__}
 
 
 def _empty(action: Callable[[], object]) -> Callable[[EmptyRequest], EmptyResponse]:

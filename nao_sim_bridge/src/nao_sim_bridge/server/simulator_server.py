@@ -11,7 +11,7 @@ from operator import attrgetter
 from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.base.closing import Step, close_all
-from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.record_dir import unused
 from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
@@ -273,6 +273,19 @@ class SimulatorServer:
     def reset(self) -> None:
         """Put all robots and the world to where they started; tasks are killed, time goes on."""
         self.reset_task().result()
+
+    def vary(self, **changes: Any) -> None:
+        """Change what the robot begins with from its next reset on, a factory reset as well; see `Simulation.vary`.
+
+        Raises:
+            NotAllowed: There are other robots in its world.
+            BadValue: A number is not in its range.
+        """
+        if self._shares_thread:
+            raise NotAllowed("only a robot that is alone in its world can begin with something else")
+        scene = replace(self.options.scene, **changes)
+        self.runner.call(lambda: self.simulation.vary(**changes))
+        self.options = replace(self.options, scene=scene)
 
     def push(self, force: Sequence[float], duration: float, link: str) -> None:
         """Push a link with `force` (N, in world) for `duration` s of simulated time from now on."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import time
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence, TextIO
 
@@ -13,8 +14,9 @@ from nao_sim_bridge.sweep.table import ERROR, SECONDS, SEED, Table, Value, read_
 
 RETRIES = 3
 """How often a run is begun again whose worker has died."""
-AT_ONCE = 2
-"""Runs that wait for each worker."""
+CLOSE_LIMIT = 60.0
+"""s that workers may take to close what they have."""
+MIB = 2**20
 
 
 def sweep(
@@ -24,6 +26,7 @@ def sweep(
     workers: int | None = None,
     address: str | None = None,
     progress: bool = True,
+    memory: float = 0.0,
     **parameters: Sequence[Value],
 ) -> Table:
     """Call `function(seed=..., **parameters)` for all seeds and all combinations of parameters.
@@ -32,14 +35,17 @@ def sweep(
     gone on with: what it has is not run again.
 
     Args:
-        function: Returns a number, a truth value, or a mapping of names to such and to short texts.
+        function: Returns a number, a truth value, or a mapping of names to such and to short texts. Each worker has a
+            copy, which may keep between runs what takes long to make; its method `close`, if it has one, is called when
+            there are no more runs.
         seeds: So many, from 0 on; or which ones.
         output: CSV file with a row for each run, written as they end; None to keep them only in memory.
-        workers: Processes on this computer, as many as it has processors if None; 0: all runs in this process, one
-            after the other.
+        workers: Processes; None: as many as there are processors, and memory. 0: all runs in this process, one after
+            the other, without Ray.
         address: Of a Ray cluster ("ray://head:10001", "auto"), which then does the work. Where `ray.init` was called
             before, that Ray does it.
         progress: Show how far it is.
+        memory: MiB that a worker needs.
         parameters: A sequence of values for each, of numbers, truth values or texts.
 
     Raises:
@@ -62,7 +68,7 @@ def sweep(
     done = _read(path, names) if path is not None and path.exists() else []
     finished = {_key(row, names) for row in done}
     left = [run for run in wanted if _key(run, names) not in finished]
-    runs = _one_by_one(function, left) if workers == 0 else _by_ray(function, left, workers, address)
+    runs = _one_by_one(function, left) if workers == 0 else _by_ray(function, left, workers, address, memory)
     with _Writer(path, names, done) as writer:
         for row in _shown(runs, len(wanted) - len(left), len(wanted), progress):
             writer.add(row)
@@ -92,44 +98,95 @@ def _plain(name: str, value: Any) -> Value:
 
 
 def _one_by_one(function: Callable[..., Any], runs: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
-    for run in runs:
-        yield _call(function, run)
+    try:
+        for run in runs:
+            yield _call(function, run)
+    finally:
+        _close(function)
+
+
+def _close(function: Callable[..., Any]) -> None:
+    close = getattr(function, "close", None)
+    if close is not None:
+        close()
 
 
 def _by_ray(
-    function: Callable[..., Any], runs: Sequence[Mapping[str, Any]], workers: int | None, address: str | None
+    function: Callable[..., Any],
+    runs: Sequence[Mapping[str, Any]],
+    workers: int | None,
+    address: str | None,
+    memory: float,
 ) -> Iterator[dict[str, Any]]:
     """As they end, in any order."""
     if not runs:
         return
     import ray  # only who sweeps in parallel needs it
 
-    mine = not ray.is_initialized()
-    if mine and address is None:
-        ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, configure_logging=False)
-    elif mine:
-        ray.init(address=address, log_to_driver=False, configure_logging=False)
-    try:
+    with _connected(ray, workers, address):
 
-        @ray.remote(max_retries=RETRIES)
-        def call(run: Mapping[str, Any]) -> dict[str, Any]:
-            return _call(function, run)  # part of what each worker loads once
+        @ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=RETRIES)
+        class Worker:
+            """A process with a copy of the function; one run at a time, so that a death takes no other run with it."""
 
-        slots = AT_ONCE * max(1, int(ray.cluster_resources().get("CPU", 1)))
-        left = iter(runs)
-        waiting = {call.remote(run): run for run in itertools.islice(left, slots)}
-        while waiting:
-            (ready,), _ = ray.wait(list(waiting), num_returns=1)
-            run = waiting.pop(ready)
-            for more in itertools.islice(left, 1):
-                waiting[call.remote(more)] = more
+            def ready(self) -> None:
+                """Do nothing: who answers is there."""
+
+            def call(self, run: Mapping[str, Any]) -> dict[str, Any]:
+                return _call(function, run)
+
+            def close(self) -> None:
+                _close(function)
+
+        count = min(workers or len(runs), _places(ray.nodes(), 0.0 if workers else memory), len(runs))
+        busy: dict[Any, tuple[Any, Mapping[str, Any] | None]] = {}
+        for worker in [Worker.remote() for _ in range(count)]:
+            busy[worker.ready.remote()] = worker, None
+        left, there, open_runs = iter(runs), [], len(runs)
+        while open_runs:
+            (ended,), _ = ray.wait(list(busy), num_returns=1)
+            worker, run = busy.pop(ended)
+            following = next(left, None)
+            if following is not None:
+                busy[worker.call.remote(following)] = worker, following
+            if run is None:
+                there.append(worker)
+                continue
+            open_runs -= 1
             try:
-                yield ray.get(ready)
+                yield ray.get(ended)
             except ray.exceptions.RayError as error:
                 yield {**run, SECONDS: 0.0, ERROR: str(error).strip().splitlines()[-1]}
+        ray.wait([worker.close.remote() for worker in there], num_returns=len(there), timeout=CLOSE_LIMIT)
+
+
+@contextmanager
+def _connected(ray: Any, workers: int | None, address: str | None) -> Iterator[None]:
+    """A Ray on this computer, that of an address, or that which is there; who has begun it ends it."""
+    if ray.is_initialized():
+        yield
+        return
+    if address is not None:
+        ray.init(address=address, log_to_driver=False, configure_logging=False)
+    else:
+        # Programs of a worker that dies end by themselves, with theirs; killed by Ray, they would leave these behind.
+        system = {"kill_child_processes_on_worker_exit": False}
+        options = {"log_to_driver": False, "configure_logging": False, "_system_config": system}
+        ray.init(num_cpus=workers, include_dashboard=False, **options)
+    try:
+        yield
     finally:
-        if mine:
-            ray.shutdown()
+        ray.shutdown()
+
+
+def _places(nodes: Iterable[Mapping[str, Any]], memory: float) -> int:
+    """How many workers have a processor and their memory on the computers of a Ray cluster; 1 at least."""
+    count = 0
+    for node in nodes:
+        there = node["Resources"] if node["Alive"] else {}
+        fit = there.get("memory", 0.0) // (memory * MIB) if memory else float("inf")
+        count += int(min(there.get("CPU", 0.0), fit))
+    return max(1, count)
 
 
 def _shown(rows: Iterable[dict[str, Any]], done: int, count: int, progress: bool) -> Iterator[dict[str, Any]]:

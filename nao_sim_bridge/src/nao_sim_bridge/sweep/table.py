@@ -33,6 +33,7 @@ class Rate:
         parameters: Name to value.
         runs: How many runs ended without an error.
         mean: Of truth values, the share of those that are true.
+        count: Of truth values, how many are true; None of numbers.
         low: Where the true mean is with a confidence of 95 %, from here...
         high: ...to here: by Wilson for shares, by the standard error for numbers.
     """
@@ -42,6 +43,7 @@ class Rate:
     mean: float
     low: float
     high: float
+    count: int | None = None
 
 
 class Table:
@@ -85,17 +87,27 @@ class Table:
                 values.append(float(row[result]))
         interval = _wilson if truth else _normal
         return [
-            Rate(dict(zip(self.names, key)), len(values), *interval(values)) for key, values in groups.items() if values
+            Rate(
+                dict(zip(self.names, key)), len(values), *interval(values), count=round(sum(values)) if truth else None
+            )
+            for key, values in groups.items()
+            if values
         ]
 
     def __str__(self) -> str:
+        return self.text(*self.results)
+
+    def text(self, *results: str) -> str:
+        """The rates of these results, one table below the other, and what went wrong."""
         lines = []
-        for result in self.results:
-            head = [*self.names, "runs", result, "95 %"]
+        for result in results:
+            rates = self.rates(result)
+            truth = any(rate.count is not None for rate in rates)
+            head = [*self.names, "runs", result, *(["rate"] if truth else []), "95 %"]
             cells = [
-                [*(f"{value}" for value in rate.parameters.values()), f"{rate.runs}", f"{rate.mean:.4g}"]
-                + [f"{rate.low:.4g} to {rate.high:.4g}"]
-                for rate in self.rates(result)
+                [*map(str, rate.parameters.values()), str(rate.runs), *([str(rate.count)] if truth else [])]
+                + [f"{rate.mean:.4g}", f"{rate.low:.4g} to {rate.high:.4g}"]
+                for rate in rates
             ]
             widths = [max(len(row[i]) for row in [head, *cells]) for i in range(len(head))]
             lines += ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in [head, *cells]]

@@ -14,7 +14,7 @@ from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Pose, Vector3
 from std_srvs.srv import Empty
 
-from nao_library_msgs.srv import AdvanceTime, GetTruepose, PressSensors, PushRobot, ResetWorld, TakePicture
+from nao_library_msgs.srv import AdvanceTime, GetTruepose, PressSensors, PushRobot, ResetWorld, TakePicture, VaryScene
 from nao_sim_bridge.server.broker import QUIET_LIBQI
 from nao_sim_bridge.testing.goal_run import send
 from nao_sim_bridge.testing.waits import wait_for_service, wait_until
@@ -47,6 +47,7 @@ class SimulatedRobot:
         self._reset = self._world_service("nao_sim/reset", Empty, limit)
         self._factory_reset = self._world_service("nao_sim/factory_reset", Empty, limit)
         self._reset_world = self._world_service("nao_sim/reset_world", ResetWorld, limit)
+        self._vary = self._world_service("nao_sim/vary", VaryScene, limit)
         self._pause = self._world_service("nao_sim/pause", Empty, limit)
         self._resume = self._world_service("nao_sim/resume", Empty, limit)
         self._true_pose = self._service("get_truepose", GetTruepose, limit)
@@ -111,6 +112,22 @@ class SimulatedRobot:
             self._factory_reset()
             return
         _succeeded(self._reset_world(world))
+
+    def vary(self, seed: int = 0, payload: float = 0.0, noise: float = 0.0, delay: float = 0.0) -> None:
+        """What the robot begins with from its next reset on; it has to be alone in its world.
+
+        Args:
+            seed: Of all random numbers.
+            payload: kg that the torso carries besides its own.
+            noise: Errors of the sensors: 0 none, 1 as those of a real robot.
+            delay: How late sensors arrive, s.
+
+        Raises:
+            ValueError: A number is not in its range, or there are other robots; everything stays as it is.
+        """
+        answer = self._vary(seed, payload, noise, delay)
+        if not answer.success:
+            raise ValueError(answer.message)
 
     def advance(self, seconds: float) -> float:
         """Let simulated time pass as fast as possible; returns the time after it, s."""

@@ -43,12 +43,12 @@ def run_command(context: click.Context, name: str, parameters: tuple[str, ...]) 
 
     All of it is checked before anything moves, as `nao check` does.
     """
-    _assigned(parameters)  # one that is none is a mistake in the command, whatever the server says
+    assigned(parameters)  # one that is none is a mistake in the command, whatever the server says
     settings = settings_of(context)
     of_file = name.endswith(SUFFIX)
     if not of_file and _file_of(name):
         _the_stored(settings, name)
-    which = {"text": _text_of(name), "file": name} if of_file else {"str_param": name}
+    which = {"text": text_of(name), "file": name} if of_file else {"str_param": name}
     message = function_message(settings, SERVER, function="runBehavior", parameters=list(parameters), **which)
     end = carry_out(settings, SERVER, [message], quiet=True)
     if not settings.json:
@@ -88,10 +88,10 @@ def check_command(context: click.Context, what: str, parameters: tuple[str, ...]
     """
     from nao_library_msgs.srv import ListBehaviorsRequest
 
-    values = _assigned(parameters)
+    values = assigned(parameters)
     settings = settings_of(context)
     of_file = what.endswith(SUFFIX)
-    which = {"text": _text_of(what), "file": what} if of_file else {"name": what}
+    which = {"text": text_of(what), "file": what} if of_file else {"name": what}
     request = ListBehaviorsRequest(parameters=list(parameters), validate=True, **which)
     try:
         # The servers of its goals are asked in turn, and have their time each.
@@ -102,7 +102,7 @@ def check_command(context: click.Context, what: str, parameters: tuple[str, ...]
         answer = check_offline(settings.stack, request)
     found = plain(answer)["behaviors"]
     checked = found[0] if found else _the_stored(settings, what)
-    problems = [_line_of(problem) for problem in checked["problems"]] or [checked["problem"]] * bool(checked["problem"])
+    problems = problems_of(checked)
     if settings.json:
         say_json({**checked, "problems": problems})
     elif not problems:
@@ -115,10 +115,13 @@ def check_command(context: click.Context, what: str, parameters: tuple[str, ...]
         _tell_unvalidated(checked["unvalidated"])
 
 
-def _line_of(problem: dict[str, Any]) -> str:
+def problems_of(checked: Mapping[str, Any]) -> list[str]:
+    """What is wrong with a behaviour that was checked, a line each."""
     from ...behaviors.language.errors import Problem
 
-    return str(Problem(**problem))
+    return [str(Problem(**problem)) for problem in checked["problems"]] or [checked["problem"]] * bool(
+        checked["problem"]
+    )
 
 
 def _tell_unvalidated(servers: Sequence[str]) -> None:
@@ -135,7 +138,8 @@ def _tell_unvalidated(servers: Sequence[str]) -> None:
     click.echo("nothing wrong was found")
 
 
-def _text_of(file: str) -> str:
+def text_of(file: str) -> str:
+    """What a file has. Raises click.UsageError if it cannot be read."""
     try:
         return Path(file).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -143,8 +147,8 @@ def _text_of(file: str) -> str:
         raise click.UsageError(f"{file} cannot be read: {reason}") from None
 
 
-def _assigned(parameters: Sequence[str]) -> dict[str, str]:
-    """Name -> value. Raises click.UsageError if one is no assignment."""
+def assigned(parameters: Sequence[str]) -> dict[str, str]:
+    """Name -> value of `PARAMETER=VALUE`. Raises click.UsageError if one is no assignment."""
     values = {}
     for parameter in parameters:
         name, equals, value = parameter.partition("=")

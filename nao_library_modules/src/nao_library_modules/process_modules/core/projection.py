@@ -27,6 +27,10 @@ class ProjectionFailed(PlanFailure):
     """The plan could not be projected: there is no trace."""
 
 
+class ProjectionLate(ProjectionFailed):
+    """The program took longer than it may, and was ended."""
+
+
 def project(
     program: Path, arguments: Sequence[str] = (), world: str = "empty", launch: Mapping[str, str] | None = None
 ) -> Trace:
@@ -48,7 +52,7 @@ def project(
 def run_program(program: Path, arguments: Sequence[str], master_uri: str, folder: Path, limit: float = LIMIT) -> Trace:
     """Run a program that takes `--trace FILE` with a ROS master, for at most `limit` s; the trace that it keeps.
 
-    Raises ProjectionFailed if it kept no trace.
+    Raises ProjectionLate if it took longer, ProjectionFailed if it kept no trace.
     """
     trace = folder / "trace.json"
     command = [sys.executable, str(program), *arguments, "--trace", str(trace)]
@@ -58,7 +62,7 @@ def run_program(program: Path, arguments: Sequence[str], master_uri: str, folder
             command, env=environment, timeout=limit, stdin=subprocess.DEVNULL, capture_output=True, text=True
         )
     except subprocess.TimeoutExpired:
-        raise ProjectionFailed(f"{program.name} took longer than {limit:g} s") from None
+        raise ProjectionLate(f"{program.name} took longer than {limit:g} s") from None
     try:
         return Trace.from_json(trace.read_text(encoding="utf-8"))
     except (OSError, ValueError, KeyError, TypeError) as error:
