@@ -17,7 +17,7 @@ from nao_library_msgs.srv import (
     StopFilm,
     TouchSensors,
 )
-from nao_sim_bridge.testing import RobotTestCase
+from nao_sim_bridge.testing import RobotTestCase, wait_until
 
 FRONT = "Head/Touch/Front"
 TOUCHED = f"Device/SubDeviceList/{FRONT}/Sensor/Value"
@@ -51,6 +51,17 @@ class SimulatorServices(RobotTestCase):
             self.assertAlmostEqual(getattr(topic.position, axis), getattr(told.position, axis), delta=0.002)
         for axis in "xyzw":
             self.assertAlmostEqual(getattr(topic.orientation, axis), getattr(told.orientation, axis), delta=0.01)
+
+    def test_true_poses_come_fifty_times_a_second(self):
+        """So some come two ticks after another one; a busy computer leaves some out."""
+        stamps = []
+        listening = rospy.Subscriber("ground_truth/odom", Odometry, lambda m: stamps.append(m.header.stamp.to_sec()))
+        self.addCleanup(listening.unregister)
+        self.robot.resume()
+        wait_until(lambda: len(stamps) > 30, 60.0, "true poses")
+        spans = [later - stamp for stamp, later in zip(stamps, stamps[1:])]
+        self.assertLess(min(spans), 0.018)
+        self.assertGreater(sum(spans) / len(spans), 0.0192)
 
     def test_time_moves_only_as_told_while_paused(self):
         before = self.robot.advance(0.0)

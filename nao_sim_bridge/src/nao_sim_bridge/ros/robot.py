@@ -18,7 +18,8 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.ros.services import checked, success_of, success_service
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
-TRUTH_PERIOD = 0.02
+TRUTH_RATE = 50.0
+"""Hz of simulated time."""
 PICTURE = "picture.png"
 WORLD_FRAME, TORSO_FRAME = "world", "torso"
 SENT_AWAY = "the hand was sent away"
@@ -28,8 +29,7 @@ class RosRobot:
     """Publishes where a robot is and takes commands about it.
 
     ROS API (relative names; of several robots those of `nao2` are `nao2/ground_truth/odom`, `nao2/nao_sim/push`...):
-        Publishes `ground_truth/odom` (nav_msgs/Odometry): true pose of the torso in world, velocity in torso; 50 Hz of
-        simulated time.
+        Publishes `ground_truth/odom` (nav_msgs/Odometry): true pose of the torso in world, velocity in torso.
         Services `~push`, `~press`, `~touch`, `~release`, `~picture`, `~set_battery` (nao_library_msgs; SetFloat, 0..1),
         `~plug_charger` (std_srvs/SetBool), `get_truepose` (nao_library_msgs/GetTruepose).
 
@@ -43,7 +43,7 @@ class RosRobot:
         self._server = server
         self._simulated_time = simulated_time
         self._frame = f"{name}/{TORSO_FRAME}" if name else TORSO_FRAME
-        self._next_truth = 0.0
+        self._told = -1
         public, private = (f"{name}/", f"{name}/nao_sim/") if name else ("", "~")
         self._truth = rospy.Publisher(f"{public}ground_truth/odom", Odometry, queue_size=5)
         success_service(f"{private}push", srv.PushRobot, self._push)
@@ -63,8 +63,9 @@ class RosRobot:
     def tick(self) -> None:
         """Publish what is due."""
         snapshot, now = self._server.now
-        if now >= self._next_truth:
-            self._next_truth = now + TRUTH_PERIOD
+        due = int(now * TRUTH_RATE)
+        if due != self._told:
+            self._told = due
             if self.listened:
                 self._truth.publish(self._odometry(snapshot, now))
 
