@@ -11,7 +11,7 @@ REAL = {"sensor_noise": 1.0, "sensor_delay": 0.016}
 
 @pytest.mark.parametrize(
     "scene, ahead",
-    [({"world": "slope_3deg"}, 0.368), ({"world": "uneven"}, 0.285), ({"payload": 0.54}, 0.382), ({}, 0.373)]
+    [({"world": "slope_3deg"}, 0.368), ({"world": "uneven"}, 0.347), ({"payload": 0.54}, 0.382), ({}, 0.373)]
     + [({"friction": 0.4}, 0.377), ({"friction": 1.2}, 0.381)],
 )
 def test_it_walks_on(bench, scene, ahead):
