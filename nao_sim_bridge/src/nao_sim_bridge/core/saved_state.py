@@ -27,7 +27,8 @@ class SavedState:
         self._free = weakref.finalize(self, shared.physics.drop, self._bodies)
         self._free.atexit = False
         robots = [simulation.robot for simulation in simulations]
-        left_out = [shared, shared.settings, shared.task_ids, shared.guard, shared.physics, shared.things]
+        physics = shared.physics
+        left_out = [shared, shared.settings, shared.task_ids, shared.guard, physics, physics.engine, shared.things]
         for simulation in simulations:
             left_out += [simulation.model, simulation.led_layout, simulation.scene, simulation.physics]
         self._robots = Memento(robots, left_out)
