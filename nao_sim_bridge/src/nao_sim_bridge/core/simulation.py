@@ -201,17 +201,9 @@ class Simulation:
         )
 
     def picture(self, view: str, width: int = 640, height: int = 480) -> np.ndarray:
-        """A picture from outside, (height, width, 3) uint8 RGB. Any thread.
+        """A picture of this robot from a view of `PRESETS`, (height, width, 3) uint8 RGB. Any thread.
 
-        Args:
-            view: One of `PRESETS`, which look at this robot.
-            width: Pixels.
-            height: Pixels.
-
-        Raises:
-            UnknownName: There is no such view.
-            BadValue: The size is out of range.
-            RenderError: It cannot be drawn.
+        An UnknownName of the view, a BadValue of the size in pixels, or a RenderError where it cannot be drawn.
         """
         if not all(isinstance(size, int) and 1 <= size <= MAX_PIXELS for size in (width, height)):
             raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")

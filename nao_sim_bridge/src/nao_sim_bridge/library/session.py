@@ -142,11 +142,7 @@ class Session:
     def serve(self, port: int, address: str, speed: float | None, places: Sequence[RobotPlace] = ()) -> str:
         """Let programs for NAOqi work with the robot; see `NaoSim.serve`.
 
-        Args:
-            port: As there.
-            address: As there.
-            speed: As there.
-            places: Where the robot stands after a factory reset; empty for where the world says.
+        `places`: where it stands after a factory reset; empty for where the world says.
         """
         if self._server is not None:
             raise NotAllowed("this robot is served already")
