@@ -43,7 +43,7 @@ class RosRobot:
         self._server = server
         self._simulated_time = simulated_time
         self._frame = f"{name}/{TORSO_FRAME}" if name else TORSO_FRAME
-        self._told = -1
+        self._last_due = -1
         public, private = (f"{name}/", f"{name}/nao_sim/") if name else ("", "~")
         self._truth = rospy.Publisher(f"{public}ground_truth/odom", Odometry, queue_size=5)
         success_service(f"{private}push", srv.PushRobot, self._push)
@@ -64,8 +64,8 @@ class RosRobot:
         """Publish what is due."""
         snapshot, now = self._server.now
         due = int(now * TRUTH_RATE)
-        if due != self._told:
-            self._told = due
+        if due != self._last_due:
+            self._last_due = due
             if self.listened:
                 self._truth.publish(self._odometry(snapshot, now))
 
