@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import Any
 
 import click
@@ -22,9 +23,9 @@ def read_values(text: str) -> list[float]:
         last, colon, step = rest.partition(":")
         start = _number(first, part)
         values += _steps(start, _number(last, part), _number(step, part) if colon else 1.0, part) if dots else [start]
-    again = [value for value in values if values.count(value) > 1] if len(values) <= MOST else []
-    if again:
-        raise ValueError(f"{again[0]:g} is there twice")
+    again = next((value for value, count in Counter(values).items() if count > 1), None)
+    if again is not None:
+        raise ValueError(f"{again:g} is there twice")
     return values
 
 
@@ -52,29 +53,27 @@ class Values(click.ParamType):
 
     name = "values"
 
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> list[float]:
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> list[Any]:
         if not isinstance(value, str):
             return value
         try:
-            return read_values(value)
+            return self.read(value)
         except ValueError as error:
             self.fail(str(error), parameter, context)
 
+    def read(self, text: str) -> list[Any]:
+        return read_values(text)
 
-class Seeds(click.ParamType):
+
+class Seeds(Values):
     """So many seeds from 0 on, or which ones as a range with `..` or a comma; [int]."""
 
     name = "seeds"
 
-    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> list[int]:
-        if not isinstance(value, str):
-            return value
-        try:
-            values = list(map(float, range(int(value)))) if value.isdigit() else read_values(value)
-        except ValueError as error:
-            self.fail(str(error), parameter, context)
+    def read(self, text: str) -> list[Any]:
+        values = list(range(int(text))) if text.isdigit() else read_values(text)
         wrong = next((seed for seed in values if seed != int(seed) or seed < 0), None)
         if wrong is not None or not values:
             told = "no seeds" if wrong is None else f"{wrong:g} is no seed"
-            self.fail(f"{told}: how many, 1 or more, or whole numbers from 0 on as 100..199", parameter, context)
+            raise ValueError(f"{told}: how many, 1 or more, or whole numbers from 0 on as 100..199")
         return list(map(int, values))
