@@ -119,9 +119,8 @@ def problems_of(checked: Mapping[str, Any]) -> list[str]:
     """What is wrong with a behaviour that was checked, a line each."""
     from ...behaviors.language.errors import Problem
 
-    return [str(Problem(**problem)) for problem in checked["problems"]] or [checked["problem"]] * bool(
-        checked["problem"]
-    )
+    problems = [str(Problem(**problem)) for problem in checked["problems"]]
+    return problems or list(filter(None, [checked["problem"]]))
 
 
 def _tell_unvalidated(servers: Sequence[str]) -> None:
