@@ -10,6 +10,7 @@ from nao_sim_bridge.base.errors import NotAllowed
 from nao_sim_bridge.base.rotations import roll_pitch_yaw
 from nao_sim_bridge.body.hand import AWAY
 from nao_sim_bridge.body.sensors.sonar import NO_ECHO
+from nao_sim_bridge.control.balance.posture_recognition import STANDING, PostureWatch, recognise
 from nao_sim_bridge.core.hands import COME_TIME, LEAVE_TIME
 from nao_sim_bridge.model.kinematics import link_transforms, quaternion_matrix, rpy_matrix, transform
 from nao_sim_bridge.model.model_reader import load_model
@@ -110,6 +111,18 @@ def test_broken_sensors_read_an_error_beside_others_that_work(bench):
     assert one.now.left_foot.total > 5.0
     one.simulation.reset()
     assert (one.robot.faults.sensors, one.robot.faults.motors) == (frozenset(), frozenset()), "a new robot is whole"
+
+
+def test_a_posture_is_recognised_anew_when_the_feet_tell_nothing_any_more(bench):
+    one, watch = bench(), PostureWatch(MODEL)
+    one.run(0.5)
+    before = watch.recognise(one.now)
+    assert before.family == STANDING
+    for side in "LR":
+        for corner in ("FrontLeft", "FrontRight", "RearLeft", "RearRight"):
+            one.robot.faults.break_device(f"{side}Foot/FSR/{corner}")
+    one.run(0.1)
+    assert watch.recognise(one.now) == recognise(MODEL, one.now) != before
 
 
 def ray_at(one, name):

@@ -75,7 +75,8 @@ class PostureWatch:
         self._seen = Recognition(UNKNOWN, UNKNOWN)
 
     def recognise(self, snapshot: Snapshot) -> Recognition:
-        readings = (*snapshot.positions, *snapshot.imu.angles[:2], sum(snapshot.foot_loads) * SAME_PER_N)
+        load = snapshot.left_foot.total + snapshot.right_foot.total
+        readings = (*snapshot.positions, *snapshot.imu.angles[:2], load * SAME_PER_N)
         moved = [abs(now - then) for now, then in zip(readings, self._readings)]
         if not moved or max(moved) > SAME:
             self._readings, self._seen = readings, recognise(self._model, snapshot)
