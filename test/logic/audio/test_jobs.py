@@ -6,6 +6,7 @@ import threading
 
 import pytest
 
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.background import Background
 
@@ -69,3 +70,18 @@ def test_work_learns_that_nobody_wants_it_any_more(way):
 
 
 # --- modules that hear ------------------------------------------------------------------------------------------------
+
+
+def test_no_more_wait_for_their_turn_than_may():
+    background, may_end = Background(most=2), threading.Event()
+    tasks = [background.in_turn(lambda _: may_end.wait(PATIENCE), "look") for _ in range(2)]
+    with pytest.raises(BadValue, match="calls of look that wait is 3, allowed is at most 2"):
+        background.in_turn(lambda _: None, "look")
+    may_end.set()
+    assert [task.result(PATIENCE) for task in tasks] == [True, True]
+
+
+def test_what_is_asked_for_after_the_end_is_not_wanted():
+    background = Background()
+    background.close()
+    assert background.in_turn(lambda wanted: wanted(), "work").result(PATIENCE) is False

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import logging
+import math
 import threading
 from collections import deque
 from typing import Any, Callable
 
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 
 Wanted = Callable[[], bool]
@@ -14,15 +16,20 @@ Work = Callable[[Wanted], Any]
 
 
 class Background:
-    """Jobs in threads of their own; `released` is called when `holds` has become False."""
+    """Jobs in threads of their own; `released` is called when `holds` has become False.
 
-    def __init__(self, released: Callable[[], None] = lambda: None) -> None:
+    `most`: how many may be asked for `in_turn` that have not ended.
+    """
+
+    def __init__(self, released: Callable[[], None] = lambda: None, most: float = math.inf) -> None:
         self._released = released
+        self._most = most
         self._lock = threading.Lock()
         self._jobs: deque[Callable[[], None]] = deque()
         self._working = False
         self.unfinished = 0  # jobs in turn that have not ended
         self._stops = 0
+        self._closed = False
 
     def holds(self) -> bool:
         """Whether time that runs faster than the wall clock should wait, as for a robot the work takes next to none."""
@@ -32,14 +39,20 @@ class Background:
         """Nobody wants what has been asked for up to now."""
         self._stops += 1
 
+    def close(self) -> None:
+        """Nobody wants anything any more, what is asked for later neither."""
+        self._closed = True
+
     def in_turn(self, work: Work, name: str) -> Task:
         """Do something after what was asked for before; time that runs fast waits for it.
 
         `work` is called with a function that answers whether anybody still wants the result; when it returns a task,
         time waits for that as well. The task that this returns ends with what `work` returns or raises, or when nobody
-        wants it any more.
+        wants it any more. A BadValue when too many wait for their turn.
         """
         with self._lock:
+            if self.unfinished >= self._most:
+                raise BadValue(f"calls of {name} that wait", self.unfinished + 1, f"at most {self._most}")
             self.unfinished += 1
         task, job = self._job(work, name, self._finished)
         with self._lock:
@@ -65,7 +78,7 @@ class Background:
             asked.finish()
 
         def wanted() -> bool:
-            return self._stops == stops and not cancelled.is_set()
+            return not self._closed and self._stops == stops and not cancelled.is_set()
 
         task = Task(name, 0, ask=cancel)
 

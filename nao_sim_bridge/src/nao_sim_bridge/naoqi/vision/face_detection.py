@@ -146,17 +146,17 @@ class FaceLearner:
         self._cameras = cameras
         self._detector = detector
         self._camera = camera
-        self._looks = Background()
+        self._looks = Background(most=MOST_WAITING)
 
     def look(self, learn: Callable[[np.ndarray], bool]) -> Task:
         """Look at the face in view; a BadValue when too many calls wait for their turn.
 
         The task ends with what `learn` answers, or with False when the pictures do not show exactly one face.
         """
-        if self._looks.unfinished >= MOST_WAITING:
-            raise BadValue("calls that learn a face", self._looks.unfinished + 1, f"at most {MOST_WAITING}")
 
         def work(wanted: Wanted) -> bool:
+            if not wanted():
+                return False
             try:
                 description = self._describe(wanted)
             except CameraClosed as error:
@@ -166,7 +166,7 @@ class FaceLearner:
         return self._looks.in_turn(work, "learnFace")
 
     def close(self) -> None:
-        self._looks.stop()
+        self._looks.close()
 
     def _describe(self, wanted: Wanted) -> np.ndarray | None:
         """What the face in view looks like; None when there is none, or more than one, or it is too far away."""
