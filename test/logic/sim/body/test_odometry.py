@@ -21,3 +21,13 @@ def test_it_begins_with_heading_zero_and_turns_as_the_inertial_unit_says(start):
     for turn in (0.0, 0.5):
         odometry.update(INIT, (0.0, LEAN, start + turn), (20.0, 20.0))
         assert matrix_rpy(quaternion_matrix(odometry.torso.orientation))[2] == pytest.approx(turn, abs=1e-6)
+
+
+def test_a_foot_that_is_pressed_from_above_hands_over_to_none_in_the_air():
+    odometry = Odometry(MODEL, INIT, (0.0, LEAN, 0.0))
+    on_the_left = [*INIT]
+    on_the_left[MODEL.joint_index["RKneePitch"]] += 0.6
+    before = odometry.update(on_the_left, (0.0, LEAN, 0.0), (40.0, 0.0))
+    for _ in range(2):  # the foot that takes over is on the ground from the next time on
+        now = odometry.update(on_the_left, (0.0, LEAN, 0.0), (-5.0, 0.0))
+    assert now.position == pytest.approx(before.position)

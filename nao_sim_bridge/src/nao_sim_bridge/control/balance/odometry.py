@@ -54,6 +54,7 @@ class Odometry:
         """
         turn = self._turn(tilt)
         sole = rotate(turn, self._reader.sole_center(self._foot, positions))
+        loads = [max(load, 0.0) for load in loads]  # what presses from above carries nothing
         if not any(loads):
             # In the air or lying: nothing tells where it goes.
             self._anchor = plus(self.torso.position, sole)
