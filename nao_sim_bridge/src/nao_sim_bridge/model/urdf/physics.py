@@ -40,6 +40,8 @@ def physics_urdf(model: RobotModel) -> str:
         if joint.is_hand:
             child, origin, axis = FINGERS[joint.name], hand.origin, hand.axis
             limits = (-hand.travel, 0.0, joint.max_torque, joint.max_velocity * hand.travel)
+        elif joint.child_link is None:
+            raise ValueError(f"{joint.name} moves no link of the tables")
         else:
             child, origin, axis = alt_name[joint.child_link], joint.origin, joint.axis
             limits = (joint.lower, joint.upper, joint.max_torque, joint.max_velocity)
