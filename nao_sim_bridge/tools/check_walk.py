@@ -204,8 +204,15 @@ def outcomes(workers: int, function: Callable[..., Any], jobs: Sequence[tuple]) 
     Args:
         workers: Processes; 0 for this one.
     """
+    alone = not workers and sys.stderr.isatty()
+
+    def job(seed: int) -> Mapping[str, Any]:
+        if alone:
+            print(f"\r{seed} of {len(jobs)} runs \r", end="", file=sys.stderr, flush=True)
+        return function(*jobs[seed])
+
     shown = workers > 0 and sys.stderr.isatty()
-    table = sweep(lambda seed: function(*jobs[seed]), len(jobs), workers=workers, progress=shown)
+    table = sweep(job, len(jobs), workers=workers, progress=shown)
     if table.errors:
         raise RuntimeError(table.errors[0]["error"])
     return table.rows
