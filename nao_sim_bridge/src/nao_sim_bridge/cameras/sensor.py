@@ -79,7 +79,8 @@ class Shot:
 class Chosen:
     """What a picture was taken with: exposure and gain in the units of the camera's parameters.
 
-    `white_balance` is the colour temperature that appears white, K, `luminance` the mean of the finished picture.
+    `white_balance` is the colour temperature that appears white, K, `luminance` the mean of the finished picture,
+    0..255.
     """
 
     exposure: int

@@ -44,11 +44,12 @@ class Edge:
 
 
 class SoundDetector:
-    """Follows the sound of the microphones, block by block; at a higher sensitivity, 0..1, a sound may be softer.
+    """Follows the sound of the microphones, block by block.
 
-    `floor` is the power of a background, in samples squared over all bands, that is taken for granted at the start;
-    None takes what is heard first for background. Of the last block there are the spectra, (frames, bins, microphones),
-    and whether something stood out: `loud`.
+    The `rate` is theirs in Hz. At a higher sensitivity, 0..1, a sound may be softer. `floor` is the power of a
+    background, in samples squared over all bands, that is taken for granted at the start; None takes what is heard
+    first for background. Of the last block there are the spectra, (frames, bins, microphones), and whether something
+    stood out: `loud`.
     """
 
     def __init__(self, rate: int, floor: float | None = None) -> None:

@@ -29,7 +29,8 @@ class RosRobot:
     """Publishes where a robot is and takes commands about it.
 
     ROS API (relative names; of several robots those of `nao2` are `nao2/ground_truth/odom`, `nao2/nao_sim/push`...):
-        Publishes `ground_truth/odom` (nav_msgs/Odometry): true pose of the torso in world, velocity in torso.
+        Publishes `ground_truth/odom` (nav_msgs/Odometry): true pose of the torso in world, velocity in torso; 50 Hz of
+        simulated time.
         Services `~push`, `~press`, `~touch`, `~release`, `~picture`, `~set_battery` (nao_library_msgs; SetFloat, 0..1),
         `~plug_charger` (std_srvs/SetBool), `get_truepose` (nao_library_msgs/GetTruepose).
 

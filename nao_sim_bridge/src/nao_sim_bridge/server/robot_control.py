@@ -22,8 +22,8 @@ class HandsControl:
     def touch(self, sensors: Sequence[str], duration: float, wait: bool = True) -> Task:
         """Touch a sensor, or stroke over several, by their names or those of their events, for `duration` s.
 
-        The task ends when the hand has gone or, without a duration, when it is felt; without `wait`, when it begins to
-        come.
+        The time is simulated, see `Hands.touch`. The task ends when the hand has gone or, without a duration, when it
+        is felt; without `wait`, when it begins to come.
         """
         wanted, lasting = _names(sensors), number(duration, "duration", 0.0)
 

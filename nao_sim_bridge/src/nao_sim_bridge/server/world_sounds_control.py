@@ -52,7 +52,8 @@ class WorldSoundsControl:
         """Place a sound; the task ends when it has begun.
 
         `sound` is a file's name, "noise:white", "noise:pink", or "tone:" and a frequency in Hz; position is [x, y, z]
-        in world, m; the level that at 1 m, dB SPL. Noises and tones last until they are removed even without `loop`.
+        in world, m; the level is that at 1 m, dB SPL. With `loop` it sounds again and again, until it is removed, as
+        noises and tones do anyway.
         """
         made, endless = self._sound(sound)
         source = SoundSource(name, _position(position), made, _level(level_db), bool(loop) or endless)

@@ -56,7 +56,7 @@ def third(signal: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class MicrophoneBlock:
-    """What the microphones heard from a simulated time on, s: (frames, channels) int16, read-only."""
+    """What the microphones heard from a time on, simulated s: (frames, channels) int16, read-only, `rate` a second."""
 
     time: float
     samples: np.ndarray

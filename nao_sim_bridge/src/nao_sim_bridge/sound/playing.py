@@ -112,6 +112,7 @@ class Playing:
     It begins at a frame of the timeline, None for now, and `start` s in the sound; a loop begins again at its end,
     until it is stopped. Its task ends when it has been played; killing that is silence at once. Marks are (seconds,
     callback), called in the simulation thread when playing passes that place of the sound, in a loop each time.
+    The gains are factors of its volume at first, one a channel.
     """
 
     def __init__(

@@ -50,7 +50,7 @@ class Word:
 
 @dataclass(frozen=True, eq=False)
 class Speech:
-    """An utterance as sound, (frames,) float32 in -1..1, read-only, and its words as they are spoken."""
+    """An utterance as sound, (frames,) float32 in -1..1, read-only, `rate` a second, and its words."""
 
     samples: np.ndarray
     rate: int

@@ -37,7 +37,10 @@ class Detector(Protocol):
     """
 
     def detect(self, image: np.ndarray, optics: Optics, settings: Any) -> Any:
-        """What is in a (height, width, 3) uint8 picture, blue, green, red, read-only; settings are its user's."""
+        """What is in a (height, width, 3) uint8 picture, blue, green, red, read-only; settings are its user's.
+
+        `optics`: how the picture was projected; places in results are normalised.
+        """
 
 
 def make_detector(name: str, arguments: tuple = ()) -> Detector:

@@ -32,7 +32,7 @@ class WorldError(ConfigError):
 
 @dataclass(frozen=True)
 class Rug:
-    """A rectangle of another colour, too thin to be felt; centre and edges in the frame of the floor, m, yaw in rad."""
+    """A rectangle of another colour, too thin to be felt; in the frame of the floor, m, yaw in rad, colour 0..1."""
 
     center: tuple[float, float]
     size: tuple[float, float]

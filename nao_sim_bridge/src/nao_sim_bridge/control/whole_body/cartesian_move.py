@@ -22,7 +22,10 @@ BASE = "Torso"
 
 @dataclass(frozen=True, eq=False)
 class EffectorMove:
-    """One effector (a chain or `Torso`) on its way: a time in s to its (4, 4) pose in `TORSO`, `WORLD` or `ROBOT`."""
+    """One effector (a chain or `Torso`) on its way: a time in s to its (4, 4) pose in `TORSO`, `WORLD` or `ROBOT`.
+
+    The mask says which axes count.
+    """
 
     name: str
     space: int

@@ -214,7 +214,7 @@ class ALSpeechRecognition:
     def _change(self, what: str, change: Callable[[], None]) -> None:
         """Change what is listened for; when it cannot be listened for, everything stays as it was.
 
-        `what` is changed, when that is refused while the engine listens; else it is empty.
+        `what` names what is changed, for the error while the engine listens; empty where it may be changed then, too.
         """
         with self._lock:
             if what:
