@@ -81,7 +81,7 @@ class PlayedRobot:
     def send(self, command, by=""):
         run = PlayedRun(command)
         self.runs.append(run)
-        if next(iter(command.chain[0])) in self.plays:
+        if command.chain[0][0] in self.plays:
             run.end()
         self.sent.release()
         return run
@@ -126,7 +126,7 @@ class Trial:
 
     def touch(self, seconds):
         """In the step that waits for it, once its goal is sent."""
-        for _ in iter(lambda: self.robot.runs and "waitForTouch" in self.robot.runs[-1].command.chain[0], True):
+        for _ in iter(lambda: self.robot.runs and self.robot.runs[-1].command.chain[0][0] == "waitForTouch", True):
             assert self.robot.sent.acquire(timeout=LIMIT)
         began = self.runner.outcome.began
         results = [{"onset": began + seconds}]

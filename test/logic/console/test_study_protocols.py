@@ -10,9 +10,9 @@ from played_study import PROTOCOL
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.console.study.conditions import StudyCondition
 from nao_library_modules.console.study.course import following, step_at
-from nao_library_modules.console.study.errors import ProtocolError
 from nao_library_modules.console.study.order import balanced_rows, order_of
 from nao_library_modules.console.study.reader import read_protocol, read_protocol_file
+from nao_library_modules.console.yaml_file import ConsoleFileError
 
 SHIPPED = sorted(config_file("console/protocols").glob("*.yaml"))
 HEAD = "name: x\nphases:\n  - steps:\n"
@@ -39,7 +39,7 @@ def test_protocols_that_come_along_can_be_run(path):
     ],
 )
 def test_a_mistake_is_told_with_its_line(step, line, told):
-    with pytest.raises(ProtocolError) as error:
+    with pytest.raises(ConsoleFileError) as error:
         read_protocol(f"{HEAD}    {step}\n", "x.yaml")
     assert [(line, True)] == [(each.line, told in each.text) for each in error.value.problems]
 

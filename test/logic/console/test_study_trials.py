@@ -38,7 +38,7 @@ def test_a_trial_does_its_steps_and_measures_the_reaction(trial):
     assert state.status == "finished"
     assert [each.path for each in state.outcomes] == ["1.1", "2.1", "2.2", "2.3.b1.1", "2.4"]
     assert (state.outcomes[1].answer, state.outcomes[1].seconds) == ("front head", pytest.approx(0.7))
-    assert trial.robot.runs[-1].command.chain[0]["say"]["str_param"] in ("Thanks, P01", "Right")
+    assert trial.robot.runs[-1].command.chain[0][1]["str_param"] in ("Thanks, P01", "Right")
 
 
 def test_next_ends_a_step_without_answer_and_a_late_answer_counts_no_more(trial):

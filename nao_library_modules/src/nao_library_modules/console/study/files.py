@@ -74,7 +74,7 @@ class StudyFiles:
         return known[name].read_text(encoding="utf-8")
 
     def store_protocol(self, name: str, text: str) -> Path:
-        """Store a protocol of this computer; where it is. Raises ProtocolError if it cannot be run."""
+        """Store a protocol of this computer; where it is. Raises ConsoleFileError if it cannot be run."""
         _require_name(name, "protocol")
         read_protocol(text, name)
         return write_whole(self.folder / OWN / f"{name}{END}", text)

@@ -21,6 +21,8 @@ GIVEN = ("participant", "number", "trial", "trials")
 NOTHING = "none"
 """Answer of a step that timed out or was skipped."""
 FIRST, LAST = "first", "last"
+BAG_TOPICS = ("joint_states", "/tf", "/rosout")
+"""Of a rosbag that a protocol does not name topics for."""
 
 
 @dataclass(frozen=True)

@@ -8,18 +8,17 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from naoqi.errors import NaoError
-
 from ...base.errors import BadGoal
 from ...base.suggestion import of_those
-from ...behaviors.language.errors import BehaviorError, Problem
+from ...behaviors.language.errors import Problem
 from ...behaviors.language.expressions import IDENTIFIER
-from ...behaviors.language.yaml_text import line_in, load
+from ...behaviors.language.yaml_text import line_in
 from ...nao.touch_names import sensors_of
-from ..robots.commands import RobotCommand
+from ..robots.commands import FORMS, read_command
+from ..robots.commands import KEYS as COMMAND_KEYS
+from ..yaml_file import ConsoleFileError, FileReader
 from .conditions import StudyCondition, unknown_names
 from .course import all_steps
-from .errors import ProtocolError
 from .order import LATIN_SQUARE, ORDERS
 from .protocol import (
     FIRST,
@@ -52,7 +51,6 @@ LONGEST, DEFAULT_WAIT = 3600.0, 3600.0
 MOST_ROUNDS, MOST_CONDITIONS = 1000, 64
 _TOP = ("name", "help", "factors", "order", "seed", "values", "record", "phases")
 _COMMON = ("label", "timeout", "on_error")
-_COMMANDS = ("say", "run", "call", "chain", "posture", "walk_to", "stop")
 _KEYS = {
     "wizard": ("choices", "label", "timeout"),
     "wait": (),
@@ -61,29 +59,20 @@ _KEYS = {
     "repeat": ("as", "steps"),
 }
 _SENSE_KEYS = {"touch": "sensors", "word": "words", "face": "names"}
-KINDS = (*_COMMANDS, *_KEYS)
+KINDS = (*FORMS, *_KEYS)
 
 
 def read_protocol(text: str, name: str) -> StudyProtocol:
-    """A protocol of its YAML. `name`: of the file. Raises ProtocolError with all that is wrong."""
-    try:
-        top = load(text, name)
-    except BehaviorError as error:
-        raise ProtocolError(name, error.problems) from None
-    reader = _Reader()
-    protocol = reader.protocol(top, name, text)
-    if reader.problems:
-        raise ProtocolError(name, sorted(reader.problems, key=lambda problem: problem.line))
-    assert protocol is not None
-    return protocol
+    """A protocol of its YAML. `name`: of the file. Raises ConsoleFileError with all that is wrong."""
+    return _Reader(text, name).protocol(text)
 
 
 def read_protocol_file(path: Path) -> StudyProtocol:
-    """A protocol of its file. Raises ProtocolError with all that is wrong, or if it cannot be read."""
+    """A protocol of its file. Raises ConsoleFileError with all that is wrong, or if it cannot be read."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise ProtocolError(path.name, [Problem("", f"cannot be read: {error}", file=str(path))]) from error
+        raise ConsoleFileError(path.name, [Problem("", f"cannot be read: {error}", file=str(path))]) from error
     return read_protocol(text, path.name)
 
 
@@ -96,16 +85,17 @@ class _Wrong(Exception):  # a signal: the problem is noted, the part is left out
     pass
 
 
-class _Reader:
-    def __init__(self) -> None:
-        self.problems: list[Problem] = []
+class _Reader(FileReader):
+    def __init__(self, text: str, name: str) -> None:
+        super().__init__(text, name)
         self._names: set[str] = set()
         self._labels: dict[str, int] = {}
 
-    def protocol(self, top: Any, name: str, text: str) -> StudyProtocol | None:
+    def protocol(self, text: str) -> StudyProtocol:
+        top = self.content
         if not isinstance(top, dict):
-            self._note("", f"a protocol is a mapping with {', '.join(_TOP)}", 1)
-            return None
+            self.note("", f"a protocol is a mapping with {', '.join(_TOP)}", 1)
+            self.finish()
         self._keys(top, _TOP, "the protocol")
         factors = tuple(self._factors(top))
         values = self._values(top, "values")
@@ -116,16 +106,16 @@ class _Reader:
         self._find_labels(top.get("phases"))
         seed = top.get("seed", 0)
         if not _whole(seed):
-            self._note("seed", f"{seed!r} is no whole number", line_in(top, "seed"))
+            self.note("seed", f"{seed!r} is no whole number", line_in(top, "seed"))
         order = top.get("order", LATIN_SQUARE)
         if order not in ORDERS:
-            self._note("order", f"there is no order {order!r}{of_those(str(order), ORDERS)}", line_in(top, "order"))
-        title = top.get("name", Path(name).stem)
+            self.note("order", f"there is no order {order!r}{of_those(str(order), ORDERS)}", line_in(top, "order"))
+        title = top.get("name", Path(self.name).stem)
         if not isinstance(title, str) or not NAME.fullmatch(title) or title == "protocols":
-            self._note("name", f"{title!r} is no name of a study: {NAME_FORM}; not protocols", line_in(top, "name"))
+            self.note("name", f"{title!r} is no name of a study: {NAME_FORM}; not protocols", line_in(top, "name"))
         protocol = StudyProtocol(
             str(title),
-            self._text(top, "help", ""),
+            self._plain_text(top, "help", ""),
             factors,
             str(order),
             seed if _whole(seed) else 0,
@@ -135,6 +125,7 @@ class _Reader:
             text,
         )
         self._check_texts(protocol)
+        self.finish()
         return protocol
 
     def _factors(self, top: dict[str, Any]) -> Iterable[StudyFactor]:
@@ -144,7 +135,7 @@ class _Reader:
             line = line_in(factors, name)
             where = f"factor {name}"
             if not _identifier(name) or name in (*GIVEN, *LIVE):
-                self._note(where, f"{name!r} is no name: letters, digits and _, and none of {', '.join(GIVEN)}", line)
+                self.note(where, f"{name!r} is no name: letters, digits and _, and none of {', '.join(GIVEN)}", line)
                 continue
             if not isinstance(value, dict):
                 value = {"levels": value}
@@ -152,62 +143,62 @@ class _Reader:
             levels, assigned = value.get("levels"), value.get("assigned", "within")
             if assigned not in ("within", "between"):
                 text = f"assigned is {assigned!r}; right are within (each participant meets all levels), between (one)"
-                self._note(where, text, line_in(value, "assigned") or line)
+                self.note(where, text, line_in(value, "assigned") or line)
             if isinstance(levels, list):
                 levels = {_word(level): {} for level in levels}
             if not isinstance(levels, dict) or len(levels) < 2:
-                self._note(where, "levels are two or more, as [one, two] or {one: {NAME: VALUE}, two: ...}", line)
+                self.note(where, "levels are two or more, as [one, two] or {one: {NAME: VALUE}, two: ...}", line)
                 continue
             read = {}
             for level, content in levels.items():
                 if content is not None and not isinstance(content, dict):
-                    self._note(
+                    self.note(
                         where, f"level {level} is a mapping of values, or nothing", line_in(levels, level) or line
                     )
                     content = None
                 read[_word(level)] = dict(content or {})
             if len({frozenset(values) for values in read.values()}) > 1:
-                self._note(where, "all levels have values of the same names", line)
+                self.note(where, "all levels have values of the same names", line)
             conditions *= len(read)
             yield StudyFactor(name, read, assigned != "between")
         if conditions > MOST_CONDITIONS:
-            self._note("factors", f"{conditions} conditions: at most {MOST_CONDITIONS}", line_in(top, "factors"))
+            self.note("factors", f"{conditions} conditions: at most {MOST_CONDITIONS}", line_in(top, "factors"))
 
     def _recordings(self, top: dict[str, Any]) -> WantedRecordings:
         record = self._mapping(top, "record")
         self._keys(record, ("bag", "video", "sound"), "record")
         bag, video, sound = record.get("bag", []), record.get("video", ""), record.get("sound", False)
         if not isinstance(bag, list) or not all(isinstance(each, str) and TOPIC.fullmatch(each) for each in bag):
-            self._note("record", f"bag is a list of topics, not {bag!r}", line_in(record, "bag"))
+            self.note("record", f"bag is a list of topics, not {bag!r}", line_in(record, "bag"))
             bag = []
         if video not in ("", "top", "bottom"):
-            self._note("record", f"video is of a camera, top or bottom, not {video!r}", line_in(record, "video"))
+            self.note("record", f"video is of a camera, top or bottom, not {video!r}", line_in(record, "video"))
         if not isinstance(sound, bool):
-            self._note("record", f"sound is true or false, not {sound!r}", line_in(record, "sound"))
+            self.note("record", f"sound is true or false, not {sound!r}", line_in(record, "sound"))
         return WantedRecordings(tuple(bag), str(video), sound is True)
 
     def _phases(self, top: dict[str, Any]) -> Iterable[StudyPhase]:
         phases = top.get("phases")
         if not isinstance(phases, list) or not phases:
-            self._note("phases", "there is no list of phases, each with a name and steps", line_in(top, "phases") or 1)
+            self.note("phases", "there is no list of phases, each with a name and steps", line_in(top, "phases") or 1)
             return
         for i, phase in enumerate(phases):
             line = line_in(phases, i)
             where = f"phase {i + 1}"
             if not isinstance(phase, dict):
-                self._note(where, "a phase is a mapping with phase (its name), steps and only", line)
+                self.note(where, "a phase is a mapping with phase (its name), steps and only", line)
                 continue
             self._keys(phase, ("phase", "only", "steps"), where, line)
             only = phase.get("only", "")
             if only not in ("", FIRST, LAST):
                 text = f"only is {only!r}; right are first, last: in that trial of a participant alone"
-                self._note(where, text, line_in(phase, "only"))
-            name = self._text(phase, "phase", f"Phase {i + 1}")
+                self.note(where, text, line_in(phase, "only"))
+            name = self._plain_text(phase, "phase", f"Phase {i + 1}")
             yield StudyPhase(name, str(only), self._steps(phase.get("steps"), str(i + 1), line))
 
     def _steps(self, value: Any, prefix: str, line: int) -> tuple[ProtocolStep, ...]:
         if not isinstance(value, list) or not value:
-            self._note(f"step {prefix}", "steps are a list with at least one step", line)
+            self.note(f"step {prefix}", "steps are a list with at least one step", line)
             return ()
         steps = []
         for i, each in enumerate(value):
@@ -230,7 +221,7 @@ class _Reader:
         label = value.get("label", "")
         if label and not (isinstance(label, str) and label in self._labels):
             label = ""
-        if kind in _COMMANDS:
+        if kind in FORMS:
             return self._command(value, where, line, label)
         if kind != "wait":  # whose keys depend on what it waits for
             self._keys(value, (kind, *_KEYS[kind]), where, line)
@@ -240,14 +231,12 @@ class _Reader:
     def _command(self, value: dict[str, Any], where: str, line: int, label: str) -> ProtocolStep:
         on_error = value.get("on_error", HOLD)
         if on_error not in ON_ERROR:
-            self._note(where, f"on_error is {on_error!r}; right are {', '.join(ON_ERROR)}", line)
-        command = type(value)({key: each for key, each in value.items() if key not in _COMMON})
-        command.line, command.lines = line, getattr(value, "lines", {})  # type: ignore[attr-defined]
-        try:
-            read = RobotCommand.read(command, where)
-        except NaoError as error:
-            self._fail(where, _without_place(str(error), where), line)
-        return CommandStep(line, label, read, self._seconds(value, "timeout", where, line, 0.0), str(on_error))
+            self.note(where, f"on_error is {on_error!r}; right are {', '.join(ON_ERROR)}", line)
+        self._keys(value, (*COMMAND_KEYS, *_COMMON), where, line)
+        command = read_command(self, value, where)
+        if command is None:
+            raise _Wrong
+        return CommandStep(line, label, command, self._seconds(value, "timeout", where, line, 0.0), str(on_error))
 
     def _wizard(self, value: dict[str, Any], path: str, line: int, label: str) -> ProtocolStep:
         where = f"step {path}"
@@ -256,9 +245,9 @@ class _Reader:
             self._fail(where, "choices are a list of words: [yes, no]", line_in(value, "choices") or line)
         words = tuple(map(_word, choices))
         if len({*words}) < len(words):
-            self._note(where, "a choice comes twice", line_in(value, "choices") or line)
+            self.note(where, "a choice comes twice", line_in(value, "choices") or line)
         timeout = self._seconds(value, "timeout", where, line, 0.0)
-        return ChoiceStep(line, label, self._text(value, "wizard", ""), words, timeout)
+        return ChoiceStep(line, label, self._plain_text(value, "wizard", ""), words, timeout)
 
     def _wait(self, value: dict[str, Any], path: str, line: int, label: str) -> ProtocolStep:
         where, what = f"step {path}", value["wait"]
@@ -285,9 +274,9 @@ class _Reader:
             try:
                 sensors_of(words)
             except BadGoal as error:
-                self._note(where, str(error), at)
+                self.note(where, str(error), at)
         elif what == "word" and not words:
-            self._note(where, "wait: word needs words, those that the robot is to listen for: [yes, no]", at)
+            self.note(where, "wait: word needs words, those that the robot is to listen for: [yes, no]", at)
         confidence = value.get("confidence", 0.0)
         if not _number(confidence) or not 0 <= confidence <= 1:
             self._fail(where, f"confidence is a number 0..1, not {confidence!r}", line_in(value, "confidence"))
@@ -304,7 +293,7 @@ class _Reader:
     def _choose(self, value: dict[str, Any], path: str, line: int, _label: str) -> ProtocolStep:
         where, name, cases = f"step {path}", value["choose"], value.get("cases")
         if name not in self._names:
-            self._note(where, f"there is no value {name!r}{of_those(str(name), sorted(self._names))}", line)
+            self.note(where, f"there is no value {name!r}{of_those(str(name), sorted(self._names))}", line)
         if not isinstance(cases, dict) or not cases:
             self._fail(where, "cases are a mapping: {ANSWER: [STEP, ...], ...}", line_in(value, "cases") or line)
         branches = []
@@ -321,7 +310,7 @@ class _Reader:
         if not _whole(count) or not 1 <= count <= MOST_ROUNDS:
             self._fail(where, f"repeat is a whole number 1..{MOST_ROUNDS}, not {count!r}", line)
         if name and not _identifier(name):
-            self._note(where, f"{name!r} is no name: letters, digits and _", line_in(value, "as"))
+            self.note(where, f"{name!r} is no name: letters, digits and _", line_in(value, "as"))
         return RoundsStep(line, "", count, str(name), self._steps(value.get("steps"), f"{path}.r1", line))
 
     def _conditions(self, value: Any, where: str, line: int, known: Iterable[str]) -> tuple[StudyCondition, ...]:
@@ -331,11 +320,11 @@ class _Reader:
             try:
                 condition = StudyCondition.read(str(text))
             except ValueError as error:
-                self._note(where, str(error), line)
+                self.note(where, str(error), line)
                 continue
             for name in condition.names():
                 if name not in known:
-                    self._note(where, f"there is no value {name!r}{of_those(name, sorted(known))}", line)
+                    self.note(where, f"there is no value {name!r}{of_those(name, sorted(known))}", line)
             read.append(condition)
         return tuple(read)
 
@@ -350,11 +339,11 @@ class _Reader:
         if label is not None and any(kind in value for kind in KINDS):
             line = line_in(value, "label")
             if not _identifier(label) or label in (*GIVEN, *LIVE):
-                self._note(
+                self.note(
                     "label", f"{label!r} is no label: letters, digits and _, and none of {', '.join(GIVEN)}", line
                 )
             elif label in self._labels or label in self._names:
-                self._note("label", f"{label!r} is the name of something else, too", line)
+                self.note("label", f"{label!r} is the name of something else, too", line)
             else:
                 self._labels[label] = line
                 self._names.update((label, f"{label}_seconds"))
@@ -368,20 +357,20 @@ class _Reader:
         for where, value in {"values": [protocol.values], **levels}.items():
             for text in _texts_in(value):
                 for problem in unknown_names(text, sorted(self._names)):
-                    self._note(where, problem, 0)
+                    self.note(where, problem, 0)
         for path, step in all_steps(protocol):
             texts = [step.question] if isinstance(step, ChoiceStep) else []
             if isinstance(step, CommandStep):
-                texts = list(_texts_in(list(step.command.chain)))
+                texts = list(_texts_in([fields for _, fields in step.command.chain]))
             for text in texts:
                 for problem in unknown_names(text, sorted(self._names)):
-                    self._note(f"step {path}", problem, step.line)
+                    self.note(f"step {path}", problem, step.line)
 
     def _values(self, top: dict[str, Any], key: str) -> dict[str, Any]:
         values = self._mapping(top, key)
         for name in values:
             if not _identifier(name) or name in GIVEN:
-                self._note(key, f"{name!r} is no name: letters, digits and _", line_in(values, name))
+                self.note(key, f"{name!r} is no name: letters, digits and _", line_in(values, name))
         return dict(values)
 
     def _mapping(self, value: dict[str, Any], key: str) -> dict[str, Any]:
@@ -389,21 +378,21 @@ class _Reader:
         if inner is None:
             return {}
         if not isinstance(inner, dict):
-            self._note(key, f"{key} is a mapping, not {inner!r}", line_in(value, key))
+            self.note(key, f"{key} is a mapping, not {inner!r}", line_in(value, key))
             return {}
         return inner
 
-    def _text(self, value: dict[str, Any], key: str, default: str) -> str:
+    def _plain_text(self, value: dict[str, Any], key: str, default: str) -> str:
         text = value.get(key, default)
         if isinstance(text, (dict, list)) or text is None:
-            self._note(key, f"{key} is a text, not {text!r}", line_in(value, key))
+            self.note(key, f"{key} is a text, not {text!r}", line_in(value, key))
             return default
         return _word(text)
 
     def _seconds(self, value: dict[str, Any], key: str, where: str, line: int, default: float) -> float:
         seconds = value.get(key, default)
         if not _number(seconds) or not 0 <= seconds <= LONGEST:
-            self._note(
+            self.note(
                 where, f"{key} is a number of seconds 0..{LONGEST:g}, not {seconds!r}", line_in(value, key) or line
             )
             return default
@@ -412,13 +401,10 @@ class _Reader:
     def _keys(self, value: dict[str, Any], known: Sequence[str], where: str, line: int = 0) -> None:
         for key in value:
             if key not in known:
-                self._note(where, f"there is no {key!r}{of_those(str(key), known)}", line_in(value, key) or line)
-
-    def _note(self, where: str, text: str, line: int) -> None:
-        self.problems.append(Problem(where, text, line))
+                self.note(where, f"there is no {key!r}{of_those(str(key), known)}", line_in(value, key) or line)
 
     def _fail(self, where: str, text: str, line: int) -> Any:
-        self._note(where, text, line)
+        self.note(where, text, line)
         raise _Wrong
 
 
@@ -431,10 +417,6 @@ def _texts_in(value: Any) -> Iterable[str]:
     elif isinstance(value, (list, tuple)):
         for each in value:
             yield from _texts_in(each)
-
-
-def _without_place(text: str, where: str) -> str:
-    return text.split(f"{where}: ", 1)[-1]
 
 
 def _identifier(value: Any) -> bool:

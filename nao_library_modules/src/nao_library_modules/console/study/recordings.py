@@ -16,7 +16,7 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ...base.whole_file import FileTrouble, move_whole
-from ..robots.commands import RobotCommand
+from ..robots.commands import call
 from . import state as told
 from .protocol import WantedRecordings
 
@@ -96,11 +96,11 @@ class TrialRecordings:
 
     def _begin_video(self, runner: Any) -> None:
         fields = {"id": self._name(runner), "camera": self._wanted.video, "file_type": "mp4"}
-        run = self._send(runner, "NaoVision", "startRecording", "record the camera", **fields)
+        run = self._send(runner, "NaoVision", "startRecording", **fields)
         self._tell_begin(runner, VIDEO, name=fields["id"], at=_path_of(run))
 
     def _end_video(self, runner: Any, about: Mapping[str, Any]) -> None:
-        run = self._send(runner, "NaoVision", "stopRecording", "end the video", id=about["name"])
+        run = self._send(runner, "NaoVision", "stopRecording", id=about["name"])
         for video in run.result.get("recordings") or [{}]:
             file = self._fetch(video.get("path", ""), f"video{Path(video.get('path', '')).suffix or '.mp4'}")
             self._tell_end(
@@ -114,14 +114,12 @@ class TrialRecordings:
 
     def _begin_sound(self, runner: Any) -> None:
         name = f"{self._name(runner)}.wav"
-        run = self._send(
-            runner, "nao_audio_in", "startRecording", "record the microphones", str_param=name, overwrite=True
-        )
+        run = self._send(runner, "nao_audio_in", "startRecording", str_param=name, overwrite=True)
         results = run.result.get("results") or [{}]
         self._tell_begin(runner, SOUND, name=name, began=_seconds(results[-1].get("end")) or runner.robot.now())
 
     def _end_sound(self, runner: Any, about: Mapping[str, Any]) -> None:
-        run = self._send(runner, "nao_audio_in", "stopRecording", "end the sound")
+        run = self._send(runner, "nao_audio_in", "stopRecording")
         for sound in run.result.get("files") or [{}]:
             file = self._fetch(sound.get("file", ""), "sound.wav")
             duration, began = sound.get("duration", 0.0), about.get("began")
@@ -129,8 +127,8 @@ class TrialRecordings:
             self._tell_end(runner, SOUND, file=file, began=began, duration=duration, **problem)
 
     @staticmethod
-    def _send(runner: Any, server: str, function: str, label: str, **fields: Any) -> Any:
-        run = runner.robot.send(RobotCommand(server, ({function: fields},), label))
+    def _send(runner: Any, server: str, function: str, **fields: Any) -> Any:
+        run = runner.robot.send(call(server, function, **fields))
         if not run.wait(LIMIT):
             run.cancel()
             raise NaoError(f"{server} does not answer within {LIMIT:g} s")

@@ -12,7 +12,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..robots.commands import RobotCommand
+from ..robots.commands import RobotCommand, call
 from ..robots.events import ConsoleEvent
 from . import state as told
 from .conditions import filled
@@ -339,6 +339,8 @@ class TrialRunner:
         if command is not None:
             texts = {name: str(value) for name, value in values.items()}
             run = self.robot.send(command.filled(texts) if isinstance(step, CommandStep) else command)
+            if run is None:  # of a stop, which nothing is waited for
+                return StepEnd(told.DONE), ""
             run.on_end(lambda ended: self._inbox.put((_RUN_ENDED, ended, "")))
         if timeout and not isinstance(step, SenseStep):  # the server of a sense has it itself
             prevent = self._after(timeout, lambda: self._inbox.put((_TIME_UP, place, "")))
@@ -353,7 +355,7 @@ class TrialRunner:
                 if what == _TIME_UP and about == place:
                     return StepEnd(told.DONE if isinstance(step, PauseStep) else told.TIMEOUT), ""
                 if what == _HAPPENED:
-                    counts[COUNTED[about.kind]] += about.stamp >= began
+                    counts[COUNTED[about.kind]] += about.stamp >= began and _counts(about)
                 elif what == CHOICE and about[0] == place:
                     return StepEnd(told.DONE, about[1], about[2]), by
                 elif what == ABORT:
@@ -378,6 +380,11 @@ class TrialRunner:
         return all(condition.holds({**values, **live}) for condition in step.conditions)
 
 
+def _counts(event: ConsoleEvent) -> bool:
+    """Whether an event is a touch, a word or a face: neither the end of a touch, nor other things that are seen."""
+    return event.data.get("touched", event.kind != "touched") and event.data.get("what", "face") == "face"
+
+
 def _command_of(step: ProtocolStep) -> RobotCommand | None:
     """What a step asks of the robot."""
     if isinstance(step, CommandStep):
@@ -394,8 +401,8 @@ def _command_of(step: ProtocolStep) -> RobotCommand | None:
     return _sense("NaoVision", "detectFaces", step, **name)
 
 
-def _sense(server: str, function: str, step: ProtocolStep, **fields: Any) -> RobotCommand:
-    return RobotCommand(server, ({function: {**fields, "timeout": step.timeout}},), step.text)  # type: ignore[attr-defined]
+def _sense(server: str, function: str, step: SenseStep, **fields: Any) -> RobotCommand:
+    return call(server, function, **fields, timeout=step.timeout)
 
 
 def _end_of(step: ProtocolStep, run: Any) -> StepEnd:

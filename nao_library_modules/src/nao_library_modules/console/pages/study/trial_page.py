@@ -11,14 +11,17 @@ from typing import Any
 from nicegui import run, ui
 from starlette.requests import Request
 
+from naoqi.errors import NaoError
+
 from ...study.course import all_steps
-from ...study.errors import ProtocolError, StudyError
+from ...study.errors import StudyError
 from ...study.order import order_of
-from ...study.protocol import BranchStep, ChoiceStep, RoundsStep, StudyProtocol, WantedRecordings
+from ...study.protocol import BAG_TOPICS, BranchStep, ChoiceStep, RoundsStep, StudyProtocol, WantedRecordings
 from ...study.reader import read_protocol
 from ...study.runner import TrialRunner
 from ...study.state import DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, SKIPPED, STOPPED, TIMEOUT, TrialState
 from ...study.studies import Studies
+from ...yaml_file import ConsoleFileError
 from ..frame import framed
 from .links import study_links
 
@@ -166,7 +169,7 @@ class _StudyPage:
             text = await run.io_bound(self.studies.files.protocol_text, name)
             self._name.value, self._text.value = name, text
             self.protocol = read_protocol(text, name)
-        except (StudyError, OSError) as error:
+        except (NaoError, OSError) as error:
             self.protocol = None
             self._tell_problems(error)
         else:
@@ -200,7 +203,7 @@ class _StudyPage:
         if not pseudonym:
             ui.notify("The trial needs the pseudonym of its participant", type="warning")
             return
-        bag = protocol.record.bag or ("joint_states", "/tf", "/rosout")
+        bag = protocol.record.bag or BAG_TOPICS
         wanted = WantedRecordings(
             bag if self._bag.value else (),
             (protocol.record.video or "top") if self._video.value else "",
@@ -216,14 +219,14 @@ class _StudyPage:
     async def _try(self, begin: Any) -> None:
         try:
             await run.io_bound(begin)
-        except (StudyError, OSError) as error:
+        except (NaoError, OSError) as error:
             ui.notify(str(error), type="negative", multi_line=True)
         await self._refresh()
 
     def _check(self) -> bool:
         try:
             read_protocol(self._text.value, self._name.value)
-        except StudyError as error:
+        except ConsoleFileError as error:
             self._tell_problems(error)
             ui.notify("The protocol cannot be run", type="negative")
             return False
@@ -237,7 +240,7 @@ class _StudyPage:
         try:
             name = self._name.value
             await run.io_bound(self.studies.files.store_protocol, name, self._text.value)
-        except (StudyError, OSError) as error:
+        except (NaoError, OSError) as error:
             ui.notify(str(error), type="negative")
             return
         names = list(self.studies.files.protocols())
@@ -248,7 +251,7 @@ class _StudyPage:
     def _tell_problems(self, error: Exception) -> None:
         self._problems.clear()
         with self._problems:
-            for problem in error.problems if isinstance(error, ProtocolError) else [error]:
+            for problem in error.problems if isinstance(error, ConsoleFileError) else [error]:
                 ui.label(str(problem))
 
     # A trial that runs
