@@ -209,7 +209,7 @@ def _chain(reader: FileReader, server: str, steps: Any, where: str) -> RobotComm
         made.append((str(function), dict(fields)))
         if server in ACTIONS:
             try:
-                message_of(server_type(server).function, dict(fields), f"{where} {function}")
+                message_of(server_type(server).function, dict(fields))
             except BadGoal as error:
                 reader.note(where, f"{function}: {error}", line)
     return RobotCommand(server, tuple(made)) if made else None
