@@ -16,7 +16,7 @@ from naoqi.errors import NaoError
 
 from ...base.whole_file import write_whole
 from ...behaviors.language.yaml_text import dump
-from ..yaml_file import FileReader
+from ..files.yaml_file import FileReader
 
 OPERATOR, OBSERVER = "operator", "observer"
 ROLES = (OPERATOR, OBSERVER)

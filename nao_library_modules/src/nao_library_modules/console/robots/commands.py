@@ -22,7 +22,7 @@ from ...behaviors.language.expressions import text_of
 from ...behaviors.language.messages import message_of
 from ...behaviors.language.yaml_text import line_in, line_of
 from ...functions.server_types import ACTIONS, ServerType, described_type, server_type
-from ..yaml_file import FileReader
+from ..files.yaml_file import FileReader
 
 SPEECH, MOTION, BEHAVIORS = "nao_audio_out", "NaoMotion", "NaoBehavior"
 FORMS: Mapping[str, tuple[str, ...]] = {

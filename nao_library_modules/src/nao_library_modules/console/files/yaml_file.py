@@ -7,11 +7,11 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.errors import cut
-from ..base.suggestion import did_you_mean
-from ..behaviors.language.errors import BehaviorError, Problem
-from ..behaviors.language.expressions import text_of
-from ..behaviors.language.yaml_text import line_in, line_of, load
+from ...base.errors import cut
+from ...base.suggestion import did_you_mean
+from ...behaviors.language.errors import BehaviorError, Problem
+from ...behaviors.language.expressions import text_of
+from ...behaviors.language.yaml_text import line_in, line_of, load
 
 
 class ConsoleFileError(NaoError):
