@@ -77,7 +77,12 @@ OF_CLIENTS = frozenset({"errors", "definitions", "ros", "library", *CLIENTS})
 LAYERS = (
     Layer("naoqi", "nao_library_modules/src/naoqi", frozenset({"qi", "sdk", "errors"})),
     Layer("sdk", "nao_library_modules/src", frozenset(), ("naoqi", "nao_library_modules")),
-    Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "sweeps", "cli", "console")),
+    Layer(
+        "library",
+        LIBRARY,
+        frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}),
+        (*CLIENTS, "sweeps", "cli", "console"),
+    ),
     *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
     Layer("sweeps", f"{LIBRARY}/sweeps", OF_CLIENTS | {"front", "sim", "testing"}),
     Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi", "sweeps", "sim", "console"}),

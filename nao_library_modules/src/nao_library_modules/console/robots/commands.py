@@ -158,9 +158,8 @@ def _read_chain(reader: FileReader, holder: Any, where: str) -> RobotCommand | N
             continue
         ((function, fields),) = step.items()
         steps.append((function, fields or {}, line_of(step)))
-    if not steps:
+    if not holder.get("steps"):
         reader.note(where, "steps is missing: functions of the chain, in their order", line_of(holder))
-        return None
     return _chain(reader, reader.text(holder, "chain", where), steps, where)
 
 
