@@ -8,11 +8,11 @@ import pytest
 from played_study import PROTOCOL
 
 from nao_library_modules.base.paths import config_file
+from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from nao_library_modules.console.study.conditions import StudyCondition
 from nao_library_modules.console.study.course import following, step_at
 from nao_library_modules.console.study.order import balanced_rows, order_of
 from nao_library_modules.console.study.reader import read_protocol, read_protocol_file
-from nao_library_modules.console.yaml_file import ConsoleFileError
 
 SHIPPED = sorted(config_file("console/protocols").glob("*.yaml"))
 HEAD = "name: x\nphases:\n  - steps:\n"

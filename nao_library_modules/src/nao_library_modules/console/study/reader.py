@@ -14,9 +14,9 @@ from ...behaviors.language.errors import Problem
 from ...behaviors.language.expressions import IDENTIFIER
 from ...behaviors.language.yaml_text import line_in
 from ...nao.touch_names import sensors_of
+from ..files.yaml_file import ConsoleFileError, FileReader
 from ..robots.commands import FORMS, read_command
 from ..robots.commands import KEYS as COMMAND_KEYS
-from ..yaml_file import ConsoleFileError, FileReader
 from .conditions import StudyCondition, unknown_names
 from .course import all_steps
 from .order import LATIN_SQUARE, ORDERS

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from nicegui import app, run, ui
+from nicegui import run, ui
 from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 
@@ -61,14 +61,14 @@ def build(console: Any, studies: Studies) -> None:
     """Add the page, its data, and the media."""
     files: StudyFiles = studies.files
 
-    @app.get("/console/study/replay/{study}/{name}")
+    @console.app.get("/console/study/replay/{study}/{name}")
     async def data(study: str, name: str) -> Response:
         try:
             return JSONResponse(await run.io_bound(lambda: replay_of(files.trial(f"{study}/{name}"))))
         except StudyError as error:
             return PlainTextResponse(str(error), 404)
 
-    @app.get("/console/study/media/{study}/{name}/{file}")
+    @console.app.get("/console/study/media/{study}/{name}/{file}")
     async def media(study: str, name: str, file: str) -> Response:
         try:
             path = await run.io_bound(lambda: files.media(f"{study}/{name}", file))

@@ -13,6 +13,7 @@ from starlette.requests import Request
 
 from naoqi.errors import NaoError
 
+from ...files.yaml_file import ConsoleFileError
 from ...study.course import all_steps
 from ...study.errors import StudyError
 from ...study.order import order_of
@@ -21,7 +22,6 @@ from ...study.reader import read_protocol
 from ...study.runner import TrialRunner
 from ...study.state import DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, SKIPPED, STOPPED, TIMEOUT, TrialState
 from ...study.studies import Studies
-from ...yaml_file import ConsoleFileError
 from ..frame import framed
 from .links import study_links
 
