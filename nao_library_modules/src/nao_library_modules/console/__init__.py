@@ -1,1 +1,1 @@
-"""A page in the browser for the person who runs the robot."""
+"""The console: pages in a browser for the person who runs a study; a client of servers, topics and services."""

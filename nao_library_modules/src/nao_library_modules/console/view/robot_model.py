@@ -121,9 +121,7 @@ def read_model(text: str) -> RobotModel:
         robot = ElementTree.fromstring(text)
         colours = {m.get("name", ""): _rgba(m) for m in robot.findall("material") if m.find("color") is not None}
         left_out: dict[str, None] = {}
-        links = {
-            link.attrib["name"]: tuple(_visuals(link, colours, left_out)) for link in robot.findall("link")
-        }
+        links = {link.attrib["name"]: tuple(_visuals(link, colours, left_out)) for link in robot.findall("link")}
         joints = tuple(_joint(joint) for joint in robot.findall("joint"))
     except (ElementTree.ParseError, KeyError, ValueError, AttributeError) as error:
         raise NaoError(f"the robot's description cannot be read: {error!r}") from error

@@ -71,7 +71,9 @@ class Simulator:
         pose = Pose(Point(x, y, z), Quaternion())
         size = [0.1, 0.1, 0.1] if kind == "box" else [0.04, 0.1] if kind == "cylinder" else []
         stand = kind in ("landmark", "qr", "face")
-        self._call("place_object", PlaceObject, name=name, kind=kind, content=content, size=size, stand=stand, pose=pose)
+        self._call(
+            "place_object", PlaceObject, name=name, kind=kind, content=content, size=size, stand=stand, pose=pose
+        )
 
     def remove(self, name: str) -> None:
         from nao_library_msgs.srv import RemoveObject
