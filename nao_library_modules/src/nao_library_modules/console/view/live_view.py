@@ -8,6 +8,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ...base.places import yaw_of_quaternion
 from .broadcast import Broadcast, FrameInbox
 from .memory_topics import MemoryTopics
 from .senses import Senses
@@ -94,6 +95,11 @@ class LiveView:
         for index, name in enumerate(wanted):
             if name not in before and found[name].kept():
                 inbox.add(samples_frame([(index, value, stamp) for stamp, value in found[name].kept()]))
+
+    @property
+    def heading(self) -> float:
+        """Where the robot looks, rad in the frame of its place; 0 while that is not known."""
+        return 0.0 if self._base is None else yaw_of_quaternion(*self._base[3:]) or 0.0
 
     def _change_traces(self, before: Sequence[str], wanted: Sequence[str]) -> dict[str, Any]:
         found = {name: self._traces.want(name) for name in wanted}  # before others go: what stays is not begun anew

@@ -1,4 +1,4 @@
-"""Keys of the robot's memory as topics, through the driver's part nao_memory; watched only while somebody wants them."""
+"""Keys of the robot's memory as topics of the driver's nao_memory; watched only while somebody wants them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class MemoryTopics:
         self._own: dict[str, int] = {}  # key -> how many watch it; of those that nobody else has watched
 
     def watch(self, key: str, kind: str, callback: Callable[[Any], None]) -> Callable[[], None]:
-        """Have messages of a key: FloatStamped for FLOAT, also of whole numbers and truth values, StringStamped for TEXT.
+        """Have messages of a key: FloatStamped for FLOAT (whole numbers and truth values too), StringStamped for TEXT.
 
         Returns what ends it. Raises NaoError if there is no nao_memory, or no such key.
         """

@@ -212,7 +212,7 @@ def mesh_path(name: str, allowed: frozenset[str], package_path: Callable[[str], 
 
     Raises FileNotFoundError if it is none of them, is not there, or leads out of its package.
     """
-    if name not in allowed:
+    if not name or name not in allowed:
         raise FileNotFoundError(f"no robot that is shown has a mesh {name!r}")
     package, *inner = PurePosixPath(name).parts
     folder = Path(package_path(package)).resolve()
