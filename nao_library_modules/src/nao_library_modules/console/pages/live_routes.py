@@ -1,4 +1,4 @@
-"""Routes beside the pages for everything live: the robot's model, its meshes, and WebSockets. All are behind the guard."""
+"""Routes beside the pages for everything live: the robot's model, its meshes, WebSockets. All are behind the guard."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from ..view.traces import MOST
 from ..view.traces import NAMES as TRACE_NAMES
 from ..view.views import RobotViews
 from . import live_routes
-from .frame import PageContext, framed
+from .frame import STATIC, PageContext, framed
 from .simulator_panel import SimulatorPanel
 
 PERIOD, SLOW_PERIOD = 0.4, 1.0
@@ -60,6 +60,7 @@ class RobotPage:
         self._robot = page.robot
         for script in ("robot_view.js", "camera.js", "plot.js"):
             page.static(script)
+        ui.add_head_html(f'<link rel="stylesheet" href="{STATIC}/robot_page.css">')
         with ui.element("div").classes("nao-robot-page w-full"):
             with ui.column().classes("nao-robot-wide"):
                 self._build_view()
