@@ -109,13 +109,15 @@ def main() -> int:
     parser.add_argument("--output", type=Path, default=Path("table.csv"), help="the table (default: %(default)s)")
     parser.add_argument("--overwrite", action="store_true", help="replace a file of that name")
     options = parser.parse_args(rospy.myargv()[1:])
-    rospy.init_node("console_participants", anonymous=True)
+    rospy.init_node("console_participants", anonymous=True, disable_signals=True)  # Ctrl-C ends what waits
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
     try:
         return run(options)
     except (NaoError, OSError, rospy.ROSException) as error:
         print(error)
         return 1
+    except KeyboardInterrupt:
+        return 130
 
 
 def run(options: argparse.Namespace) -> int:
@@ -136,7 +138,12 @@ def run(options: argparse.Namespace) -> int:
                 break
             changes: queue.SimpleQueue[Any] = queue.SimpleQueue()
             runner = studies.begin(protocol, pseudonym, robot, "participants", listener=changes.put)
-            ended = participant.play(runner, changes)
+            try:
+                ended = participant.play(runner, changes)
+            except KeyboardInterrupt:
+                runner.abort()
+                runner.wait(10.0)
+                raise
             print(f"{runner.id} {ended}: {runner.state.about['condition']}", flush=True)
             good = ended == FINISHED
     table = table_of(files, protocol.name)
