@@ -89,7 +89,7 @@ class StudyFiles:
         found = []
         for path in (self.folder / study).glob("*-*"):
             match = _TRIAL.fullmatch(path.name)
-            if match and path.is_dir():
+            if match and NAME.fullmatch(match["participant"]) and path.is_dir():
                 found.append(TrialFolder(path, study, match["participant"], int(match["number"])))
         return sorted(found, key=lambda trial: (trial.participant, trial.number))
 

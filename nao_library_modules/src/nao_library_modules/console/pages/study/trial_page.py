@@ -71,7 +71,10 @@ class _StudyPage:
         self.protocol: StudyProtocol | None = None
         self._dirty = True
         self._leave: Any = None
-        self._events: deque[Any] = deque(maxlen=SHOWN_EVENTS)
+        self._shown: tuple[bool, Any] | None = None
+        self._fresh: deque[Any] = deque(maxlen=SHOWN_EVENTS)  # events that are not shown yet
+        self._recordings: tuple[str, ...] | None = None
+        self._choices_of: tuple[str, int] | None = None
 
     async def build(self) -> None:
         self._area = ui.column().classes("w-full gap-4")
@@ -79,7 +82,7 @@ class _StudyPage:
         leave = [self.studies.on_change(self._mark), self.robot.events.subscribe(self._keep)]
         self.page.every(PERIOD, self._refresh)
         self.page.on_leave(lambda: [each() for each in (*leave, self._leave) if each])
-        ui.keyboard(on_key=self._key)
+        ui.keyboard(on_key=self._key, ignore=["input", "select", "textarea"])
         await self._refresh()
 
     def _mark(self, *_: Any) -> None:
@@ -87,7 +90,7 @@ class _StudyPage:
         self._dirty = True
 
     def _keep(self, event: Any) -> None:
-        self._events.append(event)
+        self._fresh.append(event)
         self._dirty = True
 
     def _follow(self) -> None:
@@ -104,7 +107,7 @@ class _StudyPage:
     async def _refresh(self) -> None:
         self._follow()
         running = self.runner is not None and not self.runner.state.over
-        if getattr(self, "_shown", None) != (running, self.runner):
+        if self._shown != (running, self.runner):
             self._shown = (running, self.runner)
             self._area.clear()
             with self._area:
@@ -137,7 +140,7 @@ class _StudyPage:
                             ui.badge(f"records {', '.join(state.recordings)}").props("color=negative")
                         ui.button(
                             "Take up again", icon="restart_alt", on_click=lambda _, each=folder.id: self._take_up(each)
-                        ).props("no-caps").mark("take-up")
+                        ).props("no-caps")
         with ui.card().classes("w-full"):
             ui.label("New trial").classes("text-h6")
             names = list(await run.io_bound(self.studies.files.protocols))
@@ -266,9 +269,9 @@ class _StudyPage:
                 condition = ", ".join(f"{name}: {level}" for name, level in about["condition"].items())
                 if condition:
                     ui.label(condition)
-                self._status = ui.badge().props('role="status"').mark("status")
+                self._status = ui.badge().props('role="status"')
                 self._recorded = ui.row()
-            self._now = ui.label().classes("text-h5").props('role="status" aria-live="polite"').mark("now")
+            self._now = ui.label().classes("text-h5").props('role="status" aria-live="polite"')
             self._since = ui.label().classes("text-caption")
             self._error = ui.label().classes("text-negative").props('role="alert"')
             self._choices = ui.row().classes("min-h-[3.5rem]")
@@ -291,9 +294,9 @@ class _StudyPage:
                 self._log = ui.column().classes("w-full gap-0 max-h-[50vh] overflow-auto text-sm").props("tabindex=0")
         keys = ", ".join(f"{key}: {what}" for key, what in SHORTCUTS.items())
         ui.label(f"Keys: {keys}").classes("text-caption")
-        self._events.clear()
-        self._events.extend(self.robot.events.last(SHOWN_EVENTS))
-        self._choices_of = None
+        self._fresh.clear()
+        self._fresh.extend(self.robot.events.last(SHOWN_EVENTS))
+        self._choices_of = self._recordings = None
         self._update_trial()
 
     def _build_steps(self, runner: TrialRunner) -> None:
@@ -311,7 +314,7 @@ class _StudyPage:
                 elif isinstance(step, RoundsStep):
                     ui.label(f"{path} {step.count} rounds").classes("italic")
                 else:
-                    self._marks[_any_round(path)] = ui.icon(ICONS[""]).props('role="img"')
+                    self._marks[_any_round(path)] = ui.icon(ICONS[""]).props('role="img" aria-label="to come"')
                     ui.label(f"{path} {step.text}")
 
     def _update_trial(self) -> None:
@@ -324,19 +327,21 @@ class _StudyPage:
         self._now.text = runner.title or (f"paused behind step {state.path}" if state.path else "...")
         self._error.text = runner.log.trouble or (outcome.error if outcome is not None and state.status == HELD else "")
         self._pause.text = "Go on" if state.status in (PAUSED, HELD) else "Pause"
-        if tuple(state.recordings) != getattr(self, "_recordings_shown", None):
-            self._recordings_shown = tuple(state.recordings)
+        if tuple(state.recordings) != self._recordings:
+            self._recordings = tuple(state.recordings)
             self._recorded.clear()
             with self._recorded:
                 for kind in state.recordings:
                     ui.badge(f"records {kind}").props("color=negative")
         self._update_choices(runner)
         self._update_marks(state)
-        self._log.clear()
-        with self._log:
-            for event in reversed(self._events):
-                by = f" ({event.by})" if event.by else ""
-                ui.label(f"{event.stamp:.2f} {event.kind}{by}: {event.text}")
+        while self._fresh:
+            event = self._fresh.popleft()
+            by = f" ({event.by})" if event.by else ""
+            with self._log:
+                ui.label(f"{event.stamp:.2f} {event.kind}{by}: {event.text}").move(self._log, 0)
+        for line in self._log.default_slot.children[SHOWN_EVENTS:]:
+            self._log.remove(line)
 
     def _update_choices(self, runner: TrialRunner) -> None:
         step, outcome = runner.step, runner.outcome
@@ -356,8 +361,9 @@ class _StudyPage:
         for path, mark in self._marks.items():
             outcome = latest.get(path)
             kind = "" if outcome is None else RUNNING if outcome.ended is None else outcome.outcome
-            mark.name = ICONS[kind]
-            mark.props(f'aria-label="{kind or "to come"}"')
+            if mark.name != ICONS[kind]:
+                mark.name = ICONS[kind]
+                mark.props(f'aria-label="{kind}"')
 
     def _tick(self) -> None:
         outcome = self.runner.outcome if self.runner is not None else None
