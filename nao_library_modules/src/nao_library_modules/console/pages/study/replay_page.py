@@ -45,6 +45,7 @@ def replay_of(trial: TrialFolder) -> dict[str, Any]:
             }
             for step in state.outcomes
         ],
+        "goals": _goals(events, ended),
         "media": [
             {
                 "kind": file["recording"],
@@ -55,6 +56,19 @@ def replay_of(trial: TrialFolder) -> dict[str, Any]:
             if file["recording"] in ("video", "sound") and file.get("file") and file.get("began")
         ],
     }
+
+
+def _goals(events: list[dict[str, Any]], ended: float) -> list[dict[str, Any]]:
+    """Goals of the console; one whose end was not logged lasts until that of the trial."""
+    goals: dict[str, dict[str, Any]] = {}
+    for event in events:
+        goal = (event.get("data") or {}).get("goal")
+        if goal and event.get("kind") == "sent":
+            text = str(event.get("text", ""))
+            goals[goal] = {"path": "", "text": text, "began": event["stamp"], "ended": ended, "outcome": ""}
+        elif goal in goals and event.get("kind") == "ended":
+            goals[goal].update(ended=event["stamp"], outcome=event["data"].get("state", ""))
+    return list(goals.values())
 
 
 def build(console: Any, studies: Studies) -> None:
