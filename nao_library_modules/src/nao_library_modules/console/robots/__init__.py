@@ -1,0 +1,1 @@
+"""The robots of a console, and what it wants of them."""
