@@ -27,7 +27,7 @@ HASH = re.compile(r"--hash=sha256:[0-9a-f]{64}\b")
 
 
 def pins(path: Path) -> dict[str, str]:
-    """Name to the whole requirement, as a list or a lock has it.
+    """Name, with the marker if it has one, to the whole requirement, as a list or a lock has it.
 
     Raises:
         ValueError: A line is no pin.
@@ -40,7 +40,8 @@ def pins(path: Path) -> dict[str, str]:
             raise ValueError(f"{path.name}: {line!r} pins no version")
         if match:
             marker = (match[3] or "").split("--hash")[0].strip("; ")
-            found[match[1]] = f"{match[1]}=={match[2]}" + (f" ; {marker}" if marker else "")
+            suffix = f" ; {marker}" if marker else ""
+            found[match[1] + suffix] = f"{match[1]}=={match[2]}{suffix}"
     return found
 
 
@@ -98,7 +99,7 @@ def write(listed: Path) -> None:
     ]
     for name, requirement in pins(listed).items():
         version = requirement.split("==")[1].split(" ")[0]
-        lines.append(" \\\n    ".join([requirement, *(f"--hash=sha256:{one}" for one in hashes(name, version))]))
+        lines.append(" \\\n    ".join([requirement, *(f"--hash=sha256:{one}" for one in hashes(name.split(" ")[0], version))]))
     listed.with_suffix(".lock").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
