@@ -17,7 +17,7 @@ from nao_library_msgs.srv import DescribeFunctionsRequest
 
 
 def command(server, *chain):
-    return SimpleNamespace(server=server, chain=chain, label="")
+    return SimpleNamespace(server=server, chain=tuple(pair for each in chain for pair in each.items()))
 
 
 @pytest.fixture(scope="module")

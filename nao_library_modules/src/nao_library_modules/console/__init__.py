@@ -1,1 +1,1 @@
-"""The console: a page in a browser for the person who runs a study."""
+"""The console: pages in a browser for the person who runs a study; a client of servers, topics and services."""

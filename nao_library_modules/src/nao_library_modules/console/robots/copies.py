@@ -14,7 +14,7 @@ from ...functions.server_types import ServerType, described_type, server_type
 if TYPE_CHECKING:
     from .commands import RobotCommand
 
-_PROGRAM = '''\
+_PROGRAM = """\
 import actionlib
 import rospy
 
@@ -31,12 +31,7 @@ client.send_goal({goal}(functions))
 client.wait_for_result()
 print(client.get_goal_status_text())
 print(client.get_result())
-'''
-
-
-def functions_of(command: RobotCommand) -> list[tuple[str, Mapping[str, Any]]]:
-    """Name and fields of each function of a command."""
-    return [(name, fields or {}) for step in command.chain for name, fields in step.items()]
+"""
 
 
 def as_python(command: RobotCommand, namespace: str, described: Any = None) -> str:
@@ -51,10 +46,7 @@ def as_python(command: RobotCommand, namespace: str, described: Any = None) -> s
     """
     server = _types(command.server, described)
     literals = _Literals()
-    lines = [
-        f"    {literals.call(server.function, {'function': name, **fields})},"
-        for name, fields in functions_of(command)
-    ]
+    lines = [f"    {literals.call(server.function, {'function': name, **fields})}," for name, fields in command.chain]
     literals.use(server.action)
     literals.use(server.goal)
     name = f"{namespace}{command.server}" if namespace.strip("/") else command.server
@@ -70,7 +62,7 @@ def as_python(command: RobotCommand, namespace: str, described: Any = None) -> s
 def as_command(command: RobotCommand, namespace: str) -> str:
     """A line of a shell that sends a command. `namespace`: of the robot, "/" or "/nao1/"."""
     words = ["nao", "call", command.server]
-    for number, (name, fields) in enumerate(functions_of(command)):
+    for number, (name, fields) in enumerate(command.chain):
         words += [*([","] if number else []), name]
         words += [f"{field}:={_typed(value)}" for field, value in fields.items()]
     if namespace.strip("/"):
@@ -80,7 +72,7 @@ def as_command(command: RobotCommand, namespace: str) -> str:
 
 def as_yaml(command: RobotCommand) -> str:
     """A command as a step of a behaviour's file."""
-    functions = [(name, escaped(dict(fields))) for name, fields in functions_of(command)]
+    functions = [(name, escaped(dict(fields))) for name, fields in command.chain]
     if len(functions) == 1:
         ((name, fields),) = functions
         return dump([{f"{command.server}.{name}": fields}])

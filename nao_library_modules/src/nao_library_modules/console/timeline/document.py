@@ -9,7 +9,7 @@ from ...behaviors.language.errors import BehaviorError, Problem
 from ...behaviors.language.model import Behavior
 from ...behaviors.language.reader import read
 from ...behaviors.language.yaml_text import load
-from .steps import can_shift, functions_in, group_of, kind_of_step, place_of, shifted, step_path, stretches
+from .steps import functions_in, group_of, kind_of_step, place_of, shifted, step_path, stretches
 from .yaml_places import (
     EditRefused,
     Place,
@@ -117,10 +117,10 @@ class BehaviorDocument:
         """Whether a step is an entry of a timeline."""
         return place_of(self.content, path)[-2] == "timeline"
 
-    # --- edits: each raises EditRefused with what to do instead ---------------------------------------------------------
+    # --- edits: each raises EditRefused with what to do instead -------------------------------------------------------
 
     def set_key(self, path: str, key: str, value: Any) -> None:
-        """Give a step another value of a key of its own: label, at, for, on_error, wait, repeat, ...; None removes it."""
+        """Give a step another value of a key of its own, as label, at, for or wait; None removes it."""
         place = self._place(path)
         if isinstance(value_at(self.content, place), list):
             raise EditRefused(f"a list of steps has no {key}: write `do: [...]`, which may have it")
@@ -257,6 +257,3 @@ class BehaviorDocument:
     def _with_number(path: str, number: int) -> str:
         above, dot, _ = path.rpartition(".")
         return f"{above}{dot}{number}"
-
-
-__all__ = ["BehaviorDocument", "EditRefused", "can_shift"]

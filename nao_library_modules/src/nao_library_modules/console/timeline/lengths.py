@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
+
 from naoqi.errors import NaoError
 
 from ...base.paths import config_file

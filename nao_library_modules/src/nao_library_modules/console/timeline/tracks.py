@@ -24,7 +24,7 @@ from ...behaviors.language.model import (
     path_text,
 )
 from ...behaviors.language.parameters import given_as_text
-from ...behaviors.language.program import GoalNode, Node, OnTimeline, RepeatNode, SequenceNode, walk
+from ...behaviors.language.program import Node, OnTimeline, RepeatNode, SequenceNode, walk
 from ...behaviors.language.servers import FunctionTables
 from ...behaviors.language.structure import name_on_timeline
 from ...behaviors.language.yaml_text import dump_line
@@ -184,7 +184,7 @@ class _Layout:
         for entry in timeline.steps:
             path = path_text(entry.path)
             at = begin + begins.get(wheres.get(path, path), _offset(entry))
-            if entry.at is not None and entry.at.label in named and not isinstance(entry, Barrier):
+            if entry.at is not None and entry.at.label and entry.at.label in named and not isinstance(entry, Barrier):
                 self.links.append((named[entry.at.label], path))
             if isinstance(entry, Barrier):
                 barriers.append((entry, path, at))
@@ -267,6 +267,3 @@ def _line(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{name}: {_line(each)}" for name, each in value.items())
     return value if isinstance(value, str) else dump_line(value) if not hasattr(value, "__dict__") else "?"
-
-
-__all__ = ["BY_ORDER", "BY_TIME", "FIXED", "GoalNode", "TrackBox", "Tracks", "program_of", "tracks_of"]

@@ -6,9 +6,10 @@ import copy
 import json
 import re
 from dataclasses import dataclass
-from typing import Any, List, Tuple, Union
+from typing import Any, Tuple, Union
 
 import yaml
+
 from naoqi.errors import NaoError
 
 from ...behaviors.language.errors import BehaviorError
@@ -365,6 +366,3 @@ def _plain(content: Any) -> Any:
 
 def _put(content: Any, place: Place, value: Any) -> None:
     value_at(content, place[:-1])[place[-1]] = value
-
-
-__all__: List[str] = ["EditRefused", "Place", "delete_item", "delete_key", "insert_item", "item_text", "move_item", "set_value", "value_at"]
