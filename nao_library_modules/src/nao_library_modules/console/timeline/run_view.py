@@ -40,7 +40,10 @@ class StepLine:
 
 
 class RunView:
-    """One run of a behaviour, from its beginning on. `behavior`: its name; empty until it has begun."""
+    """One run of a behaviour, from its beginning on; one thread tells, others look.
+
+    `behavior`: its name; empty until it has begun.
+    """
 
     def __init__(self) -> None:
         self.behavior = ""
@@ -64,18 +67,23 @@ class RunView:
 
     def end(self) -> None:
         """The run is over: what has not ended was cut short."""
-        for line in self._lines.values():
+        for line in list(self._lines.values()):
             if line.running:
                 line.state = "preempted"
 
+    @property
+    def running(self) -> bool:
+        """Whether a step goes on."""
+        return any(line.running for line in list(self._lines.values()))
+
     def tree(self) -> list[StepLine]:
         """All steps that have begun, parents before what is in them."""
-        return sorted(self._lines.values(), key=lambda line: [int(each) for each in _PART.findall(line.path)])
+        return sorted(list(self._lines.values()), key=lambda line: [int(each) for each in _PART.findall(line.path)])
 
     def states(self) -> dict[str, str]:
         """State of each step of the file."""
         states: dict[str, str] = {}
-        for line in self._lines.values():
+        for line in list(self._lines.values()):
             path = step_path(line.path)
             if "/" not in line.path:
                 states[path] = line.state
@@ -98,7 +106,7 @@ class RunView:
         """
         place = 0.0
         latest = -1.0
-        for line in self._lines.values():
+        for line in list(self._lines.values()):
             box = tracks.box(step_path(line.path))
             if box is None or "/" in line.path or line.began < latest:
                 continue

@@ -8,6 +8,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ...base.errors import FunctionFailed
 from ...base.paths import config_file
 from ...behaviors.language.checking import preview_facts
 from ...behaviors.language.errors import NoSuchBehavior, Problem
@@ -15,11 +16,22 @@ from ...behaviors.language.model import Behavior
 from ...behaviors.language.reader import read
 from ...behaviors.language.servers import FunctionTables, NotDescribed
 from ...behaviors.language.store import BehaviorStore
+from ...functions.server_types import ServerType
 
 SERVICE = "NaoBehavior/list"
 FOLDER = "~/.ros/nao_behaviors"
 """Of the user, where no server for behaviours runs."""
 ALONE = "the server NaoBehavior does not run: only compared with what every NAO has"
+
+
+class UncheckedTables(FunctionTables):
+    """Finds servers, and lets every goal pass: to draw a behaviour nothing is loaded that only checks need."""
+
+    def fields(self, server: ServerType, function: str) -> list[str]:
+        return []
+
+    def check(self, server: ServerType, messages: Sequence[Any]) -> tuple[list[FunctionFailed], list[int]]:
+        return [], []
 
 
 class StoredBehaviors:
@@ -28,13 +40,15 @@ class StoredBehaviors:
     Args:
         ask: Calls the service of the robot with fields of its request; raises NaoError if it cannot.
         describe: Has a server of the robot describe itself; raises NaoError if it does not.
+
+    `tables`: functions of the servers, for drawing.
     """
 
     def __init__(self, ask: Callable[..., Any], describe: Callable[[str], Any]) -> None:
         self._ask = ask
         self._describe_server = describe
         self._texts: dict[str, str] = {}
-        self.tables = FunctionTables(self._describe)
+        self.tables = UncheckedTables(self._describe)
 
     def infos(self) -> list[Any]:
         """A BehaviorInfo of each, by name."""
@@ -74,7 +88,12 @@ class StoredBehaviors:
             store = self._offline()
             name = PurePath(file).stem
             facts = preview_facts(
-                name, lambda: read(text, name, file), store.load, self.tables, given, self._ask_nobody
+                name,
+                lambda: read(text, name, file),
+                store.load,
+                FunctionTables(self._describe),
+                given,
+                self._ask_nobody,
             )
             return info_message(facts, shipped=False)
 
@@ -100,7 +119,7 @@ class StoredBehaviors:
         from ...behaviors.language.checking import facts_of
 
         shipped = store.is_shipped(name) and not store.of_user(name)
-        return info_message(facts_of(name, store.load, self.tables), shipped)
+        return info_message(facts_of(name, store.load, FunctionTables(self._describe)), shipped)
 
 
 def problems_in(info: Any) -> list[Problem]:
