@@ -2,7 +2,7 @@
 // go into the page as textContent only. What a person does is an event of the container; Python answers with new tracks.
 
 const SVG = "http://www.w3.org/2000/svg";
-const ROW = 32, RULER = 24, LEFT = 12, RIGHT = 120, EDGE = 8, NARROWEST = 10;
+const ROW = 32, RULER = 24, LEFT = 12, RIGHT = 24, EDGE = 8, NARROWEST = 10;
 const SNAP = 0.05, KEY_STEP = 0.1, CLICK = 4;
 const SCALES = { least: 4, most: 800 };
 const views = new Map();
@@ -44,7 +44,7 @@ class View {
   x(time) { return LEFT + time * this.scale; }
 
   fit() {
-    const width = Math.max(this.container.clientWidth - LEFT - 40, 200);
+    const width = Math.max(this.container.clientWidth - LEFT - RIGHT - 8, 200);
     this.scale = Math.min(Math.max(width / Math.max(this.tracks.length, 1), SCALES.least), 200);
     this.render();
   }
@@ -108,14 +108,15 @@ class View {
       "aria-current": box.path === this.selected,
     });
     Object.assign(group.dataset, { path: box.path, kind: box.kind, server: box.server, moves: box.moves });
-    if (!box.sure && box.kind !== "barrier") group.classList.add("tl-guess");
+    if (!box.sure && box.kind === "goal") group.classList.add("tl-guess");
     if (box.problem) group.classList.add("tl-wrong");
     draw(group, "title", {}, this.name(box));
     draw(group, "rect", { class: "tl-body", x, y, width, height, rx: 4 });
     draw(group, "rect", { class: "tl-mark", x, y: y + Math.min(height, ROW - 4) - 4, width, height: 4 });
     if (box.kind !== "barrier") {
       const inner = draw(group, "svg", { x, y, width: Math.max(width - 3, 1), height: ROW - 4 });
-      const title = box.label ? `${box.label} · ${box.title}` : box.title;
+      const what = box.kind === "goal" ? box.title.slice(box.title.lastIndexOf(".") + 1) : box.title;
+      const title = box.label ? `${box.label} · ${what}` : what;
       draw(inner, "text", { class: "tl-title", x: 5, y: 12 }, title);
       if (box.text) draw(inner, "text", { x: 5, y: 24 }, box.text);
       if (box.stretches) draw(group, "rect", { class: "tl-edge", x: x + width - EDGE, y, width: EDGE, height });

@@ -413,7 +413,7 @@ class BehaviorsView:
     async def _project(self) -> None:
         await self._take_typed()
         document = self._document
-        if document is None or self._page.visitor.role != "operator":
+        if document is None or not self._page.visitor.operator:
             ui.notify("open a behaviour first" if document is None else "observers look on: an operator may do this")
             return
         if not self._projecting.acquire(blocking=False):

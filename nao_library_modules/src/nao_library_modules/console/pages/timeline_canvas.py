@@ -29,13 +29,24 @@ class TimelineCanvas:
         self._element = ui.element("div").classes("nao-timeline w-full").style("max-height: 48vh; min-height: 7rem")
         self._element.props["role"] = "group"
         self._element.props["aria-label"] = f"Tracks of the behaviour. {KEYS}"
+        self._servers = ui.row().classes("gap-3 items-center")
         emit = "(event) => emit(event.detail)"
         self._element.on("tlselect", lambda event: chosen(str(event.args["path"])), js_handler=emit)
+        self._shown: list[str] = []
         for name in ("shift", "stretch", "move", "key"):
             self._element.on(f"tl{name}", lambda event, name=name: edited(name, event.args), js_handler=emit)
 
     def show(self, tracks: Tracks, selected: str) -> None:
         self._call("show", tracks.to_json(), selected)
+        servers = sorted({box.server for box in tracks.boxes if box.server}, key=str.lower)
+        if servers != self._shown:
+            self._shown = servers
+            self._servers.clear()
+            with self._servers:
+                for server in servers:
+                    with ui.row().classes("items-center gap-1 no-wrap"):
+                        ui.element("span").classes("tl-colour").props["data-server"] = server
+                        ui.label(server).classes("text-xs")
 
     def mark(self, states: Mapping[str, str], at: float | None) -> None:
         """Show states of steps by path, and a cursor. `at`: s from the beginning; None: no cursor."""

@@ -47,6 +47,8 @@ class FormField:
     def hint(self) -> str:
         """What there is to say beside its name: its meaning, unit and range."""
         limits = self.allowed or self._range()
+        if self.help.endswith(limits) or limits.endswith(self.help):  # "text to say", and "the text to say"
+            limits = ""
         unit = f"in {self.unit}" if self.unit and self.unit not in limits.split() else ""
         return "; ".join(filter(None, (self.help, limits if not self.choices else "", unit)))
 

@@ -10,6 +10,7 @@ from naoqi.errors import NaoError
 
 from ...behaviors.language.binder import Library, bind_what_can_be
 from ...behaviors.language.errors import Problem
+from ...behaviors.language.expressions import UNKNOWN
 from ...behaviors.language.model import (
     Barrier,
     Behavior,
@@ -266,4 +267,6 @@ def _text(step: Step, node: Node | None) -> str:
 def _line(value: Any) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{name}: {_line(each)}" for name, each in value.items())
-    return value if isinstance(value, str) else dump_line(value) if not hasattr(value, "__dict__") else "?"
+    if value is UNKNOWN:
+        return "?"
+    return value if isinstance(value, str) else dump_line(value)
