@@ -12,7 +12,7 @@ from ...functions.server_types import servers_among, those_in
 
 FRESH = 1.0
 """s of this computer for which an answer is good."""
-CANCEL = "/cancel"
+CANCEL, CANCEL_TYPE = "/cancel", "actionlib_msgs/GoalID"
 
 
 class MasterLook:
@@ -23,6 +23,7 @@ class MasterLook:
         self._read = float("-inf")
         self._services: list[str] = []
         self._subscribed: dict[str, list[str]] = {}
+        self._types: dict[str, str] = {}
 
     def namespaces(self) -> list[str]:
         """Of the robots that have servers, each with a slash at both ends, sorted."""
@@ -38,9 +39,7 @@ class MasterLook:
         return [
             name
             for name in self._subscribed
-            if name.startswith(namespace)
-            and name.endswith(CANCEL)
-            and name[: -len(CANCEL)] + "/goal" in self._subscribed
+            if name.startswith(namespace) and name.endswith(CANCEL) and self._types.get(name) == CANCEL_TYPE
         ]
 
     def services(self) -> list[str]:
@@ -69,6 +68,7 @@ class MasterLook:
             try:
                 code, _, found = rospy.get_master().getSystemState()
                 state = found if code == 1 else state
+                self._types = dict(rospy.get_master().getTopicTypes()[2])
             except OSError:
                 pass  # no master: nothing runs
             _, subscribers, services = state

@@ -339,7 +339,7 @@ class RobotClient:
         text, result = handle.get_goal_status_text() or "", handle.get_result()
         fields = {} if result is None else plain(result)
         told = f"{run.server}: {run.label} {state}" + (f": {text}" if text and state != "succeeded" else "")
-        self.events.add("ended", told, run.by, goal=run.id, server=run.server, state=state, text=text, result=fields)
+        self.events.add("ended", told, run.by, goal=run.id, server=run.server, state=state, reason=text, result=fields)
         run.end(state, text, fields)
 
 
