@@ -10,7 +10,7 @@ import pytest
 
 from nao_library_modules.cli.chain_text import build_message, read_chain
 from nao_library_modules.console.robots.copies import as_command, as_python, as_yaml
-from nao_library_modules.console.robots.forms import FormField, form_of, text_of_value, value_of
+from nao_library_modules.console.robots.forms import FormField, form_of, text_of_value, typed_value, value_of
 from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_modules.functions.server_types import server_type
 from nao_library_msgs.srv import DescribeFunctionsRequest
@@ -73,6 +73,20 @@ def test_a_wrong_text_is_told_with_what_would_be_right(field, text, told):
 def test_a_list_that_is_shown_is_read_as_the_same(value):
     field = FormField("texts", "string", repeated=True)
     assert value_of(field, text_of_value(field, value)) == value
+
+
+@pytest.mark.parametrize(
+    "repeated, text, value",
+    [
+        (False, "${2 / tempo}", "${2 / tempo}"),
+        (True, "${all}", "${all}"),
+        (True, "LeftEarLed${i}, RightEarLed${i}", ["LeftEarLed${i}", "RightEarLed${i}"]),
+        (True, '["${1 - i}", 0.5]', ["${1 - i}", 0.5]),
+        (False, "0.5", 0.5),
+    ],
+)
+def test_expressions_of_behaviours_are_left_as_they_are(repeated, text, value):
+    assert typed_value(FormField("angle", "float64", repeated=repeated), text) == value
 
 
 def test_numbers_are_shown_with_all_their_digits():

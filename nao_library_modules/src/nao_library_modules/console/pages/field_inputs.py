@@ -8,21 +8,9 @@ from typing import Any
 from nicegui import ui
 
 from ...behaviors.language.yaml_text import dump_line
-from ..robots.forms import FormField, text_of_value, value_of
+from ..robots.forms import EXPRESSION, FormField, text_of_value, typed_value, value_of
 
-EXPRESSION = "${"
-"""In a text: its value is calculated when a behaviour runs."""
 UNITLESS = ("", "no unit")
-
-
-def typed_value(field: FormField, text: str) -> Any:
-    """As `value_of`; a text with an expression in it is left as it is. Raises ValueError."""
-    if EXPRESSION not in text:
-        return value_of(field, text)
-    bare = text.strip()
-    listed = field.repeated and not (bare.startswith(EXPRESSION) and bare.endswith("}") and bare.count(EXPRESSION) == 1)
-    free = FormField(field.name, "any" if bare.startswith("[") else "string", repeated=listed)
-    return value_of(free, text)
 
 
 class FieldInputs:

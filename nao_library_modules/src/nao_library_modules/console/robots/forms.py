@@ -20,6 +20,8 @@ _FLOAT = re.compile(r"float\d+|duration|time")
 _TRUTH = {"true": True, "yes": True, "on": True, "1": True, "false": False, "no": False, "off": False, "0": False}
 _KINDS = {"text": "string", "number": "number", "truth value": "bool", "list": "any"}
 """Kind of a behaviour's parameter -> type of a field."""
+EXPRESSION = "${"
+"""In a text: its value is calculated when a behaviour runs."""
 _MARKS = "[]{},\"'#"
 """Characters that have a meaning in lists of YAML."""
 
@@ -115,6 +117,17 @@ def value_of(field: FormField, text: str) -> Any:
     if not isinstance(entries, list):
         raise ValueError(f"{field.name}: {text!r} is no list: values with commas between them, or [...]")
     return [_single(field, each) for each in entries]
+
+
+def typed_value(field: FormField, text: str) -> Any:
+    """As `value_of`, for steps of behaviours: a text with an expression in it is left as it is. Raises ValueError."""
+    if EXPRESSION not in text:
+        return value_of(field, text)
+    bare = text.strip()
+    if bare.startswith("["):
+        return value_of(FormField(field.name, "any", repeated=True), bare)
+    alone = bare.startswith(EXPRESSION) and bare.endswith("}") and bare.count(EXPRESSION) == 1
+    return value_of(FormField(field.name, "string", repeated=field.repeated and not alone), text)
 
 
 def text_of_value(field: FormField, value: Any) -> str:
