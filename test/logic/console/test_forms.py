@@ -8,9 +8,17 @@ from types import SimpleNamespace
 
 import pytest
 
+from nao_library_modules.behaviors import read
 from nao_library_modules.cli.chain_text import build_message, read_chain
 from nao_library_modules.console.robots.copies import as_command, as_python, as_yaml
-from nao_library_modules.console.robots.forms import FormField, form_of, text_of_value, typed_value, value_of
+from nao_library_modules.console.robots.forms import (
+    FormField,
+    form_of,
+    form_of_behavior,
+    text_of_value,
+    typed_value,
+    value_of,
+)
 from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_modules.functions.server_types import server_type
 from nao_library_msgs.srv import DescribeFunctionsRequest
@@ -126,3 +134,10 @@ def test_a_step_of_yaml_is_read_as_the_command():
     assert load(as_yaml(command("nao_audio_out", say)), "t") == [{"nao_audio_out.say": {"str_param": "costs $${5}"}}]
     chain = load(as_yaml(command("NaoLights", FADE, {"off": {}})), "t")[0]["chain"]["NaoLights"]
     assert [each["function"] for each in chain] == ["fadeRGB", "off"]
+
+
+def test_parameters_of_a_behaviour_are_fields():
+    tempo = "{default: 1.0, help: how fast, min: 0.5, max: 2, unit: times}"
+    (field,) = form_of_behavior(read(f"help: h\nparameters:\n  tempo: {tempo}\ndo: [{{wait: 1}}]\n", "mine"))
+    assert (field.type, field.low, field.high, field.default) == ("number", 0.5, 2, 1.0)
+    assert field.hint == "how fast; 0.5..2; in times"

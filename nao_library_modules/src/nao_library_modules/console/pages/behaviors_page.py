@@ -14,7 +14,7 @@ from naoqi.errors import NaoError
 
 from ...behaviors.language.expressions import text_of
 from ..robots.commands import RobotCommand, call
-from ..robots.forms import form_of_parameters
+from ..robots.forms import form_of_behavior
 from ..timeline.document import BehaviorDocument
 from ..timeline.projected import NotProjected, project_behavior
 from ..timeline.run_view import RunView, StepLine
@@ -54,14 +54,15 @@ def build(console: Any) -> None:
     @ui.page("/behaviors")
     def behaviors(request: Request) -> None:
         with framed(console, "Behaviours", request) as page:
-            BehaviorsView(page, projecting).build()
+            BehaviorsView(page, projecting, request.query_params.get("behavior", "")).build()
 
 
 class BehaviorsView:
-    """The page of one visitor."""
+    """The page of one visitor. `wanted`: name of the behaviour that is open at first; empty: none."""
 
-    def __init__(self, page: PageContext, projecting: threading.Lock) -> None:
+    def __init__(self, page: PageContext, projecting: threading.Lock, wanted: str) -> None:
         self._page = page
+        self._wanted = wanted
         self._projecting = projecting
         self._cancelled = threading.Event()
         self._infos: dict[str, Any] = {}
@@ -79,13 +80,11 @@ class BehaviorsView:
         self._news = threading.Event()
         self._recording = ""
         self._typed: str | None = None
+        self._tree_shown: list[Any] = []
 
     # --- the page -----------------------------------------------------------------------------------------------------
 
     def build(self) -> None:
-        if self._page.robot is None:
-            ui.label("No robot is there.")
-            return
         robot = self._page.robot
         self._stored = StoredBehaviors(partial(_ask, robot), robot.describe)
         with ui.row().classes("w-full items-start gap-4"):
@@ -170,12 +169,8 @@ class BehaviorsView:
         self._infos = {info.name: info for info in infos}
         self._described = await run.io_bound(_described, robot) or {}
         self._show_list()
-        if self._document is None and self._page_asks() in self._infos:
-            await self._open(self._page_asks())
-
-    def _page_asks(self) -> str:
-        """The behaviour that the address names: /behaviors?behavior=hello."""
-        return str(getattr(self._page, "query", {}).get("behavior", ""))
+        if self._document is None and self._wanted in self._infos:
+            await self._open(self._wanted)
 
     def _show_list(self) -> None:
         words = str(self._search.value or "").lower().split()
@@ -344,15 +339,12 @@ class BehaviorsView:
         behavior = document.behavior if document is not None else None
         if behavior is None:
             return
-        from ...behaviors.language.checking import Facts
-        from ...behaviors.run.running import info_message
-
-        declared = info_message(Facts(behavior.name, behavior, (), ""), False).parameters
+        fields = form_of_behavior(behavior)
         self._given = {name: value for name, value in self._given.items() if name in behavior.parameters}
         self._parameters.clear()
-        self._parameters.set_visibility(bool(declared))
+        self._parameters.set_visibility(bool(fields))
         with self._parameters:
-            FieldInputs(form_of_parameters(declared), self._given, self._give, "parameter")
+            FieldInputs(fields, self._given, self._give, "parameter")
 
     async def _give(self, name: str, value: Any) -> None:
         if value is None:
@@ -488,8 +480,9 @@ class BehaviorsView:
             return None
 
     def _stop(self) -> None:
-        """End the behaviour that runs, also one that another program has sent."""
-        if not self._page.operate():
+        """End the behaviour that runs, also one that another program has sent, whoever holds the controls."""
+        if not self._page.visitor.operator:
+            ui.notify("observers look on: an operator may do this", type="warning")
             return
         for goal in self._page.robot.runs:
             if goal.server == SERVER:
@@ -520,7 +513,7 @@ class BehaviorsView:
             self._canvas.mark(self._view.states(), at)
         lines = self._view.tree()
         shown = [(line.path, line.state, line.text) for line in lines]
-        if shown == getattr(self, "_tree_shown", None):
+        if shown == self._tree_shown:
             return
         self._tree_shown = shown
         self._tree.clear()

@@ -47,6 +47,7 @@ class FunctionsView:
         self._inputs: FieldInputs | None = None
         self._common: FieldInputs | None = None
         self._run: Any = None
+        self._told: Any = None  # what is shown of the goal
 
     def build(self) -> None:
         with ui.row().classes("w-full items-start gap-4"):
@@ -70,9 +71,6 @@ class FunctionsView:
     # --- the list -----------------------------------------------------------------------------------------------------
 
     async def _ask(self) -> None:
-        if self._page.robot is None:
-            self._count.text = "no robot is there"
-            return
         self._described = await run.io_bound(_describe_all, self._page.robot) or {}
         self._servers.set_options([ALL, *self._described], value=ALL)
         self._list()
@@ -168,7 +166,7 @@ class FunctionsView:
         if self._run is None:
             return
         told = (self._run.state, self._run.progress, self._run.done)
-        if told != getattr(self, "_told", None):
+        if told != self._told:
             self._told = told
             self._show()
         if self._run.done:

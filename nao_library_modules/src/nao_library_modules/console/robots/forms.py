@@ -12,7 +12,8 @@ from typing import Any, Tuple
 from ...base.degrees import ANGLES, in_rad
 from ...base.suggestion import did_you_mean
 from ...behaviors.language.errors import BehaviorError
-from ...behaviors.language.expressions import text_of
+from ...behaviors.language.expressions import UNKNOWN, text_of
+from ...behaviors.language.model import Behavior
 from ...behaviors.language.yaml_text import dump_line, load
 
 _WHOLE = re.compile(r"u?int\d+|byte|char")
@@ -67,21 +68,37 @@ def form_of(described_function: Any) -> list[FormField]:
 
 
 def form_of_parameters(parameters: Sequence[Any]) -> list[FormField]:
-    """The fields for the parameters of a behaviour; `parameters`: BehaviorParameter of each."""
+    """The fields for the parameters of a stored behaviour; `parameters`: BehaviorParameter of each."""
     return [
-        FormField(
+        _of_parameter(
             each.name,
-            _KINDS.get(each.type, "any"),
+            each.type,
             each.help,
             each.unit,
-            tuple(text_of(load(choice, each.name)) for choice in each.choices),
-            each.min,
-            each.max,
+            [load(choice, each.name) for choice in each.choices],
+            (each.min, each.max),
             load(each.default, each.name),
-            each.type == "list",
         )
         for each in parameters
     ]
+
+
+def form_of_behavior(behavior: Behavior) -> list[FormField]:
+    """The fields for the parameters of a behaviour that was read; without those that the file is wrong about."""
+    return [
+        _of_parameter(
+            each.name, each.kind, each.help, each.unit, each.choices, (each.lowest, each.highest), each.default
+        )
+        for each in behavior.parameters.values()
+        if each.default is not UNKNOWN
+    ]
+
+
+def _of_parameter(
+    name: str, kind: str, help_: str, unit: str, choices: Sequence[Any], bounds: tuple[float, float], default: Any
+) -> FormField:
+    texts = tuple(map(text_of, choices))
+    return FormField(name, _KINDS.get(kind, "any"), help_, unit, texts, *bounds, default, kind == "list")
 
 
 def _field(argument: Any) -> FormField:

@@ -31,7 +31,7 @@ from ...behaviors.language.structure import name_on_timeline
 from ...behaviors.language.yaml_text import dump_line
 from .document import BehaviorDocument
 from .lengths import USUAL, Lengths
-from .steps import can_shift, can_stretch
+from .steps import can_shift, can_stretch, step_path
 
 LONGEST_TEXT = 80
 """Characters that a box says of its fields."""
@@ -104,7 +104,7 @@ def tracks_of(
     program = program_of(behavior, library, tables, given)
     told: dict[str, str] = {}
     for problem in (*document.problems, *problems):
-        told.setdefault(problem.where.partition(" ")[2].partition(" ")[0], problem.text)
+        told.setdefault(step_path(problem.where.partition(" ")[2].partition(" ")[0]), problem.text)
     layout = _Layout(document, program, Lengths(measured), told)
     rows, length = layout.in_order(behavior.body.steps, 0.0, 0)
     return Tracks(tuple(layout.boxes), tuple(layout.links), rows, length)
