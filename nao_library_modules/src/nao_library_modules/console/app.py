@@ -75,11 +75,13 @@ class Console:
         except ImportError as error:
             raise NaoError(f"the console needs NiceGUI ({error}): {WHEELS}") from None
         from .pages import PAGES, frame
+        from .view.views import Views
 
         self.settings = settings
         self.robots = Robots()
         self.views = Views()
         self.controls = Controls()
+        self.views = Views()
         self.sessions = Sessions(None if settings.users is None else read_users(settings.users))
         self.app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         frame.build(self)
