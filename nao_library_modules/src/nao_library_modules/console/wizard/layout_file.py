@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -76,3 +78,48 @@ class LayoutFile:
             raise EditConflict(self.path)
         write_whole(self.path, text)
         return SavedText(text, revision_of(text))
+
+
+class CurrentLayout:
+    """The layout that pages show: the newest of the file that could be read. Any thread.
+
+    Attributes:
+        layout: Empty before a file could be read.
+        problems: What is wrong with the file as it is now; `layout` is then that of before.
+    """
+
+    def __init__(self, file: LayoutFile) -> None:
+        """Read the file."""
+        self.layout = WizardLayout()
+        self.problems: Sequence[Problem] = ()
+        self._file = file
+        self._lock = threading.Lock()
+        self._mark: tuple[int, int] | None = None
+        self._listeners: dict[object, Callable[[], None]] = {}
+        self.look()
+
+    def look(self) -> None:
+        """Read the file again if it has changed, and tell pages of that."""
+        with self._lock:
+            mark = self._file.mark
+            if mark == self._mark:
+                return
+            self._mark = mark
+            try:
+                self.layout, self.problems = self._file.layout(), ()
+            except ConsoleFileError as error:
+                self.problems = error.problems
+            listeners = list(self._listeners.values())
+        for listener in listeners:
+            listener()
+
+    def subscribe(self, callback: Callable[[], None]) -> Callable[[], None]:
+        """Have changes told, in the thread that learns of them; what comes back ends that."""
+        key = object()
+        with self._lock:
+            self._listeners[key] = callback
+        return lambda: self._forget(key)
+
+    def _forget(self, key: object) -> None:
+        with self._lock:
+            self._listeners.pop(key, None)

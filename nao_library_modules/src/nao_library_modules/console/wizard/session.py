@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +17,8 @@ from .model import WizardButton, WizardLayout
 LONGEST_MESSAGE = 4096
 """Characters."""
 POINTS = ("click", "start", "drag", "end")
-NOT_HOLDER = "somebody else holds the controls, or you only watch"
+WALK, PRESS, HEAD, STOP = "walk", "press", "head", "stop"
+KINDS = (WALK, PRESS, HEAD, STOP)
 
 
 @dataclass(frozen=True)
@@ -25,24 +27,25 @@ class PageRights:
 
     Attributes:
         name: Of the user, for the log.
-        may_move: Whether the visitor may move a robot, by its namespace.
-        may_stop: Whether the visitor may stop it, whoever holds the controls.
+        refusal: Why the visitor may not move a robot now, by its namespace; empty: the visitor may.
+        operator: Whether the visitor may stop it, whoever holds the controls.
     """
 
     name: str
-    may_move: Callable[[str], bool]
-    may_stop: Callable[[], bool]
+    refusal: Callable[[str], str]
+    operator: Callable[[], bool]
 
 
 class WizardSession:
-    """One page of the wizard. Messages are taken one at a time, stops at any time.
+    """One page of the wizard. Messages of one kind are taken one at a time; walk and stop do not wait for anything.
 
     Messages are JSON objects, each with one of these keys:
 
     - walk: [ahead, left, turn left], shares -1..1 of the top speed; holds 0.4 s;
     - press: id of a button, with `revision` of the layout that it is from, and `via`, click or key;
     - head: {kind, camera, x, y}, as `head_pointer.HeadPointer.point` takes it;
-    - stop: true.
+    - stop: true; the stop of all pages ends what the robot of the page does, this one what the others do that the
+      page's buttons are for.
 
     Args:
         page: Id of the page.
@@ -73,31 +76,15 @@ class WizardSession:
         self._make_pointer = pointer
         self._pointer: Any = None
         self._walks = False
+        self._takers = {WALK: self._walk, PRESS: self._press, HEAD: self._head, STOP: self._stop}
 
-    def take(self, text: str) -> str:
-        """Carry out a message. Returns what is to be told to the visitor; empty: all is well."""
+    def take(self, kind: str, message: Mapping[str, Any]) -> str:
+        """Carry out a message, as `read_message` gives it. Returns what to tell the visitor; empty: all is well."""
         try:
-            message = _read(text)
-            if "stop" in message:
-                self.stop()
-            elif "walk" in message:
-                self._walk(_velocity(message["walk"]))
-            elif "press" in message:
-                self._press(message)
-            elif "head" in message:
-                self._head(message["head"])
-            else:
-                return "a message that is not known here: load the page again"
+            self._takers[kind](message[kind], message)
         except (ValueError, NaoError) as error:
             return str(error)
         return ""
-
-    def stop(self) -> None:
-        """Stop everything of the robot of this page. Raises ValueError for visitors who only watch."""
-        if not self._rights.may_stop():
-            raise ValueError("observers cannot stop the robot: ask an operator")
-        self._walks = False
-        self.robot.stop(self._rights.name)
 
     def leave(self) -> None:
         """The page is gone, or cannot be heard any more: what it held ends."""
@@ -124,7 +111,21 @@ class WizardSession:
 
         return self._desk.states(self._layout(), namespace)
 
-    def _walk(self, velocity: tuple[float, float, float]) -> None:
+    def _stop(self, _value: Any, _message: Any) -> None:
+        if not self._rights.operator():
+            raise ValueError("observers look on; only operators stop the robot")
+        self._walks = False
+        robots = {}
+        for _, button in self._layout().buttons():
+            with suppress(NaoError):
+                other = self.robot_of(button)
+                robots[other.namespace] = other
+        for namespace, other in robots.items():
+            if namespace != self.robot.namespace:
+                other.stop(self._rights.name)
+
+    def _walk(self, value: Any, _message: Any) -> None:
+        velocity = _velocity(value)
         if not any(velocity):
             if self._walks:
                 self._walks = False
@@ -134,23 +135,23 @@ class WizardSession:
         self._walks = True
         self.robot.walk(*velocity, self._rights.name)
 
-    def _press(self, message: Mapping[str, Any]) -> None:
+    def _press(self, value: Any, message: Mapping[str, Any]) -> None:
         layout = self._layout()
         if message.get("revision") != layout.revision:
             raise ValueError("the buttons have changed meanwhile: look again, and press once more")
-        found = [pair for pair in layout.buttons() if pair[1].id == message["press"]]
+        found = [pair for pair in layout.buttons() if pair[1].id == value]
         if not found:
             raise ValueError("there is no such button any more: load the page again")
         ((group, button),) = found
         robot = self.robot_of(button)
         stops = getattr(button.action, "stops", False)
-        if not (stops and self._rights.may_stop()):
+        if not (stops and self._rights.operator()):
             self._require(robot)
         self._desk.take_names(layout, robot.namespace)
         via = "key" if message.get("via") == "key" else "click"
         self._desk.press(robot, group, button, self._rights.name, self.page, via)
 
-    def _head(self, value: Any) -> None:
+    def _head(self, value: Any, _message: Any) -> None:
         if not isinstance(value, dict) or value.get("kind") not in POINTS:
             raise ValueError("a point of the picture that is none")
         x, y = _share(value.get("x")), _share(value.get("y"))
@@ -160,20 +161,23 @@ class WizardSession:
         self._pointer.point(value["kind"], str(value.get("camera")), x, y, self._rights.name)
 
     def _require(self, robot: Any) -> None:
-        if not self._rights.may_move(robot.namespace):
-            raise ValueError(NOT_HOLDER)
+        refusal = self._rights.refusal(robot.namespace)
+        if refusal:
+            raise ValueError(refusal)
 
 
-def _read(text: str) -> Mapping[str, Any]:
+def read_message(text: str) -> tuple[str, Mapping[str, Any]]:
+    """The kind of a message, and the message. Raises ValueError if it is none."""
     if len(text) > LONGEST_MESSAGE:
-        raise ValueError("a message that is too long")
+        raise ValueError(f"a message of {len(text)} characters: at most {LONGEST_MESSAGE}")
     try:
         message = json.loads(text)
     except (ValueError, RecursionError):
         message = None
-    if not isinstance(message, dict):
-        raise ValueError("a message that is none")
-    return message
+    kinds = [kind for kind in KINDS if kind in message] if isinstance(message, dict) else []
+    if len(kinds) != 1:
+        raise ValueError("a message that is not known here: load the page again")
+    return kinds[0], message
 
 
 def _velocity(value: Any) -> tuple[float, float, float]:
