@@ -99,7 +99,8 @@ def write(listed: Path) -> None:
     ]
     for name, requirement in pins(listed).items():
         version = requirement.split("==")[1].split(" ")[0]
-        lines.append(" \\\n    ".join([requirement, *(f"--hash=sha256:{one}" for one in hashes(name.split(" ")[0], version))]))
+        sums = (f"--hash=sha256:{one}" for one in hashes(name.split(" ")[0], version))
+        lines.append(" \\\n    ".join([requirement, *sums]))
     listed.with_suffix(".lock").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

@@ -22,6 +22,21 @@ NO_NAMES: Mapping[str, str] = MappingProxyType({})
 TOLD_ELSEWHERE = frozenset({"index", "function", "count"})
 
 
+def progress_text(fields: Mapping[str, Any], called: Mapping[str, str] = NO_NAMES, more: bool = True) -> str:
+    """Feedback of a server for people.
+
+    `fields`: its plain values. `called`: as `Progress` takes it. `more`: with the details.
+    """
+    if fields.get("waiting"):
+        return f"waits for {fields['waiting']}"
+    if fields.get("what"):  # a step of a behaviour
+        return " ".join(fields[name] for name in STEP if fields.get(name))
+    function = fields.get("function", "")
+    text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {called.get(function, function)}"
+    told = {n: v for n, v in fields.items() if n not in TOLD_ELSEWHERE and filled(v) and v != 0} if more else {}
+    return f"{text}: {words(told)}" if told else text
+
+
 class Progress:
     """Shown from the beginning of a `with` block to its end.
 
@@ -40,16 +55,7 @@ class Progress:
         self._thread: threading.Thread | None = None
 
     def feedback(self, message: Any) -> None:
-        fields = plain(message)
-        function = fields.get("function", "")
-        text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {self._called.get(function, function)}"
-        if fields.get("waiting"):
-            text = f"waits for {fields['waiting']}"
-        elif fields.get("what"):  # a step of a behaviour
-            text = " ".join(fields[name] for name in STEP if fields.get(name))
-        elif self._live:
-            more = {n: v for n, v in fields.items() if n not in TOLD_ELSEWHERE and filled(v) and v != 0}
-            text += f": {words(more)}" if more else ""
+        text = progress_text(plain(message), self._called, more=self._live)
         with self._lock:
             if text == self._text:
                 return

@@ -1,0 +1,1 @@
+"""Who may use the console, and who of them moves the robot. Knows nothing of ROS."""

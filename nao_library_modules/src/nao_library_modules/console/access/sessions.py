@@ -1,0 +1,96 @@
+"""Browsers that have shown a token or a password."""
+
+from __future__ import annotations
+
+import secrets
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from .users import OBSERVER, OPERATOR, ConsoleUser
+
+TRIES, TRY_PERIOD = 5, 60.0
+"""Wrong passwords for a name within so many s, after which none is looked at."""
+
+
+@dataclass(eq=False)
+class Session:
+    """One person at one browser.
+
+    Attributes:
+        dark: Whether pages are dark; None: as the computer is.
+    """
+
+    name: str
+    role: str
+    key: str = field(repr=False, default_factory=lambda: secrets.token_urlsafe(32))
+    dark: bool | None = None
+
+    @property
+    def operator(self) -> bool:
+        """Whether this person may move the robot."""
+        return self.role == OPERATOR
+
+
+class Sessions:
+    """Those of one console. Any thread.
+
+    Args:
+        users: Name -> person, where people log in; None: whoever has one of the tokens.
+        clock: s.
+
+    Attributes:
+        tokens: Role -> token, for the printed addresses; empty where people log in.
+    """
+
+    def __init__(
+        self, users: Mapping[str, ConsoleUser] | None = None, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.users = users
+        self.tokens = {role: secrets.token_urlsafe(24) for role in (OPERATOR, OBSERVER)} if users is None else {}
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._sessions: dict[str, Session] = {}
+        self._failures: dict[str, list[float]] = {}
+        self._count = 0
+
+    def get(self, key: str) -> Session | None:
+        """The session of a cookie."""
+        with self._lock:
+            return self._sessions.get(key)
+
+    def by_token(self, token: str) -> Session | None:
+        """A new session for whoever shows a token; None if it is none."""
+        for role, known in self.tokens.items():
+            if secrets.compare_digest(token.encode(), known.encode()):
+                with self._lock:
+                    self._count += 1
+                    name = role if self._count == 1 else f"{role} {self._count}"
+                return self._keep(Session(name, role))
+        return None
+
+    def by_password(self, name: str, password: str) -> Session | None:
+        """A new session for whoever knows the password; None if it is wrong, or was wrong too often lately."""
+        now = self._clock()
+        with self._lock:
+            recent = [when for when in self._failures.get(name, []) if when > now - TRY_PERIOD]
+            self._failures[name] = recent
+            if len(recent) >= TRIES:
+                return None
+            recent.append(now)  # taken back below: tries side by side count as well
+        user = (self.users or {}).get(name)
+        if user is None or not user.has_password(password):
+            return None
+        with self._lock:
+            self._failures.pop(name, None)
+        return self._keep(Session(user.name, user.role))
+
+    def end(self, session: Session) -> None:
+        with self._lock:
+            self._sessions.pop(session.key, None)
+
+    def _keep(self, session: Session) -> Session:
+        with self._lock:
+            self._sessions[session.key] = session
+        return session

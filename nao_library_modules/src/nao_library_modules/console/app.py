@@ -1,0 +1,128 @@
+"""The console as a program: settings, robots, people and pages put together, and served."""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ..base.paths import config_file
+from .access.controls import Controls
+from .access.guard import Guard
+from .access.sessions import Sessions
+from .access.users import OBSERVER, OPERATOR, read_users
+from .robots.robots import Robots
+
+PORT = 8080
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+STUDIES = "~/.ros/nao_studies"
+WHEELS = "scripts/setup installs it, where Python is 3.10 or newer"
+
+
+@dataclass(frozen=True)
+class ConsoleSettings:
+    """What a console is started with. Raises NaoError if it would be open to others without need."""
+
+    port: int = PORT
+    listen: str = LOOPBACK[0]  # address of this computer
+    users: Path | None = None  # file of people who log in; needed beyond loopback
+    certificate: Path | None = None  # of TLS, PEM
+    key: Path | None = None
+    buttons: Path = field(default_factory=lambda: config_file("console") / "console.yaml")  # of the wizard's page
+    studies: Path = field(default_factory=lambda: Path(STUDIES).expanduser())  # folder of trials
+
+    def __post_init__(self) -> None:
+        if not self.local and self.users is None:
+            raise NaoError(f"on {self.listen} others can reach the console: name their passwords with --users FILE")
+        if (self.certificate is None) != (self.key is None):
+            raise NaoError("TLS takes both --cert FILE and --key FILE")
+        for path in (self.users, self.certificate, self.key):
+            if path is not None and not path.is_file():
+                raise NaoError(f"there is no file {path}")
+
+    @property
+    def local(self) -> bool:
+        """Whether only this computer can reach it."""
+        try:
+            return self.listen == LOOPBACK[1] or ipaddress.ip_address(self.listen).is_loopback
+        except ValueError:
+            raise NaoError(f"--listen {self.listen!r}: an address of this computer, such as 0.0.0.0") from None
+
+    @property
+    def url(self) -> str:
+        """Address for a browser, with a slash at its end."""
+        host = f"[{self.listen}]" if ":" in self.listen else self.listen
+        return f"{'http' if self.certificate is None else 'https'}://{host}:{self.port}/"
+
+
+class Console:
+    """What all pages share.
+
+    Attributes:
+        app: FastAPI application, for routes and WebSockets beside the pages; all of them are behind the guard.
+    """
+
+    def __init__(self, settings: ConsoleSettings) -> None:
+        try:
+            from fastapi import FastAPI
+            from nicegui import ui
+        except ImportError as error:
+            raise NaoError(f"the console needs NiceGUI ({error}): {WHEELS}") from None
+        from .pages import PAGES, frame
+
+        self.settings = settings
+        self.robots = Robots()
+        self.controls = Controls()
+        self.sessions = Sessions(None if settings.users is None else read_users(settings.users))
+        self.app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
+        frame.build(self)
+        for build in PAGES:
+            build(self)
+        ui.run_with(self.app, title="NAO console", dark=None, show_welcome_message=False, reconnect_timeout=10.0)
+
+    def addresses(self) -> Sequence[str]:
+        """What to open in a browser, for people."""
+        tokens = self.sessions.tokens
+        if not tokens:
+            return [f"NAO console: {self.settings.url}"]
+        return [
+            f"NAO console: {self.settings.url}?token={tokens[OPERATOR]}",
+            f"  to look on: {self.settings.url}?token={tokens[OBSERVER]}",
+        ]
+
+    def serve(self) -> None:
+        """Serve pages until the process is told to end (SIGINT, SIGTERM). Raises NaoError if the port is taken."""
+        import socket
+
+        import uvicorn
+
+        settings = self.settings
+        guard = Guard(
+            self.app, self.sessions, LOOPBACK if settings.local else (), secure=settings.certificate is not None
+        )
+        family = socket.AF_INET6 if ":" in settings.listen else socket.AF_INET
+        listener = socket.socket(family)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind((settings.listen, settings.port))
+        except OSError as error:
+            listener.close()
+            raise NaoError(
+                f"port {settings.port} of {settings.listen}: {error.strerror}; --port takes another"
+            ) from None
+        config: Any = uvicorn.Config(
+            guard,
+            log_level="warning",
+            access_log=False,
+            ssl_certfile=settings.certificate,
+            ssl_keyfile=settings.key,
+            timeout_graceful_shutdown=2,
+            server_header=False,
+        )
+        for line in self.addresses():
+            print(line, flush=True)
+        uvicorn.Server(config).run(sockets=[listener])

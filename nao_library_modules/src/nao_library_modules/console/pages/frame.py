@@ -1,0 +1,171 @@
+"""What all pages have: head line, choice of the robot, the stop, who is there, light and dark."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Union
+
+from fastapi import Request
+from fastapi.responses import JSONResponse
+from fastapi.staticfiles import StaticFiles
+from nicegui import context, ui
+
+from naoqi.errors import NaoError
+
+from ...base.paths import config_file
+from ..access.guard import session_of
+from ..access.sessions import Session
+from ..robots.robot import RobotClient
+
+STATIC = "/console/static"
+PATHS = {"/": "Robot", "/wizard": "Wizard", "/study": "Study", "/behaviors": "Behaviours", "/functions": "Functions"}
+HOLDER_PERIOD = 1.0
+
+Callback = Callable[[], Union[None, Awaitable[None]]]
+
+
+def build(console: Any) -> None:
+    """Register what all pages need: static files and the stop."""
+    console.app.mount(STATIC, StaticFiles(directory=config_file("console/static")), name="console_static")
+
+    @console.app.post("/console/stop")
+    async def stop(request: Request, robot: str = "") -> JSONResponse:
+        """Stop a robot, whoever holds its controls: for a key, also when the page's own connection is gone."""
+        session = session_of(request)
+        if not session.operator:
+            return JSONResponse({"error": "observers look on"}, status_code=403)
+        try:
+            client = console.robots.robot(robot)
+        except NaoError as error:
+            return JSONResponse({"error": str(error)}, status_code=404)
+        await asyncio.get_running_loop().run_in_executor(None, client.stop, session.name)
+        return JSONResponse({"stopped": client.name})
+
+
+class PageContext:
+    """One open page: who looks at which robot."""
+
+    def __init__(self, console: Any, session: Session, robot: RobotClient) -> None:
+        self.console = console
+        self.visitor = session
+        self.robot = robot
+        self._leave: list[Callable[[], None]] = []
+        self._client = context.client
+        self._client.on_delete(self._left)
+
+    def operate(self) -> bool:
+        """Whether this visitor may move the robot now; says why not."""
+        if self.console.controls.may_move(self.robot.namespace, self.visitor):
+            return True
+        with self._client:
+            ui.notify(self.console.controls.refusal(self.robot.namespace, self.visitor), type="warning")
+        return False
+
+    def every(self, period: float, callback: Callback) -> Any:
+        """Call something every so many s while the page is open. Returns ui.timer."""
+        return ui.timer(period, callback)
+
+    def on_leave(self, callback: Callable[[], None]) -> None:
+        """Have something called when the page is gone."""
+        self._leave.append(callback)
+
+    def static(self, name: str) -> None:
+        """Load a script of the static files, as a module."""
+        ui.add_head_html(f'<script type="module" src="{STATIC}/{name}"></script>')
+
+    def notify(self, text: str, kind: str = "info") -> None:
+        """Tell this visitor something; `kind`: positive, negative, warning, info. In the event loop."""
+        with self._client:
+            ui.notify(text, type=kind)
+
+    def _left(self) -> None:
+        for callback in self._leave:
+            callback()
+        self._leave.clear()
+
+
+@contextmanager
+def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
+    """A page with its frame; in the block is its content.
+
+    The address says which robot: `?robot=nao1`, the first without. While it is open, goals of all programs are
+    followed.
+    """
+    session = session_of(request)
+    try:
+        robot = console.robots.robot(request.query_params.get("robot", ""))
+    except NaoError as error:
+        robot = console.robots.robot()
+        ui.notify(str(error), type="negative")
+    page = PageContext(console, session, robot)
+    ui.page_title(f"{title}, {robot.name}: NAO console")
+    ui.add_head_html(f'<link rel="stylesheet" href="{STATIC}/console.css">')
+    page.static("frame.js")
+    page.on_leave(console.robots.watch(robot))
+    page.on_leave(console.controls.enter(session, robot.namespace))
+    dark = ui.dark_mode(session.dark)
+    with ui.header().classes("nao-header items-center").props(f'data-robot="{robot.name}"'):
+        _navigation(console, request.url.path, robot)
+        ui.space()
+        _people(console, page)
+        ui.button(icon="contrast", on_click=lambda: _turn(session, dark)).props('flat round aria-label="Light or dark"')
+        ui.button("Stop", icon="pan_tool", on_click=lambda: _stop(page)).classes("nao-stop").props(
+            'color=negative aria-keyshortcuts="Escape" title="Ends everything that the robot does (Escape)"'
+        )
+    with ui.column().classes("nao-main w-full"):
+        yield page
+
+
+def _navigation(console: Any, here: str, robot: RobotClient) -> None:
+    with ui.element("nav").props('aria-label="Pages"').classes("row items-center"):
+        for path, name in PATHS.items():
+            link = ui.link(name, f"{path}?robot={robot.name}").classes("nao-link")
+            if path == here or (path != "/" and here.startswith(path)):
+                link.props('aria-current="page"')
+    names = console.robots.names()
+    if len(names) > 1 or robot.name not in names:
+        choices = sorted({*names, robot.name})
+        ui.select(choices, value=robot.name, on_change=lambda e: ui.navigate.to(f"{here}?robot={e.value}")).props(
+            'dense dark options-dense aria-label="Robot"'
+        ).classes("nao-robot")
+
+
+def _people(console: Any, page: PageContext) -> None:
+    """Who holds the controls, and a way to take them or give them back."""
+    robot, session = page.robot.namespace, page.visitor
+    button = ui.button("").props("flat dense no-caps color=white").classes("nao-holder")
+
+    def show() -> None:
+        holder = console.controls.holder(robot)
+        others = [each.name for each in console.controls.visitors(robot) if each is not session]
+        mine = holder is session
+        text = "You have the controls" if mine else f"{holder.name} has the controls" if holder else "Controls are free"
+        button.text = text + (f" (also here: {', '.join(others)})" if others else "")
+        button.set_enabled(session.operator)
+
+    def turn() -> None:
+        if console.controls.holder(robot) is session:
+            console.controls.release(robot, session)
+        else:
+            console.controls.take(robot, session)
+        show()
+
+    button.on_click(turn)
+    show()
+    page.every(HOLDER_PERIOD, show)
+
+
+def _turn(session: Session, dark: Any) -> None:
+    """Light to dark and back; the first time against what the computer has."""
+    session.dark = not session.dark
+    dark.set_value(session.dark)
+
+
+async def _stop(page: PageContext) -> None:
+    if not page.visitor.operator:
+        page.notify("observers look on; only operators stop the robot", "warning")
+        return
+    await asyncio.get_running_loop().run_in_executor(None, page.robot.stop, page.visitor.name)
+    page.notify("Everything is told to stop", "positive")

@@ -1,0 +1,283 @@
+"""What a button, a step of a protocol or a form wants of a robot, as files write it, and as a goal.
+
+{say: "Hello {name}", animated: true}
+{run: hello, with: {color: green}}
+{call: NaoLights.setColor, with: {lights: [FaceLeds], str_param: red}}
+{chain: NaoMotion, steps: [{wakeUp: {}}, {goToPosture: {str_param: Stand}}]}
+{posture: Stand}
+{walk_to: [0.5, 0.0, 0.0]}          # m ahead, m to the left, rad or deg to the left
+{stop: true}
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ...base.errors import BadGoal
+from ...base.suggestion import did_you_mean, of_those
+from ...behaviors.language.expressions import text_of
+from ...behaviors.language.messages import message_of
+from ...behaviors.language.yaml_text import line_in, line_of
+from ...functions.server_types import ACTIONS, ServerType, described_type, server_type
+from ..yaml_file import FileReader
+
+SPEECH, MOTION, BEHAVIORS = "nao_audio_out", "NaoMotion", "NaoBehavior"
+FORMS: Mapping[str, tuple[str, ...]] = {
+    "say": ("animated",),
+    "run": ("with",),
+    "call": ("with",),
+    "chain": ("steps",),
+    "posture": (),
+    "walk_to": (),
+    "stop": (),
+}
+"""First key of each form -> the keys that may stand beside it."""
+KEYS = (*FORMS, "animated", "with", "steps")
+"""All keys of commands: a file may have others beside them."""
+POSTURE_SPEED = 0.8
+_NAME = re.compile(r"\{(\w+)\}")
+
+Describe = Callable[[str], Any]
+"""Gives the DescribeFunctionsResponse of a server by its relative name."""
+
+
+@dataclass(frozen=True)
+class RobotCommand:
+    """Functions of one server, in their order.
+
+    `chain`: of each function its name -> its fields; empty together with an empty `server`: everything stops.
+    """
+
+    server: str = ""
+    chain: tuple[tuple[str, Mapping[str, Any]], ...] = ()
+    source: Mapping[str, Any] | None = None  # as the file has it
+
+    @property
+    def stops(self) -> bool:
+        """Whether it ends everything that the robot does."""
+        return not self.server
+
+    @property
+    def label(self) -> str:
+        """For people: what is said, or what runs."""
+        if self.stops:
+            return "stop"
+        name, fields = self.chain[0]
+        told = fields.get("str_param") or fields.get("values") or ""
+        more = f" and {len(self.chain) - 1} more" if len(self.chain) > 1 else ""
+        return f"{name} {text_of(told) if not isinstance(told, list) else ', '.join(map(text_of, told))}".strip() + more
+
+    def filled(self, values: Mapping[str, str]) -> RobotCommand:
+        """With `{name}` in its texts replaced; names that `values` lacks stay as they are."""
+        return replace(self, chain=tuple((name, _filled(fields, values)) for name, fields in self.chain))
+
+    def to_yaml(self) -> Mapping[str, Any]:
+        """As a file would have it."""
+        if self.source is not None:
+            return self.source
+        if self.stops:
+            return {"stop": True}
+        if len(self.chain) > 1:
+            return {"chain": self.server, "steps": [{name: dict(fields)} for name, fields in self.chain]}
+        ((name, fields),) = self.chain
+        return {"call": f"{self.server}.{name}", **({"with": dict(fields)} if fields else {})}
+
+
+def call(server: str, function: str, **fields: Any) -> RobotCommand:
+    return RobotCommand(server, ((function, fields),))
+
+
+def say(text: str, animated: bool = False) -> RobotCommand:
+    return call(SPEECH, "animatedSay" if animated else "say", str_param=text)
+
+
+def run_behavior(name: str, parameters: Mapping[str, Any]) -> RobotCommand:
+    given = [f"{key}={text_of(value)}" for key, value in parameters.items()]
+    return call(BEHAVIORS, "runBehavior", str_param=name, **({"parameters": given} if given else {}))
+
+
+def posture(name: str) -> RobotCommand:
+    return call(MOTION, "goToPosture", str_param=name, speed=POSTURE_SPEED)
+
+
+def walk_to(x: float, y: float, theta: float) -> RobotCommand:
+    """Walk x m ahead, y m to the left, and turn by theta rad; a robot that does not stand stands up before."""
+    steps = (("goToPosture", {"str_param": "StandInit"}), ("moveTo", {"values": [x, y, theta]}))
+    return RobotCommand(MOTION, steps)
+
+
+def read_command(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
+    """The command among the keys of a mapping; None if there is none that can be read, which is noted.
+
+    `holder`: a mapping of a file; it may have other keys, which the caller looks at.
+    """
+    kinds = [key for key in FORMS if key in holder]
+    if len(kinds) != 1:
+        told = f"{' and '.join(kinds)} exclude each other" if kinds else f"one of {', '.join(FORMS)} is wanted"
+        reader.note(where, told, line_of(holder))
+        return None
+    (kind,) = kinds
+    for key in ("animated", "with", "steps"):
+        if key in holder and key not in FORMS[kind]:
+            reader.note(where, f"{key} is not for {kind}", line_in(holder, key))
+    source = {key: holder[key] for key in (kind, *FORMS[kind]) if key in holder}
+    made = _READERS[kind](reader, holder, where)
+    return None if made is None else replace(made, source=source)
+
+
+def _read_say(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
+    return say(reader.text(holder, "say", where), reader.flag(holder, "animated", where))
+
+
+def _read_run(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
+    given = holder.get("with") or {}
+    if not isinstance(given, dict):
+        reader.note(f"{where}.with", "a mapping of parameters is wanted", line_in(holder, "with"))
+        given = {}
+    return run_behavior(reader.text(holder, "run", where), given)
+
+
+def _read_call(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
+    server, dot, function = reader.text(holder, "call", where).partition(".")
+    if not dot or not server or not function:
+        reader.note(f"{where}.call", "SERVER.FUNCTION is wanted: NaoLights.setColor", line_in(holder, "call"))
+        return None
+    return _chain(reader, server, [(function, holder.get("with") or {}, line_in(holder, "call"))], where)
+
+
+def _read_chain(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
+    steps = []
+    for number, step in enumerate(reader.items(holder.get("steps"), f"{where}.steps"), start=1):
+        if not isinstance(step, dict) or len(step) != 1:
+            reader.note(
+                f"{where}.steps {number}", "FUNCTION: {FIELD: VALUE} is wanted", line_in(holder["steps"], number - 1)
+            )
+            continue
+        ((function, fields),) = step.items()
+        steps.append((function, fields or {}, line_of(step)))
+    if not steps:
+        reader.note(where, "steps is missing: functions of the chain, in their order", line_of(holder))
+        return None
+    return _chain(reader, reader.text(holder, "chain", where), steps, where)
+
+
+def _read_posture(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
+    return posture(reader.text(holder, "posture", where))
+
+
+def _read_walk(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
+    from ...base.degrees import in_rad, is_in_degrees
+
+    way = holder["walk_to"]
+    try:
+        x, y, theta = way
+        return walk_to(float(x), float(y), in_rad(theta) if is_in_degrees(theta) else float(theta))
+    except (TypeError, ValueError):
+        reader.note(
+            f"{where}.walk_to",
+            "m ahead, m to the left and rad (or 90deg) to the left are wanted: [0.5, 0, 0]",
+            line_in(holder, "walk_to"),
+        )
+        return None
+
+
+def _read_stop(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
+    return RobotCommand() if reader.flag(holder, "stop", where) else None
+
+
+_READERS = {
+    "say": _read_say,
+    "run": _read_run,
+    "call": _read_call,
+    "chain": _read_chain,
+    "posture": _read_posture,
+    "walk_to": _read_walk,
+    "stop": _read_stop,
+}
+
+
+def _chain(reader: FileReader, server: str, steps: Any, where: str) -> RobotCommand | None:
+    """A chain whose names and fields are looked at as far as this package's servers go."""
+    made = []
+    for function, fields, line in steps:
+        if not isinstance(fields, dict):
+            reader.note(where, f"{function}: a mapping of fields is wanted", line)
+            continue
+        made.append((str(function), dict(fields)))
+        if server in ACTIONS:
+            try:
+                message_of(server_type(server).function, dict(fields))
+            except BadGoal as error:
+                reader.note(where, f"{function}: {error}", line)
+    return RobotCommand(server, tuple(made)) if made else None
+
+
+def _filled(value: Any, values: Mapping[str, str]) -> Any:
+    if isinstance(value, str):
+        return _NAME.sub(lambda found: values.get(found[1], found[0]), value)
+    if isinstance(value, Mapping):
+        return {key: _filled(entry, values) for key, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_filled(entry, values) for entry in value]
+    return value
+
+
+@dataclass(frozen=True)
+class CommandGoal:
+    """A goal, ready to be sent. `action`: type of the action. `goal`: of its goal type."""
+
+    server: str
+    action: type
+    goal: Any
+
+
+def type_of(server: str, describe: Describe) -> ServerType:
+    """The types of a server: one of this package's, or another one as it describes itself.
+
+    Raises BadGoal if its messages are not known here, and what `describe` raises if there is no such server.
+    """
+    return server_type(server) if server in ACTIONS else described_type(server, describe(server))
+
+
+def goal_of(command: RobotCommand, types: ServerType) -> CommandGoal:
+    """The goal of a command. Raises BadGoal if a field will not do."""
+    functions = []
+    for position, (name, fields) in enumerate(command.chain, start=1):
+        where = f"function {position} ({name})" if len(command.chain) > 1 else name
+        message = message_of(types.function, dict(fields), where)
+        message.function = name
+        functions.append(message)
+    return CommandGoal(command.server, types.action, types.goal(functions))
+
+
+def command_problems(command: RobotCommand, describe: Describe) -> list[str]:
+    """What is wrong with a command as far as descriptions of its server tell: names of functions and fields, kinds.
+
+    `describe`: raises NaoError if there is no such server.
+    """
+    from naoqi.errors import NaoError
+
+    if command.stops:
+        return []
+    try:
+        described = describe(command.server)
+        types = type_of(command.server, describe)
+    except (NaoError, KeyError) as error:
+        return [str(error)]
+    functions = {each.name: each for each in described.functions}
+    told = []
+    for name, fields in command.chain:
+        if name not in functions:
+            told.append(f"{command.server} has no function {name!r}{did_you_mean(name, functions)}")
+            continue
+        takes = [each.name for each in (*functions[name].arguments, *described.common)]
+        told += [f"{name} takes no field {field!r}{of_those(field, takes)}" for field in fields if field not in takes]
+    if not told:
+        try:
+            goal_of(command, types)
+        except BadGoal as error:
+            told.append(str(error))
+    return told

@@ -1,0 +1,76 @@
+"""What the ROS master knows of servers, services and actions: asked at most once in a while for all robots."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import rospy
+
+from ...functions.server_types import servers_among, those_in
+
+FRESH = 1.0
+"""s of this computer for which an answer is good."""
+CANCEL, CANCEL_TYPE = "/cancel", "actionlib_msgs/GoalID"
+
+
+class MasterLook:
+    """The books of the master, as they were a second ago at most. Any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._read = float("-inf")
+        self._services: list[str] = []
+        self._subscribed: dict[str, list[str]] = {}
+        self._types: dict[str, str] = {}
+
+    def namespaces(self) -> list[str]:
+        """Of the robots that have servers, each with a slash at both ends, sorted."""
+        return sorted({name.rpartition("/")[0] + "/" for name in self._all_servers()})
+
+    def servers(self, namespace: str) -> list[str]:
+        """Relative names of the servers of a robot, sorted."""
+        return sorted(those_in(namespace, self._all_servers()), key=str.lower)
+
+    def cancel_topics(self, namespace: str) -> list[str]:
+        """Full names of the topics by which goals of a robot's actions are cancelled, also those of its driver."""
+        self._look()
+        return [
+            name
+            for name in self._subscribed
+            if name.startswith(namespace) and name.endswith(CANCEL) and self._types.get(name) == CANCEL_TYPE
+        ]
+
+    def services(self) -> list[str]:
+        """Full names of all services."""
+        self._look()
+        return list(self._services)
+
+    def service_address(self, service: str) -> str:
+        """Where a service is at this moment, by its full name; empty if it is not there."""
+        try:
+            code, _, address = rospy.get_master().lookupService(service)
+        except OSError:
+            return ""
+        return address if code == 1 else ""
+
+    def _all_servers(self) -> list[str]:
+        self._look()
+        return [name for name in servers_among(self._services) if f"{name}/goal" in self._subscribed]
+
+    def _look(self) -> None:
+        with self._lock:
+            if time.monotonic() - self._read < FRESH:
+                return
+            self._read = time.monotonic()
+            state: Any = ([], [], [])
+            try:
+                code, _, found = rospy.get_master().getSystemState()
+                state = found if code == 1 else state
+                self._types = dict(rospy.get_master().getTopicTypes()[2])
+            except OSError:
+                pass  # no master: nothing runs
+            _, subscribers, services = state
+            self._services = [name for name, _ in services]
+            self._subscribed = {name: list(nodes) for name, nodes in subscribers}

@@ -1,0 +1,365 @@
+"""One robot through its servers, topics and services: the only way by which the console reaches it."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Any
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalID
+from geometry_msgs.msg import Twist
+from std_srvs.srv import Empty
+
+from nao_library_msgs.srv import DescribeFunctions
+from naoqi.errors import NaoError
+
+from ...base.suggestion import of_those
+from ...cli.output import plain
+from ...cli.progress import progress_text
+from ...functions.server_types import DESCRIBE, ServerType
+from ...owners.line import OwnerLine
+from ...ros.check_client import NotAnswered, call_service
+from ...ros.goal_tracker import GoalTracker, server_connection
+from .commands import CommandGoal, RobotCommand, goal_of, type_of
+from .errors import NotThere, ServiceRefused
+from .events import EventStream
+from .foreign_goals import ForeignGoals
+from .master import MasterLook
+from .runs import ENDS, STATES, Run
+
+log = logging.getLogger(__name__)
+
+SERVER_LIMIT = 5.0
+"""s that the server of a goal may take to be found."""
+LOOK_PERIOD = 0.01
+WALK_HOLD = 0.4
+"""s that a velocity holds; who wants more sends it again."""
+CONSOLE = "console"
+"""Who sends goals in nobody's name."""
+CANCEL, STOP_WALK = "/cancel", "stop_walk_srv"
+FINISHED_KEPT = 20
+"""Goals that are over and still told."""
+
+
+class RobotClient:
+    """A robot's servers, by their names in its namespace. Any thread.
+
+    ROS API:
+        Client of the actions that describe themselves. Publishes `cmd_vel` (geometry_msgs/Twist) while somebody walks
+        it, and `*/cancel` of all actions at a stop. Calls `NAME/describe`, `stop_walk_srv`.
+    """
+
+    def __init__(self, namespace: str, master: MasterLook) -> None:
+        self.namespace = namespace
+        self.name = namespace.strip("/") or "/"
+        self.events = EventStream(namespace, self.now)
+        self._master = master
+        self._lock = threading.RLock()
+        self._clients: dict[str, actionlib.ActionClient] = {}
+        self._types: dict[str, ServerType] = {}
+        self._described: dict[str, tuple[str, Any]] = {}
+        self._cancels: dict[str, rospy.Publisher] = {}
+        self._own: dict[str, Run] = {}
+        self._finished: list[Run] = []
+        self._foreign = ForeignGoals(namespace, self._is_own)
+        self._watchers = 0
+        self._owners: OwnerLine | None = None
+        self._walk_lock = threading.Condition()
+        self._walk: tuple[float, float, float] | None = None
+        self._walk_until = 0.0
+        self._walk_thread: threading.Thread | None = None
+        self._velocity: rospy.Publisher | None = None
+
+    def now(self) -> float:
+        """ROS time, s."""
+        return rospy.get_time()
+
+    # --- what there is --------------------------------------------------------------------------------------------
+
+    def servers(self) -> list[str]:
+        """Relative names of the servers that run."""
+        return self._master.servers(self.namespace)
+
+    def describe(self, server: str) -> Any:
+        """What a server says of all its functions, DescribeFunctionsResponse; kept until it is started anew.
+
+        Raises NotThere.
+        """
+        place = self._master.service_address(self.namespace + server + DESCRIBE)
+        if not place:
+            raise NotThere(f"there is no server {server!r}{of_those(server, self.servers())}")
+        with self._lock:
+            kept = self._described.get(server)
+        if kept is None or kept[0] != place:
+            kept = (place, self.call(server + DESCRIBE, DescribeFunctions))
+            with self._lock:
+                self._described[server] = kept
+                self._types.pop(server, None)
+        return kept[1]
+
+    def state_of(self, server: str) -> Any:
+        """How a server does: DescribeFunctionsResponse without functions. Raises NotThere."""
+        return self.call(server + DESCRIBE, DescribeFunctions, without_functions=True)
+
+    def has_service(self, name: str) -> bool:
+        return bool(self._master.service_address(self.namespace + name))
+
+    def call(self, name: str, kind: type, **fields: Any) -> Any:
+        """Call a service of this robot, or one by its full name. Raises NotThere, ServiceRefused."""
+        full = name if name.startswith("/") else self.namespace + name
+        try:
+            return call_service(full, kind, kind._request_class(**fields))
+        except NotAnswered as error:
+            if "there is no" in str(error):
+                raise NotThere(str(error)) from None
+            raise ServiceRefused(str(error)) from None
+
+    def topic(self, name: str, kind: type, callback: Callable[[Any], None], queue_size: int = 1) -> Callable[[], None]:
+        """Listen to a topic of this robot, or to one by its full name; what comes back ends that."""
+        full = name if name.startswith("/") else self.namespace + name
+        subscriber = rospy.Subscriber(full, kind, callback, queue_size=queue_size, tcp_nodelay=True)
+        return subscriber.unregister
+
+    # --- goals ----------------------------------------------------------------------------------------------------
+
+    def send(self, command: RobotCommand, by: str = "", label: str = "") -> Run | None:
+        """Carry out a command; None for one that stops everything.
+
+        Raises BadGoal if it will not do, NotThere if there is no such server.
+        """
+        if command.stops:
+            self.stop(by)
+            return None
+        types = self._types_of(command.server)
+        return self.send_goal(goal_of(command, types), by, label or command.label)
+
+    def send_goal(self, goal: CommandGoal, by: str = "", label: str = "") -> Run:
+        """Send a goal. Raises NotThere if no server takes it within SERVER_LIMIT."""
+        client = self._client(goal.server, goal.action)
+        names = [function.function for function in goal.goal.functions]
+        run = Run("", self.namespace, goal.server, names, label or ", ".join(names), by or CONSOLE, self.now())
+        tracker = _OwnedGoal(self._owner_line(goal.server))
+        chain = plain(goal.goal)["functions"]
+        handle = client.send_goal(goal.goal, partial(self._moved, run, tracker), partial(self._told, run))
+        self._note(run, tracker, handle)
+        self.events.add("sent", f"{goal.server}: {run.label}", run.by, goal=run.id, server=goal.server, chain=chain)
+        return run
+
+    @property
+    def runs(self) -> list[Run]:
+        """The goals that go on, those of other programs among them while somebody watches."""
+        with self._lock:
+            own = list(self._own.values())
+        return [*own, *self._foreign.runs()]
+
+    @property
+    def finished(self) -> list[Run]:
+        """The newest goals of this console that are over, the oldest of them first."""
+        with self._lock:
+            return list(self._finished)
+
+    def prepare(self, servers: Iterable[str]) -> None:
+        """Connect to servers, so that the first goal of each goes at once. In the background."""
+        for server in servers:
+            _in_thread(self._prepare, server)
+
+    def watch(self) -> Callable[[], None]:
+        """Follow goals of other programs, and be ready to stop at once, until what comes back is called."""
+        with self._lock:
+            self._watchers += 1
+        self.refresh()
+        turns = iter([self._unwatch])
+        return lambda: next(turns, lambda: None)()
+
+    def refresh(self) -> None:
+        """Take notice of servers that have come or gone; called while somebody watches."""
+        with self._lock:
+            if not self._watchers:
+                return
+            self._foreign.follow(self._master.servers(self.namespace))
+            for topic in self._master.cancel_topics(self.namespace):
+                if topic not in self._cancels:
+                    self._cancels[topic] = rospy.Publisher(topic, GoalID, queue_size=2, tcp_nodelay=True)
+
+    def _unwatch(self) -> None:
+        with self._lock:
+            self._watchers -= 1
+            if self._watchers:
+                return
+            self._foreign.follow(())
+            for publisher in self._cancels.values():
+                publisher.unregister()
+            self._cancels.clear()
+
+    # --- stop and walk --------------------------------------------------------------------------------------------
+
+    def stop(self, by: str = "") -> None:
+        """End all goals of all actions of the robot, and its walk."""
+        self._hold_walk(None)
+        with self._lock:
+            ready, own = dict(self._cancels), list(self._own.values())
+        for publisher in ready.values():
+            publisher.publish(GoalID())
+        for run in own:
+            if self.namespace + run.server + CANCEL not in ready:
+                run.cancel()
+        self.events.add("stopped", "everything is told to stop", by)
+        _in_thread(self._stop_rest, set(ready))
+
+    def walk(self, x: float, y: float, theta: float, by: str = "") -> None:
+        """Walk at shares -1..1 of the top speed, ahead, to the left and turning left, for WALK_HOLD s."""
+        way = tuple(max(-1.0, min(1.0, float(value))) for value in (x, y, theta))
+        began = self._hold_walk(way)
+        if began and any(way):
+            self.events.add("walked", "walks by hand", by, velocity=list(way))
+
+    def _hold_walk(self, way: Any) -> bool:
+        """Whether a walk by hand begins with it."""
+        with self._walk_lock:
+            began = self._walk is None
+            if way is None and began:
+                return False
+            self._walk = way or (0.0, 0.0, 0.0)
+            self._walk_until = time.monotonic() + WALK_HOLD if any(self._walk) else 0.0
+            if self._walk_thread is None:
+                if self._velocity is None:
+                    topic = self.namespace + "cmd_vel"
+                    self._velocity = rospy.Publisher(topic, Twist, queue_size=1, tcp_nodelay=True)
+                self._walk_thread = threading.Thread(target=self._walk_on, name=f"walk of {self.name}", daemon=True)
+                self._walk_thread.start()
+            self._walk_lock.notify_all()
+        return began
+
+    def _walk_on(self) -> None:
+        """Send velocities at once and ten times a second, and a stop at their end."""
+        while True:
+            with self._walk_lock:
+                over = time.monotonic() >= self._walk_until or self._walk is None
+                x, y, theta = (0.0, 0.0, 0.0) if over else self._walk
+                velocity = Twist()
+                velocity.linear.x, velocity.linear.y, velocity.angular.z = x, y, theta
+                self._velocity.publish(velocity)
+                if over:
+                    self._walk = self._walk_thread = None
+                    return
+                left = min(0.1, self._walk_until - time.monotonic())
+                self._walk_lock.wait(max(left, 0.0))
+
+    def _stop_rest(self, ready: set[str]) -> None:
+        """What takes its time: actions that nobody was connected to, and a walk that no goal holds."""
+        try:
+            if self.has_service(STOP_WALK):
+                self.call(STOP_WALK, Empty)
+        except NaoError as error:
+            log.warning("the robot %s was not told to stop walking: %s", self.name, error)
+        with self._lock:
+            missing = [topic for topic in self._master.cancel_topics(self.namespace) if topic not in ready]
+        for topic in missing:
+            publisher = rospy.Publisher(topic, GoalID, queue_size=1)
+            if _within(SERVER_LIMIT, lambda p=publisher: p.get_num_connections() > 0):
+                publisher.publish(GoalID())
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _types_of(self, server: str) -> ServerType:
+        with self._lock:
+            if server in self._types:
+                return self._types[server]
+        try:
+            types = type_of(server, self.describe)
+        except KeyError as error:
+            raise NotThere(str(error)) from None
+        with self._lock:
+            return self._types.setdefault(server, types)
+
+    def _prepare(self, server: str) -> None:
+        try:
+            self._client(server, self._types_of(server).action)
+            self._owner_line(server)
+        except NaoError as error:
+            log.info("%s is not there yet: %s", server, error)
+
+    def _client(self, server: str, action: type) -> Any:
+        with self._lock:
+            if server not in self._clients:
+                self._clients[server] = actionlib.ActionClient(self.namespace + server, action)
+            client = self._clients[server]
+        if not _within(SERVER_LIMIT, lambda: server_connection(client) is not None):
+            raise NotThere(f"the server {server} does not run{of_those(server, self.servers())}")
+        return client
+
+    def _owner_line(self, server: str) -> OwnerLine | None:
+        """The line to the watch of this robot's owners: should the console die, its goals end."""
+        with self._lock:
+            if self._owners is None:
+                try:
+                    self._owners = OwnerLine(self.state_of(server).robot)
+                    self._owners.name = rospy.get_name()
+                except NaoError:
+                    return None
+            return self._owners
+
+    def _is_own(self, goal: str) -> bool:
+        return goal.startswith(rospy.get_name() + "-")
+
+    def _note(self, run: Run, tracker: GoalTracker, handle: Any) -> None:
+        """Have a goal among those that go on; done once, before anything is told of it."""
+        with self._lock:
+            if run.id:
+                return
+            run.id = handle.comm_state_machine.action_goal.goal_id.id
+            run.cancel_goal = lambda: _in_thread(tracker.cancel, handle)
+            self._own[run.id] = run
+
+    def _moved(self, run: Run, tracker: GoalTracker, handle: Any) -> None:
+        """A goal has changed its state: in actionlib's thread, under its lock."""
+        self._note(run, tracker, handle)
+        state = STATES.get(handle.get_goal_status(), run.state)
+        if state not in ENDS.values():
+            run.state = state
+        tracker.look(handle)
+        if tracker.over.is_set():
+            _in_thread(self._end, run, handle)
+
+    def _told(self, run: Run, _: Any, feedback: Any) -> None:
+        run.feedback = plain(feedback)
+        run.progress = progress_text(run.feedback)
+
+    def _end(self, run: Run, handle: Any) -> None:
+        with self._lock:
+            if self._own.pop(run.id, None) is None:
+                return
+            self._finished = [*self._finished, run][-FINISHED_KEPT:]
+        state = ENDS.get(handle.get_terminal_state(), "lost")
+        text, result = handle.get_goal_status_text() or "", handle.get_result()
+        fields = {} if result is None else plain(result)
+        told = f"{run.server}: {run.label} {state}" + (f": {text}" if text and state != "succeeded" else "")
+        self.events.add("ended", told, run.by, goal=run.id, server=run.server, state=state, reason=text, result=fields)
+        run.end(state, text, fields)
+
+
+class _OwnedGoal(GoalTracker):
+    """A goal that the watch of its robot cancels if this process dies."""
+
+    def __init__(self, owners: OwnerLine | None) -> None:
+        super().__init__()
+        self.owners = owners  # type: ignore[misc]  # several robots, a line to each
+
+
+def _in_thread(task: Callable[..., Any], *arguments: Any) -> None:
+    threading.Thread(target=task, args=arguments, daemon=True).start()
+
+
+def _within(limit: float, condition: Callable[[], bool]) -> bool:
+    """Whether something becomes true within so many s of this computer."""
+    deadline = time.monotonic() + limit
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(LOOK_PERIOD)
+    return True
