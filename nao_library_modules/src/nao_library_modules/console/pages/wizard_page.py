@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from fastapi import Request, WebSocket, WebSocketDisconnect
-from nicegui import run, ui
+from nicegui import context, run, ui
 
 from naoqi.errors import NaoError
 
@@ -70,6 +70,7 @@ class _WizardPage:
         self._desk = parts.desk
         self._page = page
         self._space = page.robot.namespace
+        self._client = context.client
         self._place = -1  # in the history, of the text field
 
     def draw(self) -> None:
@@ -228,10 +229,9 @@ class _WizardPage:
     def _follow(self, subscribe: Any, callback: Any) -> None:
         """Have something called in the event loop, on this page, whatever thread tells of it."""
         loop = asyncio.get_running_loop()
-        client = self._page.client
 
         def in_page() -> None:
-            with client:
+            with self._client:
                 callback()
 
         self._page.on_leave(subscribe(lambda: loop.call_soon_threadsafe(in_page)))

@@ -100,9 +100,10 @@ class _LayoutReader:
         return WizardLayout(title, tuple(groups), self._names, templates, speed, self._revision)
 
     def _group(self, value: Any, where: str, line: int) -> ButtonGroup:
-        content = self._file.mapping(value, where, GROUP_KEYS)
         if not isinstance(value, dict):
+            self._file.note(where, f"a mapping with {', '.join(GROUP_KEYS)} is wanted", line)
             return ButtonGroup("", ())
+        content = self._file.mapping(value, where, GROUP_KEYS)
         title = self._short(value, "group", where)
         if not title:
             self._file.note(where, "it has no title: `group: TITLE`", line_of(value) or line)
@@ -116,9 +117,10 @@ class _LayoutReader:
 
     def _button(self, value: Any, where: str, line: int, group: tuple[str, str, str]) -> WizardButton | None:
         self._count += 1
-        self._file.mapping(value, where, BUTTON_KEYS)
         if not isinstance(value, dict):
+            self._file.note(where, f"a mapping with {', '.join(BUTTON_KEYS)} is wanted", line)
             return None
+        self._file.mapping(value, where, BUTTON_KEYS)
         line = line_of(value) or line
         action = self._action(value, where, line)
         label = self._label(value, where, line, group[0], action)
