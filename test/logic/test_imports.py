@@ -51,7 +51,8 @@ ROOMS = {
     driver.life driver.teleop driver
     process_modules.language process_modules.designators process_modules.core process_modules.robot
     process_modules.modules process_modules.action_rules process_modules
-    behaviors.language behaviors.run behaviors sweeps cli cli.commands
+    behaviors.language behaviors.run behaviors sweeps cli
+    console.files console.robots console.access console.pages console cli.commands
     """.split(),
     "nao_sim_bridge": """
     base model model.urdf world.painting world body.sensors body
@@ -76,10 +77,16 @@ OF_CLIENTS = frozenset({"errors", "definitions", "ros", "library", *CLIENTS})
 LAYERS = (
     Layer("naoqi", "nao_library_modules/src/naoqi", frozenset({"qi", "sdk", "errors"})),
     Layer("sdk", "nao_library_modules/src", frozenset(), ("naoqi", "nao_library_modules")),
-    Layer("library", LIBRARY, frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}), (*CLIENTS, "sweeps", "cli")),
+    Layer(
+        "library",
+        LIBRARY,
+        frozenset({"naoqi", "errors", "definitions", "ros", "sdk"}),
+        (*CLIENTS, "sweeps", "cli", "console"),
+    ),
     *(Layer(name, f"{LIBRARY}/{name}", OF_CLIENTS) for name in CLIENTS),
     Layer("sweeps", f"{LIBRARY}/sweeps", OF_CLIENTS | {"front", "sim", "testing"}),
-    Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi", "sweeps", "sim"}),
+    Layer("cli", f"{LIBRARY}/cli", OF_CLIENTS | {"naoqi", "sweeps", "sim", "console"}),
+    Layer("console", f"{LIBRARY}/console", OF_CLIENTS | {"cli"}),
     Layer("engine", f"{SIMULATOR}/base/engine.py", frozenset({"pybullet"})),
     Layer("sim", SIMULATOR, frozenset({"engine"}), ("base/engine.py", "naoqi", "server", "ros", "testing", *FRONT)),
     Layer("modules", f"{SIMULATOR}/naoqi", frozenset({"sim", "qi"})),
@@ -128,7 +135,7 @@ def layer_of(module: str) -> str | None:
             return "engine"
         return "front" if {first, f"{first}.py"} & {*FRONT} else own.get(first, "sim")
     if root == "nao_library_modules":
-        return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "sweeps", "cli") else "library"
+        return inner[0] if inner[:1] and inner[0] in (*CLIENTS, "sweeps", "cli", "console") else "library"
     return root if root in ("naoqi", "qi", "pybullet") else None
 
 

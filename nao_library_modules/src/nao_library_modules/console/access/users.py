@@ -15,8 +15,8 @@ from pathlib import Path
 from naoqi.errors import NaoError
 
 from ...base.whole_file import write_whole
-from ...behaviors.language.yaml_text import dump
-from ..yaml_file import FileReader
+from ...behaviors.language.yaml_text import dump, line_in
+from ..files.yaml_file import FileReader
 
 OPERATOR, OBSERVER = "operator", "observer"
 ROLES = (OPERATOR, OBSERVER)
@@ -59,7 +59,11 @@ def read_users(path: Path) -> Mapping[str, ConsoleUser]:
         role = reader.choice(fields, "role", str(name), ROLES, OBSERVER)
         password = reader.text(fields, "password", str(name))
         if not re.fullmatch(r"scrypt\$[A-Za-z0-9+/=]+\$[A-Za-z0-9+/=]+", password):
-            reader.note(f"{name}.password", "no hash: `nao console --users FILE --add-user NAME` writes one")
+            reader.note(
+                f"{name}.password",
+                "no hash: `nao console --users FILE --add-user NAME` writes one",
+                line_in(fields, "password"),
+            )
         users[str(name)] = ConsoleUser(str(name), role, password)
     reader.finish()
     return users

@@ -22,7 +22,7 @@ from ...behaviors.language.expressions import text_of
 from ...behaviors.language.messages import message_of
 from ...behaviors.language.yaml_text import line_in, line_of
 from ...functions.server_types import ACTIONS, ServerType, described_type, server_type
-from ..yaml_file import FileReader
+from ..files.yaml_file import FileReader
 
 SPEECH, MOTION, BEHAVIORS = "nao_audio_out", "NaoMotion", "NaoBehavior"
 FORMS: Mapping[str, tuple[str, ...]] = {
@@ -158,9 +158,8 @@ def _read_chain(reader: FileReader, holder: Any, where: str) -> RobotCommand | N
             continue
         ((function, fields),) = step.items()
         steps.append((function, fields or {}, line_of(step)))
-    if not steps:
+    if not holder.get("steps"):
         reader.note(where, "steps is missing: functions of the chain, in their order", line_of(holder))
-        return None
     return _chain(reader, reader.text(holder, "chain", where), steps, where)
 
 

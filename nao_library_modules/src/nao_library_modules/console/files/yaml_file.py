@@ -7,11 +7,11 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.errors import cut
-from ..base.suggestion import did_you_mean
-from ..behaviors.language.errors import BehaviorError, Problem
-from ..behaviors.language.expressions import text_of
-from ..behaviors.language.yaml_text import line_in, line_of, load
+from ...base.errors import cut
+from ...base.suggestion import did_you_mean
+from ...behaviors.language.errors import BehaviorError, Problem
+from ...behaviors.language.expressions import text_of
+from ...behaviors.language.yaml_text import Mapping, line_in, line_of, load
 
 
 class ConsoleFileError(NaoError):
@@ -45,12 +45,12 @@ class FileReader:
         if self.problems:
             raise ConsoleFileError(self.name, sorted(self.problems, key=lambda each: each.line))
 
-    def mapping(self, value: Any, where: str, allowed: Iterable[str], needed: Sequence[str] = ()) -> dict[Any, Any]:
+    def mapping(self, value: Any, where: str, allowed: Iterable[str], needed: Sequence[str] = ()) -> Mapping:
         """A mapping with the keys `allowed`; what it is not is noted, and unknown keys are left out."""
         known = list(allowed)
         if not isinstance(value, dict):
             self.note(where, f"a mapping with {', '.join(known)} is wanted, not {value!r}"[:300], line_of(value))
-            return {}
+            return Mapping()
         for key in value:
             if key not in known:
                 hint = did_you_mean(str(key), known)
@@ -60,7 +60,9 @@ class FileReader:
         for key in needed:
             if value.get(key) is None:
                 self.note(where, f"{key} is missing", line_of(value))
-        return {key: entry for key, entry in value.items() if key in known}
+        kept = Mapping((key, entry) for key, entry in value.items() if key in known)
+        kept.line, kept.lines = line_of(value), getattr(value, "lines", {})
+        return kept
 
     def items(self, value: Any, where: str) -> list[Any]:
         """A list; None is an empty one."""

@@ -1,0 +1,1 @@
+"""Files of the console: YAML read strictly, with lines in errors."""

@@ -1,0 +1,213 @@
+"""Who gets into the console, and who of those moves the robot."""
+
+from __future__ import annotations
+
+import asyncio
+import stat
+
+import pytest
+
+from nao_library_modules.console.access.controls import Controls
+from nao_library_modules.console.access.guard import COOKIE, LARGEST, SESSION, Guard
+from nao_library_modules.console.access.sessions import TRIES, TRY_PERIOD, Session, Sessions
+from nao_library_modules.console.access.users import OBSERVER, OPERATOR, add_user, read_users
+from nao_library_modules.console.app import ConsoleSettings
+from nao_library_modules.console.files.yaml_file import ConsoleFileError
+from naoqi.errors import NaoError
+
+HERE = "127.0.0.1:8080"
+ORIGIN = f"http://{HERE}"
+
+
+async def behind(scope, receive, send):
+    """What is behind the guard: says whose request it is, or how much of it came."""
+    if scope["type"] == "websocket":
+        await send({"type": "websocket.accept"})
+        return
+    size, more = 0, True
+    while more:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            raise RuntimeError("No response returned.")
+        size += len(message["body"])
+        more = message.get("more_body", False)
+    await send({"type": "http.response.start", "status": 200, "headers": []})
+    await send({"type": "http.response.body", "body": f"{scope[SESSION].name} {size}".encode()})
+
+
+class Door:
+    """A guard, called as a browser would."""
+
+    def __init__(self, sessions, hosts=("127.0.0.1",)):
+        self.guard = Guard(behind, sessions, hosts)
+
+    def ask(self, path="/", method="GET", kind="http", cookie="", host=HERE, origin=None, bodies=(b"",), leaves=False):
+        """Returns the messages of the answer."""
+        headers = [(b"host", host.encode())]
+        headers += [(b"cookie", f"{COOKIE}={cookie}".encode())] if cookie else []
+        headers += [(b"origin", origin.encode())] if origin else []
+        path, _, query = path.partition("?")
+        scope = {"type": kind, "method": method, "path": path, "query_string": query.encode(), "headers": headers}
+        last = len(bodies) - 1
+        messages = [{"type": "http.request", "body": b, "more_body": i < last} for i, b in enumerate(bodies)]
+        messages = [{"type": "http.disconnect"}] if leaves else messages
+        told = []
+
+        async def receive():
+            return messages.pop(0)
+
+        async def send(message):
+            told.append(message)
+
+        asyncio.run(self.guard(scope, receive, send))
+        return told
+
+    def status(self, *arguments, **options):
+        return self.ask(*arguments, **options)[0]["status"]
+
+
+def header(told, name):
+    return dict(told[0]["headers"])[name.encode()].decode()
+
+
+@pytest.fixture
+def sessions():
+    return Sessions()
+
+
+@pytest.fixture
+def door(sessions):
+    return Door(sessions)
+
+
+@pytest.fixture
+def operator(sessions):
+    return sessions.by_token(sessions.tokens[OPERATOR])
+
+
+def test_without_a_token_nobody_gets_in(door):
+    assert door.status("/") == 401
+    assert door.status("/?token=guess") == 401
+    assert door.status("/console/static/frame.js", cookie="guess") == 401
+
+
+@pytest.mark.parametrize("role", [OPERATOR, OBSERVER])
+def test_a_token_makes_a_session_of_its_role_and_leaves_the_address(door, sessions, role):
+    told = door.ask(f"/wizard?robot=nao1&token={sessions.tokens[role]}")
+    assert told[0]["status"] == 303 and header(told, "location") == "/wizard?robot=nao1"
+    cookie = header(told, "set-cookie")
+    assert "HttpOnly" in cookie and "SameSite=Strict" in cookie
+    assert sessions.get(cookie.partition("=")[2].partition(";")[0]).role == role
+
+
+def test_a_token_sends_nobody_to_another_page(door, sessions):
+    told = door.ask(f"//evil.org/\\evil.org?token={sessions.tokens[OPERATOR]}")
+    location = header(told, "location")
+    assert location.startswith("/") and location[1] not in "/\\"
+
+
+def test_requests_of_other_pages_are_refused(door, operator):
+    assert door.status("/", cookie=operator.key, origin=ORIGIN) == 200
+    assert door.status("/console/stop", "POST", cookie=operator.key, origin="http://evil.org") == 403
+    assert door.status("/", cookie=operator.key, host="evil.org:8080") == 403
+
+
+@pytest.mark.parametrize(
+    "options, accepted",
+    [({"origin": ORIGIN}, True), ({"origin": "http://evil.org"}, False), ({}, False), ({"origin": "null"}, False)],
+)
+def test_a_websocket_comes_from_the_console_itself(door, operator, options, accepted):
+    (told,) = door.ask(kind="websocket", cookie=operator.key, **options)
+    assert told["type"] == ("websocket.accept" if accepted else "websocket.close")
+
+
+def test_a_websocket_without_a_session_is_closed(door):
+    (told,) = door.ask(kind="websocket", origin=ORIGIN)
+    assert told["type"] == "websocket.close"
+
+
+def test_uploads_have_a_limit_whatever_they_say_of_their_size(door, operator):
+    half = bytes(LARGEST // 2 + 1)
+    assert door.ask(method="POST", cookie=operator.key, bodies=(half,))[1]["body"] == b"operator %d" % len(half)
+    assert door.status(method="POST", cookie=operator.key, bodies=(half, half)) == 413
+
+
+def test_a_browser_that_leaves_is_no_error(door, operator):
+    assert door.ask(cookie=operator.key, leaves=True) == []
+
+
+@pytest.fixture
+def people(tmp_path):
+    add_user(tmp_path / "people.yaml", "ann", OPERATOR, "long enough")
+    return tmp_path / "people.yaml"
+
+
+def test_people_log_in_with_their_password(people):
+    door = Door(Sessions(read_users(people)), hosts=())
+    form = lambda word: (f"name=ann&password={word}".encode(),)  # noqa: E731
+    assert door.status("/") == 401
+    assert door.status("/login", "POST", bodies=form("wrong")) == 403
+    told = door.ask("/login", "POST", bodies=form("long+enough"))
+    key = header(told, "set-cookie").partition("=")[2].partition(";")[0]
+    assert door.ask(cookie=key)[1]["body"] == b"ann 0"
+    assert header(door.ask("/logout", cookie=key), "location") == "/" and door.status(cookie=key) == 401
+
+
+def test_passwords_are_hashed_in_a_file_of_its_owner(people):
+    assert "long enough" not in people.read_text() and stat.S_IMODE(people.stat().st_mode) == 0o600
+    with pytest.raises(NaoError, match="8 characters at least"):
+        add_user(people, "bob", OBSERVER, "short")
+
+
+def test_a_file_of_people_without_hashes_is_refused_with_its_lines(tmp_path):
+    path = tmp_path / "people.yaml"
+    path.write_text("ann:\n  role: king\n  password: plain\n")
+    with pytest.raises(ConsoleFileError, match=r"ann.role \(line 2\): 'king'.*ann.password \(line 3\): no hash"):
+        read_users(path)
+
+
+def test_who_guesses_is_not_listened_to_for_a_while(people):
+    now = [0.0]
+    sessions = Sessions(read_users(people), clock=lambda: now[0])
+    assert not any(sessions.by_password("ann", "wrong") for _ in range(TRIES))
+    assert sessions.by_password("ann", "long enough") is None
+    now[0] += TRY_PERIOD + 1.0
+    assert sessions.by_password("ann", "long enough").operator
+
+
+def test_beyond_this_computer_people_need_a_password():
+    with pytest.raises(NaoError, match="--users"):
+        ConsoleSettings(listen="0.0.0.0")
+    assert ConsoleSettings(listen="127.0.0.1").url == "http://127.0.0.1:8080/"
+
+
+@pytest.fixture
+def two():
+    return Session("ann", OPERATOR), Session("bob", OPERATOR)
+
+
+def test_the_first_operator_who_moves_the_robot_holds_it_until_another_takes_over(two):
+    ann, bob = two
+    controls = Controls()
+    assert controls.may_move("/", ann) and not controls.may_move("/", bob)
+    assert controls.may_move("/nao2/", bob)
+    assert controls.take("/", bob) and controls.may_move("/", bob) and not controls.may_move("/", ann)
+    assert "bob holds the controls" in controls.refusal("/", ann)
+
+
+def test_observers_never_move_the_robot(two):
+    controls, observer = Controls(), Session("eve", OBSERVER)
+    assert not controls.may_move("/", observer) and not controls.take("/", observer)
+    assert controls.may_move("/", two[0])
+
+
+def test_controls_are_free_when_the_last_page_of_their_holder_is_gone(two):
+    ann, bob = two
+    controls = Controls()
+    pages = [controls.enter(ann, "/"), controls.enter(ann, "/"), controls.enter(bob, "/")]
+    controls.take("/", ann)
+    assert controls.visitors("/") == [ann, bob]
+    pages[0]()
+    assert controls.holder("/") is ann
+    pages[1]()
+    assert controls.holder("/") is None and controls.visitors("/") == [bob]
