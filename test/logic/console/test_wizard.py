@@ -12,6 +12,7 @@ import pytest
 
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.paths import config_file
+from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from nao_library_modules.console.robots.events import EventStream
 from nao_library_modules.console.wizard.desk import WizardDesk
 from nao_library_modules.console.wizard.errors import EditConflict, PressRefused
@@ -23,7 +24,6 @@ from nao_library_modules.console.wizard.reader import read_layout
 from nao_library_modules.console.wizard.session import PageRights, WizardSession, read_message
 from nao_library_modules.console.wizard.texts import filled_text, names_in
 from nao_library_modules.console.wizard.wire import layout_message
-from nao_library_modules.console.yaml_file import ConsoleFileError
 from nao_library_modules.nao.gaze import load_head
 
 SHIPPED = config_file("console/console.yaml")

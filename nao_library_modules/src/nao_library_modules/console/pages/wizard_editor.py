@@ -10,11 +10,11 @@ from nicegui import run, ui
 from naoqi.errors import NaoError
 
 from ...behaviors.language.errors import Problem
+from ..files.yaml_file import ConsoleFileError
 from ..wizard.check import doubts, stored_behaviors
 from ..wizard.errors import EditConflict
 from ..wizard.layout_file import LONGEST, CurrentLayout, LayoutFile
 from ..wizard.reader import read_layout
-from ..yaml_file import ConsoleFileError
 from .frame import PageContext
 
 

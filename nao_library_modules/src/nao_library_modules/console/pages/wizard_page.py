@@ -17,7 +17,6 @@ from naoqi.errors import NaoError
 from ...base.paths import config_file
 from ..access.guard import session_of
 from ..access.sessions import Session
-from ..app import SHIPPED_BUTTONS
 from ..robots.commands import RobotCommand
 from ..wizard.desk import PLANS, WizardDesk
 from ..wizard.layout_file import CurrentLayout, LayoutFile
@@ -39,7 +38,7 @@ class WizardParts:
 
     def __init__(self, console: Any) -> None:
         """Read the console's file."""
-        shipped = config_file(SHIPPED_BUTTONS)
+        shipped = config_file("console") / "console.yaml"
         path = Path(console.settings.buttons)
         own = Path(OWN_FILE).expanduser() if path == shipped else path
         self.console = console

@@ -120,9 +120,10 @@ class WizardDesk:
             self._watch_stops(robot)
         try:
             return self._run(robot, button, action, by, pressed, repetition)
-        except Exception:
+        except Exception as error:
             with self._lock:
                 pressed.used = False
+            robot.events.add("note", f"{button.label} was not sent: {error}", by)
             raise
         finally:
             self._tell()

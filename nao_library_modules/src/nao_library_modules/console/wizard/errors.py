@@ -4,7 +4,7 @@ NaoError                 (naoqi.errors)
     EditConflict         the file has changed on the disk since it was read
     PressRefused         a button or a text is not sent; the text tells why
 
-What is wrong with the file itself is a `yaml_file.ConsoleFileError`.
+What is wrong with the file itself is a `files.yaml_file.ConsoleFileError`.
 """
 
 from __future__ import annotations

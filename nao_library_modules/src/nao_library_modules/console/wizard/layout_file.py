@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from ...base.whole_file import write_whole
 from ...behaviors.language.errors import Problem
-from ..yaml_file import ConsoleFileError
+from ..files.yaml_file import ConsoleFileError
 from .errors import EditConflict
 from .model import WizardLayout
 from .reader import read_layout, revision_of

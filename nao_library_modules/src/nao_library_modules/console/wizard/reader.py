@@ -30,8 +30,8 @@ from ...base.colours import is_colour
 from ...base.errors import BadGoal
 from ...base.suggestion import did_you_mean
 from ...behaviors.language.yaml_text import dump_line, line_in, line_of
+from ..files.yaml_file import FileReader
 from ..robots.commands import FORMS, KEYS, read_command
-from ..yaml_file import FileReader
 from .key_names import BadKey, key_of
 from .model import ButtonAction, ButtonGroup, PlanDesignator, WizardButton, WizardLayout, hex_colour
 from .texts import NAME, names_in
