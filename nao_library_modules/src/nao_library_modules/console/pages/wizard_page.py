@@ -80,7 +80,7 @@ class _WizardPage:
         editor = WizardEditor(self._parts.file, self._parts.current, page)
         page.every(LOOK_PERIOD, self._parts.current.look)
         self._follow(self._parts.current.subscribe, self._changed)
-        self._follow(self._desk.subscribe, self._history_changed)
+        self._follow(self._desk.subscribe, self._show_desk)
         page.robot.prepare(servers_of(self._parts.current.layout))
         with ui.element("div").classes("w-full grid gap-4 grid-cols-1 lg:grid-cols-3"):
             with ui.column().classes("lg:col-span-2 w-full gap-3"):
@@ -171,10 +171,12 @@ class _WizardPage:
         self._names.set_visibility(bool(values))
         with self._names:
             ui.label("Names").classes("text-subtitle1").props("role=heading aria-level=2")
-            for name, value in values.items():
-                ui.input(name, value=value, on_change=lambda event, name=name: self._name(name, event.value)).props(
-                    "dense maxlength=100 debounce=200"
-                ).classes("w-full")
+            self._fields = {
+                name: ui.input(name, value=value, on_change=lambda event, name=name: self._name(name, event.value))
+                .props("dense maxlength=100 debounce=200")
+                .classes("w-full")
+                for name, value in values.items()
+            }
 
     def _name(self, name: str, value: str | None) -> None:
         self._desk.set_values(self._space, {name: value or ""})
@@ -211,7 +213,12 @@ class _WizardPage:
         self._show_problems()
         self._page.robot.prepare(servers_of(layout))
 
-    def _history_changed(self) -> None:
+    def _show_desk(self) -> None:
+        """Show what was typed and said on other pages, too."""
+        for name, value in self._desk.values(self._parts.current.layout, self._space).items():
+            field = self._fields.get(name)
+            if field is not None and (field.value or "").split() != value.split():  # nobody's space is taken away
+                field.value = value
         texts = tuple(self._desk.history(self._space)[:HISTORY_SHOWN])
         if texts != getattr(self, "_shown", ()):
             self._shown = texts
