@@ -28,7 +28,9 @@ class WizardEditor:
         self._page = page
         self._revision: str | None = None
         self._code: Any = None
-        with ui.dialog().props('maximized persistent aria-label="Edit the buttons"') as self._dialog, ui.card():
+        with ui.dialog().props('maximized persistent aria-label="Edit the buttons"') as self._dialog, ui.card().classes(
+            "no-wrap"
+        ):
             with ui.row().classes("w-full items-center"):
                 ui.label(str(file.path)).classes("text-subtitle1")
                 ui.space()

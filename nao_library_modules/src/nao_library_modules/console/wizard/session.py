@@ -104,10 +104,8 @@ class WizardSession:
         """Ids of buttons that run, repeat or were used -> which of it."""
 
         def namespace(button: WizardButton) -> str:
-            try:
-                return self.robot_of(button).namespace
-            except NaoError:
-                return ""
+            name = button.robot.strip("/")
+            return f"/{name}/" if name else "/" if button.robot else self.robot.namespace
 
         return self._desk.states(self._layout(), namespace)
 
