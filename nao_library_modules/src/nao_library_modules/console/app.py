@@ -75,7 +75,6 @@ class Console:
         except ImportError as error:
             raise NaoError(f"the console needs NiceGUI ({error}): {WHEELS}") from None
         from .pages import PAGES, frame
-        from .view.views import Views
 
         self.settings = settings
         self.robots = Robots()
