@@ -11,12 +11,13 @@ from types import SimpleNamespace
 
 import pytest
 
+from nao_library_modules.console.robots.events import EventStream
 from nao_library_modules.console.view import wire
 from nao_library_modules.console.view.body_status import BodyStatus, read_status
 from nao_library_modules.console.view.broadcast import MOST_QUEUED, Broadcast, FrameInbox
 from nao_library_modules.console.view.live_view import watched_traces
 from nao_library_modules.console.view.robot_model import mesh_path, read_model
-from nao_library_modules.console.view.sense_texts import AGAIN, Sightings, clicked, heard, said, touched
+from nao_library_modules.console.view.sense_texts import AGAIN, Sightings, clicked, felt, heard, said, touched
 from nao_library_modules.console.view.traces import CLOSEST, SPAN, Trace, listed_value, split_trace
 from nao_library_modules.nao.touch_names import SENSORS
 from naoqi.errors import NaoError
@@ -240,3 +241,10 @@ def test_a_value_that_is_not_listed_is_no_number():
 def test_a_page_asks_for_traces_by_a_list_of_names(message):
     with pytest.raises(NaoError):
         watched_traces(message)
+
+
+def test_what_senses_tell_can_be_added_to_the_events():
+    events = EventStream("/", lambda: 1.0)
+    for perception in (heard(["a"], [1.0]), touched("chest", True), clicked(1), said("a"), felt("b", ground=True)):
+        added = events.add(perception.kind, perception.text, stamp=2.0, **perception.values)
+        assert added.stamp == 2.0 and added.data == perception.values

@@ -11,6 +11,11 @@ const STYLE = `
 canvas { width: 100%; height: 100%; display: block; }
 `;
 
+function written(value) {
+  const size = Math.abs(value);
+  return value.toFixed(size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : 3);
+}
+
 class NaoPlot extends HTMLElement {
   constructor() {
     super();
@@ -23,17 +28,17 @@ class NaoPlot extends HTMLElement {
   }
 
   connectedCallback() {
-    this.trace = this.getAttribute("trace") || "";
+    this.what = this.getAttribute("trace") || "";
     this.times = [];
     this.values = [];
     this.problem = "";
     this.stream = LiveStream.of(this.getAttribute("robot") || "/");
-    this.joint = this.trace.startsWith("joint:") ? this.trace.slice(6) : "";
+    this.joint = this.what.startsWith("joint:") ? this.what.slice(6) : "";
     this.listeners = this.joint
       ? { pose: (event) => this.onPose(event.detail) }
       : { samples: (event) => this.onSamples(event.detail), traces: (event) => this.onTraces(event.detail) };
     for (const [kind, listener] of Object.entries(this.listeners)) this.stream.addEventListener(kind, listener);
-    if (!this.joint) this.stream.want(this.trace);
+    if (!this.joint) this.stream.want(this.what);
     this.endTheme = watchTheme(() => (this.dirty = true));
     this.sizes = new ResizeObserver(() => (this.dirty = true));
     this.sizes.observe(this);
@@ -46,7 +51,7 @@ class NaoPlot extends HTMLElement {
     this.sizes.disconnect();
     this.endTheme();
     for (const [kind, listener] of Object.entries(this.listeners)) this.stream.removeEventListener(kind, listener);
-    if (!this.joint) this.stream.leave(this.trace);
+    if (!this.joint) this.stream.leave(this.what);
     this.stream.release();
   }
 
@@ -58,8 +63,8 @@ class NaoPlot extends HTMLElement {
   }
 
   onTraces(traces) {
-    this.index = traces.traces.indexOf(this.trace);
-    this.problem = traces.problems[this.trace] || "";
+    this.index = traces.traces.indexOf(this.what);
+    this.problem = traces.problems[this.what] || "";
     this.dirty = true;
   }
 
@@ -96,13 +101,13 @@ class NaoPlot extends HTMLElement {
     pen.fillStyle = ink.text;
     const known = this.values.filter((value) => Number.isFinite(value));
     const latest = this.values[this.values.length - 1];
-    const shown = Number.isFinite(latest) ? latest.toPrecision(4) : "–";
-    const title = `${this.trace.replace(/^[a-z_]+:/, "")}  ${this.problem || shown}`;
+    const shown = Number.isFinite(latest) ? written(latest) : "–";
+    const title = `${this.what.replace(/^[a-z_]+:/, "")}  ${this.problem || shown}`;
     this.canvas.setAttribute("aria-label", title);
     pen.fillText(title, 6, 13);
     if (!known.length) return;
     let low = Math.min(...known), high = Math.max(...known);
-    const margin = Math.max((high - low) * 0.08, Math.abs(high) * 0.005, 1e-4);
+    const margin = Math.max((high - low) * 0.08, Math.abs(high) * 0.01, 0.005);
     low -= margin;
     high += margin;
     const left = 48, top = 20, right = width - 6, bottom = height - 16;
@@ -111,10 +116,10 @@ class NaoPlot extends HTMLElement {
     const y = (value) => bottom - ((value - low) / (high - low)) * (bottom - top);
     pen.strokeStyle = ink.grid;
     pen.beginPath();
-    for (const value of [low + margin, high - margin]) {
+    for (const [value, down] of [[low, -1], [high, 9]]) {
       pen.moveTo(left, y(value));
       pen.lineTo(right, y(value));
-      pen.fillText(value.toPrecision(3), 4, y(value) + 4);
+      pen.fillText(written(value), 4, y(value) + down);
     }
     for (const seconds of [60, 40, 20, 0]) {
       pen.moveTo(x(end - seconds), top);

@@ -38,6 +38,23 @@ function alongZ(radius, length) {
   return new THREE.CylinderGeometry(radius, radius, length, 24).rotateX(Math.PI / 2);
 }
 
+// Lines every 0.25 m, cell by cell: some software renderers lose a line whose end is behind the camera.
+function makeGrid(look) {
+  const points = [], colors = [], usual = new THREE.Color(look.grid), middle = new THREE.Color(look.middle);
+  const cells = 20, size = 0.25;
+  for (let i = -cells; i <= cells; i++) {
+    const color = i === 0 ? middle : usual;
+    for (let j = -cells; j < cells; j++) {
+      points.push(i * size, j * size, 0, i * size, (j + 1) * size, 0, j * size, i * size, 0, (j + 1) * size, i * size, 0);
+      for (let end = 0; end < 4; end++) colors.push(color.r, color.g, color.b);
+    }
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(points, 3));
+  geometry.setAttribute("color", new THREE.Float32BufferAttribute(colors, 3));
+  return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: true }));
+}
+
 class NaoRobotView extends HTMLElement {
   static observedAttributes = ["touchable"];
 
@@ -55,14 +72,14 @@ class NaoRobotView extends HTMLElement {
   }
 
   connectedCallback() {
-    this.robot = this.getAttribute("robot") || "/";
+    this.name = this.getAttribute("robot") || "/";
     this.meshes = new Map();
     this.joints = new Map();
     this.mimics = [];
     this.lights = new Map();
     this.spots = [];
     this.prepare();
-    this.stream = LiveStream.of(this.robot);
+    this.stream = LiveStream.of(this.name);
     this.listeners = {
       layout: () => this.onPose(), pose: () => this.onPose(), lights: () => this.onLights(),
       touched: (event) => this.onTouched(event.detail), shapes: (event) => this.onShapes(event.detail),
@@ -84,11 +101,11 @@ class NaoRobotView extends HTMLElement {
   }
 
   attributeChangedCallback() {
-    for (const spot of this.spots || []) spot.visible = this.touchable;
+    for (const spot of this.spots || []) spot.visible = this.canTouch;
     this.dirty = true;
   }
 
-  get touchable() {
+  get canTouch() {
     return this.hasAttribute("touchable") && this.getAttribute("touchable") !== "false";
   }
 
@@ -104,10 +121,10 @@ class NaoRobotView extends HTMLElement {
       throw new Error("no WebGL");
     }
     this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(40, 1, 0.02, 60);
-    this.camera.up.set(0, 0, 1);
-    this.camera.position.set(1.05, 0.75, 0.6);
-    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.eye = new THREE.PerspectiveCamera(40, 1, 0.02, 60);
+    this.eye.up.set(0, 0, 1);
+    this.eye.position.set(1.05, 0.75, 0.6);
+    this.controls = new OrbitControls(this.eye, this.canvas);
     this.controls.target.set(0, 0, 0.28);
     this.controls.addEventListener("change", () => (this.dirty = true));
     this.controls.update();
@@ -132,7 +149,7 @@ class NaoRobotView extends HTMLElement {
       this.frame = requestAnimationFrame(draw);
       if (!this.dirty) return;
       this.dirty = false;
-      this.renderer.render(this.scene, this.camera);
+      this.renderer.render(this.scene, this.eye);
     };
     draw();
   }
@@ -140,8 +157,11 @@ class NaoRobotView extends HTMLElement {
   recolor() {
     const look = isDark() ? LOOKS.dark : LOOKS.light;
     this.scene.background = new THREE.Color(look.sky);
-    if (this.grid) this.scene.remove(this.grid);
-    this.grid = new THREE.GridHelper(10, 40, look.middle, look.grid).rotateX(Math.PI / 2);
+    if (this.grid) {
+      this.scene.remove(this.grid);
+      this.grid.geometry.dispose();
+    }
+    this.grid = makeGrid(look);
     this.scene.add(this.grid);
     this.dirty = true;
   }
@@ -160,15 +180,15 @@ class NaoRobotView extends HTMLElement {
     const width = this.clientWidth || 1, height = this.clientHeight || 1;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.eye.aspect = width / height;
+    this.eye.updateProjectionMatrix();
     this.dirty = true;
   }
 
   async load() {
     this.say("reads the robot's description");
     try {
-      const answer = await fetch(`/console/model?robot=${encodeURIComponent(this.robot)}`);
+      const answer = await fetch(`/console/model?robot=${encodeURIComponent(this.name)}`);
       if (!answer.ok) throw new Error((await answer.text()).slice(0, 300));
       await this.build(await answer.json());
     } catch (error) {
@@ -221,7 +241,7 @@ class NaoRobotView extends HTMLElement {
     const material = new THREE.MeshBasicMaterial({ color: 0xffb300, transparent: true, opacity: 0.35, depthTest: false });
     const spot = new THREE.Mesh(new THREE.SphereGeometry(TOUCH_RADIUS, 16, 12), material);
     spot.renderOrder = 2;
-    spot.visible = this.touchable;
+    spot.visible = this.canTouch;
     spot.userData.device = device;
     this.spots.push(spot);
     link.add(spot);
@@ -277,7 +297,7 @@ class NaoRobotView extends HTMLElement {
     const at = this.base.position, target = this.controls.target;
     const way = new THREE.Vector3(at.x - target.x, at.y - target.y, 0);
     if (way.length() < 0.02) return;
-    this.camera.position.add(way);
+    this.eye.position.add(way);
     target.add(way);
     this.controls.update();
   }
@@ -300,7 +320,7 @@ class NaoRobotView extends HTMLElement {
       const touched = devices.includes(spot.userData.device);
       spot.material.color.set(touched ? 0xe53935 : 0xffb300);
       spot.material.opacity = touched ? 0.9 : 0.35;
-      spot.visible = touched || this.touchable;
+      spot.visible = touched || this.canTouch;
       spot.userData.touched = touched;
     }
     this.dirty = true;
@@ -327,11 +347,11 @@ class NaoRobotView extends HTMLElement {
   }
 
   hit(event) {
-    if (!this.touchable) return null;
+    if (!this.canTouch) return null;
     const box = this.canvas.getBoundingClientRect();
     const at = new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     const ray = new THREE.Raycaster();
-    ray.setFromCamera(at, this.camera);
+    ray.setFromCamera(at, this.eye);
     const [first] = ray.intersectObjects(this.spots.filter((spot) => spot.visible), false);
     return first ? first.object.userData.device : null;
   }
@@ -350,7 +370,7 @@ class NaoRobotView extends HTMLElement {
   }
 
   key(event) {
-    const offset = this.camera.position.clone().sub(this.controls.target);
+    const offset = this.eye.position.clone().sub(this.controls.target);
     const way = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
     const change = { ArrowLeft: [-0.12, 0, 1], ArrowRight: [0.12, 0, 1], ArrowUp: [0, -0.1, 1], ArrowDown: [0, 0.1, 1],
       "+": [0, 0, 0.9], "-": [0, 0, 1.1] }[event.key];
@@ -361,7 +381,7 @@ class NaoRobotView extends HTMLElement {
     way.phi = Math.min(Math.max(way.phi + change[1], 0.05), Math.PI - 0.05);
     way.radius = Math.min(Math.max(way.radius * change[2], 0.2), 20);
     const turned = new THREE.Vector3().setFromSpherical(way);
-    this.camera.position.copy(this.controls.target).add(new THREE.Vector3(turned.x, -turned.z, turned.y));
+    this.eye.position.copy(this.controls.target).add(new THREE.Vector3(turned.x, -turned.z, turned.y));
     this.controls.update();
     this.dirty = true;
   }

@@ -65,7 +65,7 @@ class SimulatorPanel:
                 self._button("Reset", self._simulator.reset)
                 ui.select(SPEEDS, value=1.0, label="Speed", on_change=lambda e: self._do(
                     partial(self._simulator.set_speed, e.value), f"speed {SPEEDS[e.value]}"
-                )).props("dense outlined")  # fmt: skip
+                )).props("dense outlined").classes("nao-speed")  # fmt: skip
             with ui.expansion("Touch it", value=True).classes("w-full"):
                 ui.label("Click a sensor here, or a yellow spot on the robot.").classes("text-caption")
                 with ui.row().classes("nao-sensors"):

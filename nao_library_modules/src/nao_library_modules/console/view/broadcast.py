@@ -34,6 +34,10 @@ class FrameInbox:
         del self._queued[:-MOST_QUEUED]
         self._filled.set()
 
+    def forget(self) -> None:
+        """Leave out what was added and waits: it would be read wrongly from now on."""
+        self._queued.clear()
+
     async def take(self) -> list[Frame]:
         """Wait for frames; texts come first, as they say how to read the others."""
         await self._filled.wait()

@@ -91,6 +91,7 @@ class LiveView:
             found = await loop.run_in_executor(None, self._change_traces, before, wanted)
             self._watched[inbox] = wanted
         problems = {name: trace.problem for name, trace in found.items() if trace.problem}
+        inbox.forget()  # indices mean other traces now
         inbox.put(TRACES, text_frame(TRACES, traces=wanted, problems=problems))
         for index, name in enumerate(wanted):
             if name not in before and found[name].kept():

@@ -58,7 +58,7 @@ def clicked(count: int) -> Perception:
 def said(sentence: str) -> Perception | None:
     """A sentence that the robot says; None at its end."""
     text = " ".join(TAG.sub(" ", sentence).split())
-    return Perception("said", text, {"text": text}) if text else None
+    return Perception("said", text, {"sentence": text}) if text else None
 
 
 def felt(text: str, **values: Any) -> Perception:
