@@ -268,7 +268,7 @@ class Replay {
     const shown = this.trial.events.filter((event) => kinds.includes(event.kind));
     const places = shown.map((event) => this.placeOf(event.stamp - this.began));
     shown.forEach((event, i) => {
-      const x = places[i], room = (i + 1 < shown.length ? places[i + 1] : Infinity) - x - 16;
+      const x = places[i], room = (i + 1 < shown.length ? places[i + 1] : x + 2000) - x - 16;
       pen.fillStyle = COLOURS[event.kind] || COLOURS.other;
       pen.beginPath();
       pen.arc(x, top + ROW / 2, 5, 0, 7);
