@@ -42,10 +42,8 @@ class ConsoleStudy(RobotTestCase):
         wait_until(lambda: getattr(self.files.trial(TRIAL).state().current, "path", "") == path, 60.0, f"step {path}")
 
     def begin(self):
-        self.browser.click(".q-select")
-        self.browser.click(".q-item", "ten_steps")
+        self.browser.open("/study", "/&protocol=ten_steps&participant=P01")
         self.browser.reads("One trial of ten steps")
-        self.browser.type("input[aria-label='Participant (pseudonym)']", "P01")
         for recording in ("Rosbag", "Video", "Sound"):
             self.browser.click(".q-checkbox", recording)
         self.browser.click("button", "Begin trial")

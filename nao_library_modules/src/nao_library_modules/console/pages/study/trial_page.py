@@ -1,4 +1,4 @@
-"""`/study`: begins trials, and steers the one that runs on the robot.
+"""`/study?protocol=NAME&participant=PSEUDONYM`: begins trials, and steers the one that runs on the robot.
 
 The trial runs in the console; a page shows what there is of it, whenever it is opened.
 """
@@ -6,6 +6,7 @@ The trial runs in the console; a page shows what there is of it, whenever it is 
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 from typing import Any
 
 from nicegui import run, ui
@@ -59,14 +60,14 @@ def build(console: Any, studies: Studies) -> None:
     async def show(request: Request) -> None:
         with framed(console, "Study", request) as page:
             study_links(page)
-            await _StudyPage(page, studies).build()
+            await _StudyPage(page, studies, request.query_params).build()
 
 
 class _StudyPage:
     """What one visitor sees."""
 
-    def __init__(self, page: Any, studies: Studies) -> None:
-        self.page, self.studies, self.robot = page, studies, page.robot
+    def __init__(self, page: Any, studies: Studies, wanted: Mapping[str, str]) -> None:
+        self.page, self.studies, self.robot, self._wanted = page, studies, page.robot, wanted
         self.runner: TrialRunner | None = None
         self.protocol: StudyProtocol | None = None
         self._dirty = True
@@ -163,8 +164,10 @@ class _StudyPage:
             with ui.row():
                 ui.button("Check", on_click=self._check).props("no-caps outline")
                 ui.button("Save", on_click=self._save).props("no-caps")
+        self._person.value = self._wanted.get("participant", "")
         if names:
-            self._choice.value = names[0]
+            wanted = self._wanted.get("protocol", "")
+            self._choice.value = wanted if wanted in names else names[0]
 
     async def _read(self) -> None:
         name = self._choice.value
