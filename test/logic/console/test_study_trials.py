@@ -48,6 +48,18 @@ def test_next_ends_a_step_without_answer_and_a_late_answer_counts_no_more(trial)
     assert trial.runner.state.values["head"] == "none"
 
 
+def test_a_touch_counts_that_came_before_the_server_waited_for_it(trial, monkeypatch):
+    monkeypatch.setattr(module, "ros_after", lambda seconds, callback: callback() or (lambda: None))
+    trial.begin().at("2.1")
+    trial.robot.events.add("touched", "chest pressed", stamp=100.1, sensor="chest", touched=True)
+    trial.robot.events.add("touched", "rear head pressed", stamp=100.2, sensor="rear head", touched=True)
+    trial.at("2.2")
+    assert trial.runner.state.values["head"] == "rear head"
+    assert trial.runner.state.values["head_seconds"] == pytest.approx(0.2)
+    trial.runner.abort()
+    trial.end()
+
+
 def test_repeat_begins_a_step_anew(trial):
     trial.begin().at("2.1").runner.repeat()
     trial.at("2.1", 2).touch(1.0)

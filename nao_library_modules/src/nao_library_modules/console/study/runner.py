@@ -12,6 +12,7 @@ from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
+from ...nao.touch_names import names_of, sensors_of
 from ..robots.commands import RobotCommand, call
 from ..robots.events import ConsoleEvent
 from . import state as told
@@ -39,6 +40,8 @@ NEXT, REPEAT, PAUSE, CONTINUE, ABORT, CHOICE = "next", "repeat", "pause", "conti
 _RUN_ENDED, _TIME_UP, _HAPPENED = "run ended", "time is up", "happened"
 COUNTED = {"touched": "touches", "heard": "words", "seen": "faces"}
 """Kind of an event -> what conditions that are waited for call its count."""
+GOAL_LAG = 0.5
+"""s of ROS time by which a goal may tell of a touch later than the topics: its onset is the better one."""
 After = Callable[[float, Callable[[], None]], Callable[[], None]]
 """Has a function called once after so many s of ROS time; returns what prevents that."""
 
@@ -345,17 +348,25 @@ class TrialRunner:
         if timeout and not isinstance(step, SenseStep):  # the server of a sense has it itself
             prevent = self._after(timeout, lambda: self._inbox.put((_TIME_UP, place, "")))
         counts: Counter[str] = Counter()
+        felt: StepEnd | None = None  # a touch that the goal has not told of: it may have come before the server waited
         try:
             while True:
                 if isinstance(step, UntilStep) and self._holds(step, values, counts, began):
                     return StepEnd(told.DONE, "", self.robot.now()), ""
                 what, about, by = self._inbox.get()
                 if what == _RUN_ENDED and about is run:
-                    return _end_of(step, run), ""
+                    end = _end_of(step, run)
+                    return (felt if felt is not None and end.outcome == told.TIMEOUT else end), ""
+                if what == _TIME_UP and about == place and felt is not None:
+                    return felt, ""
                 if what == _TIME_UP and about == place:
                     return StepEnd(told.DONE if isinstance(step, PauseStep) else told.TIMEOUT), ""
                 if what == _HAPPENED:
-                    counts[COUNTED[about.kind]] += about.stamp >= began and _counts(about)
+                    new = about.stamp >= began and _counts(about)
+                    counts[COUNTED[about.kind]] += new
+                    if new and felt is None and _is_answer(step, about):
+                        felt = StepEnd(told.DONE, str(about.data["sensor"]), about.stamp)
+                        prevent = self._after(GOAL_LAG, lambda: self._inbox.put((_TIME_UP, place, "")))
                 elif what == CHOICE and about[0] == place:
                     return StepEnd(told.DONE, about[1], about[2]), by
                 elif what == ABORT:
@@ -383,6 +394,13 @@ class TrialRunner:
 def _counts(event: ConsoleEvent) -> bool:
     """Whether an event is a touch, a word or a face: neither the end of a touch, nor other things that are seen."""
     return event.data.get("touched", event.kind != "touched") and event.data.get("what", "face") == "face"
+
+
+def _is_answer(step: ProtocolStep, event: ConsoleEvent) -> bool:
+    """Whether an event is the touch that a step waits for."""
+    if not isinstance(step, SenseStep) or step.sense != "touch" or event.kind != "touched":
+        return False
+    return event.data.get("sensor") in names_of(sensors_of(step.names))
 
 
 def _command_of(step: ProtocolStep) -> RobotCommand | None:
