@@ -88,7 +88,7 @@ class ALSonar:
         return self._echoes[side]
 
     def __call__(self, snapshot: Snapshot) -> None:
-        if not (self._subscribed or self._simulation.robot.locomotion.active):
+        if not (self._subscribed or self._simulation.robot.walking):
             self.firing = False
             return
         if not self.firing:
@@ -109,7 +109,7 @@ class ALSonar:
 
     def _unsubscribe(self) -> None:
         self._subscribed = False
-        self.firing = self.firing and self._simulation.robot.locomotion.active
+        self.firing = self.firing and self._simulation.robot.walking
 
     def _shoot(self) -> None:
         """Do not wait for the next shot but fire."""

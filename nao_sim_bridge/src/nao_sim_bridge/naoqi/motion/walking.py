@@ -82,7 +82,7 @@ class Walking(MotionPart):
         return self._walk("waitUntilMoveIsFinished", lambda locomotion: locomotion.until_finished())
 
     def moveIsActive(self) -> bool:
-        return self._robot.locomotion.active
+        return self._robot.walking
 
     # --- configuration --------------------------------------------------------------------------------------------
 
