@@ -108,7 +108,7 @@ def test_equal_seeds_and_calls_are_equal_to_the_last_bit(noise, delay):
         assert stumble(first) == stumble(second)
 
 
-@pytest.mark.parametrize("world, robots", [("empty", 1), ("empty", 2), ("obstacles", 1), ("uneven", 1)])
+@pytest.mark.parametrize("world, robots", [("empty", 1), ("empty", 2), ("obstacles", 1), ("uneven", 1), ("lab", 1)])
 def test_a_reset_is_a_fresh_start_to_the_last_bit(world, robots):
     with NaoSim(seed=3, noise=1.0, world=world, robots=robots) as sim:
         once = stumble(sim)

@@ -171,8 +171,7 @@ class SharedWorld:
             self.guard.call(call)
 
     def _build_again(self) -> None:
-        self.physics.close()
-        self.physics = PhysicsWorld(self.world, self.settings)
+        self.physics = PhysicsWorld(self.world, self.settings, self.physics.clear())
         self.things.begin(self.physics)
         for robot in self.robots:
             robot.begin(self.physics)
