@@ -15,6 +15,7 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.hands import Hands
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.things import Things
+from nao_sim_bridge.render import require_engine
 from nao_sim_bridge.world.places import ORIGIN, RobotPlace
 
 if TYPE_CHECKING:
@@ -96,6 +97,8 @@ class SharedWorld:
         self.guard = self.task_ids.guard
         self.wake: Callable[[], None] = lambda: None
         self._air: Air | None = None
+        if isinstance(renderer, str):
+            require_engine(renderer)
         self._renderer = renderer
         self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
 
