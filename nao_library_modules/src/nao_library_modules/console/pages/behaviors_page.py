@@ -165,7 +165,11 @@ class BehaviorsView:
 
     async def _load_list(self) -> None:
         robot = self._page.robot
-        infos = await run.io_bound(self._stored.infos) or []
+        try:
+            infos = await run.io_bound(self._stored.infos) or []
+        except NaoError as error:
+            self._list_state.text = str(error)
+            return
         self._infos = {info.name: info for info in infos}
         self._described = await run.io_bound(_described, robot) or {}
         self._show_list()
@@ -365,7 +369,11 @@ class BehaviorsView:
         if document is None:
             ui.notify("open a behaviour first")
             return False
-        info = await run.io_bound(self._stored.check, document.text, document.file, self._texts())
+        try:
+            info = await run.io_bound(self._stored.check, document.text, document.file, self._texts())
+        except NaoError as error:
+            ui.notify(f"not checked: {error}", type="negative", multi_line=True)
+            return False
         if info is None:
             return False
         self._problems = problems_in(info)
