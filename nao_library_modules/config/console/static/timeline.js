@@ -54,11 +54,10 @@ class View {
     this.render();
   }
 
-  show(tracks, selected) {
-    const first = !this.scale;
+  show(tracks, selected, whole) {
     this.tracks = tracks;
     this.selected = selected;
-    if (first) this.fit(); else this.render();
+    if (whole || !this.scale) this.fit(); else this.render();
   }
 
   render() {
@@ -298,7 +297,7 @@ function view(id) {
   return known;
 }
 
-export const show = (id, tracks, selected) => view(id)?.show(tracks, selected);
+export const show = (id, tracks, selected, whole) => view(id)?.show(tracks, selected, whole);
 export const mark = (id, states, at) => { const known = view(id); if (known?.line) known.mark(states, at); };
 export const zoom = (id, factor) => { const known = view(id); if (known) { if (factor) known.zoom(factor); else known.fit(); } };
 export const focus = (id, path) => view(id)?.groups?.get(path)?.focus();

@@ -220,9 +220,8 @@ class BehaviorsView:
         if self._goal is None:
             self._view = RunView()
         self._parameters.clear()
-        await self._refresh()
+        await self._refresh(whole=True)
         await self._show_parameters()
-        self._canvas.zoom(0)
 
     # --- edits --------------------------------------------------------------------------------------------------------
 
@@ -312,8 +311,8 @@ class BehaviorsView:
             await self._refresh(text_too=False)
             await self._show_parameters()
 
-    async def _refresh(self, text_too: bool = True) -> None:
-        """Show the document as it is now."""
+    async def _refresh(self, text_too: bool = True, whole: bool = False) -> None:
+        """Show the document as it is now. `whole`: zoom such that all of it is seen."""
         document = self._document
         if document is None:
             return
@@ -329,7 +328,7 @@ class BehaviorsView:
         )
         if text_too and self._text.value != document.text:
             self._text.value = document.text
-        self._canvas.show(self._tracks, self._selected)
+        self._canvas.show(self._tracks, self._selected, whole)
         self._show_step()
         self._show_problems([*document.problems, *self._problems])
 

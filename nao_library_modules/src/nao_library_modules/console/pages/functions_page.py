@@ -104,7 +104,9 @@ class FunctionsView:
                     ui.item_label(function.name).classes("font-medium")
                     ui.item_label(f"{server} · {function.help}").props("caption")
         more = len(found) - MOST_SHOWN
-        self._count.text = f"{len(found)} functions" + (f", the first {MOST_SHOWN} of them here" if more > 0 else "")
+        self._count.text = f"{len(found)} function{'s' * (len(found) != 1)}" + (
+            f", the first {MOST_SHOWN} of them here" if more > 0 else ""
+        )
         if not found and self._described:
             names = [function.name for told in self._described.values() for function in told.functions]
             near = closest(words, names)
