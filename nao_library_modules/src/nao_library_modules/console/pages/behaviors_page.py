@@ -108,7 +108,7 @@ class BehaviorsView:
             self._record_button = ui.button("Record", icon="fiber_manual_record", on_click=self._record)
             self._record_button.props("dense no-caps outline")
         self._list_state = ui.label("asking ...").classes("text-sm opacity-80").props("role=status")
-        with ui.scroll_area().classes("w-full").style("height: calc(100vh - 20rem); min-height: 12rem"):
+        with ui.scroll_area().classes("w-full h-56 lg:h-[calc(100vh-20rem)]"):
             self._names = ui.list().props("dense").classes("w-full")
 
     def _build_editor(self) -> None:
@@ -461,6 +461,8 @@ class BehaviorsView:
     def _told(self, message: Any) -> None:
         """Feedback of a behaviour, whoever runs it. Called from a thread of the subscriber."""
         goal = message.status.goal_id.id
+        if not message.feedback.path:
+            return  # a function that runs no behaviour, or has not begun it
         if goal != self._view_goal:
             self._view_goal, self._view = goal, RunView()
         feedback = message.feedback

@@ -57,7 +57,7 @@ class FunctionsView:
                 self._servers = ui.select([ALL], value=ALL, label="Server", on_change=lambda: self._list())
                 self._servers.classes("w-full")
                 self._count = ui.label("asking the servers ...").classes("text-sm opacity-80").props("role=status")
-                with ui.scroll_area().classes("w-full").style("height: calc(100vh - 21rem)"):
+                with ui.scroll_area().classes("w-full h-64 md:h-[calc(100vh-21rem)]"):
                     self._names = ui.list().props("dense").classes("w-full")
             with ui.column().classes("grow gap-4 min-w-80"):
                 self._form = ui.card().classes("w-full gap-3")
