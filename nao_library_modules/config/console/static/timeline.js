@@ -44,8 +44,8 @@ class View {
   x(time) { return LEFT + time * this.scale; }
 
   fit() {
-    const width = Math.max(this.container.clientWidth - LEFT - RIGHT - 8, 200);
-    this.scale = Math.min(Math.max(width / Math.max(this.tracks.length, 1), SCALES.least), 200);
+    const width = Math.max(this.container.clientWidth - LEFT - RIGHT - 24, 200);
+    this.scale = Math.min(Math.max(width / Math.max(this.tracks.length, 1), SCALES.least), 400);
     this.render();
   }
 
