@@ -16,6 +16,7 @@ from .access.guard import Guard
 from .access.sessions import Sessions
 from .access.users import OBSERVER, OPERATOR, read_users
 from .robots.robots import Robots
+from .view.views import Views
 
 PORT = 8080
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -64,6 +65,7 @@ class Console:
 
     Attributes:
         app: FastAPI application, for routes and WebSockets beside the pages; all of them are behind the guard.
+        views: What pages and trials share of each robot: its senses, its body, its pictures.
     """
 
     def __init__(self, settings: ConsoleSettings) -> None:
@@ -76,7 +78,9 @@ class Console:
 
         self.settings = settings
         self.robots = Robots()
+        self.views = Views()
         self.controls = Controls()
+        self.views = Views()
         self.sessions = Sessions(None if settings.users is None else read_users(settings.users))
         self.app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         frame.build(self)
@@ -122,6 +126,7 @@ class Console:
             ssl_keyfile=settings.key,
             timeout_graceful_shutdown=2,
             server_header=False,
+            ws_per_message_deflate=False,  # pictures are compressed, and poses too short for it
         )
         for line in self.addresses():
             print(line, flush=True)

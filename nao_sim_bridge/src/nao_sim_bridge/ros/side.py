@@ -14,8 +14,10 @@ from std_srvs.srv import Empty, EmptyRequest, EmptyResponse
 from nao_library_msgs import srv
 from nao_sim_bridge.base.guard import Failure
 from nao_sim_bridge.base.record_dir import world_of_client
+from nao_sim_bridge.core.runner import FASTEST
 from nao_sim_bridge.ros.robot import RosRobot
 from nao_sim_bridge.ros.services import ERRORS, checked, success_service
+from nao_sim_bridge.ros.shapes import ShapesTopic
 from nao_sim_bridge.ros.things import offer_sounds, offer_things
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
@@ -33,10 +35,11 @@ class RosSide:
     ROS API (relative names):
         Publishes `/clock` (rosgraph_msgs/Clock) when asked to.
         Services `~advance` (nao_library_msgs), `~reset`, `~factory_reset`, `~pause`, `~resume` (std_srvs/Empty),
+        `~set_speed` (nao_library_msgs/SetSpeed: simulated seconds per second, 0 for as fast as possible),
         `~reset_world`, `~vary`, `~film/start`, `~film/caption`, `~film/stop` (nao_library_msgs), with more than one
         robot `~picture` (nao_library_msgs), which shows the first one, and those of `RosRobot` for each robot,
         `offer_sounds` and `offer_things`.
-        Publishes `/diagnostics`, see `RosDiagnostics`.
+        Publishes `/diagnostics`, see `RosDiagnostics`, and `~shapes`, see `ShapesTopic`.
 
     Time in ROS goes on when a factory reset begins that of the robot anew.
 
@@ -58,6 +61,7 @@ class RosSide:
         success_service("~vary", srv.VaryScene, lambda request: server.vary(**_fields(request)))
         rospy.Service("~pause", Empty, _empty(lambda: server.runner.pause()))
         rospy.Service("~resume", Empty, _empty(lambda: server.runner.resume()))
+        success_service("~set_speed", srv.SetSpeed, lambda r: server.runner.set_speed(r.speed if r.speed else FASTEST))
         if several:
             rospy.Service("~picture", srv.TakePicture, self._robots[0].on_picture)
         offer_sounds(server)
@@ -66,6 +70,7 @@ class RosSide:
         success_service("~film/caption", srv.CaptionFilm, lambda request: server.film.caption(request.text))
         rospy.Service("~film/stop", srv.StopFilm, self._on_film_stop)
         self._diagnostics = RosDiagnostics(server)
+        self._shapes = ShapesTopic(server)
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._publish, name="ros publisher", daemon=True)
         self._thread.start()
@@ -80,6 +85,7 @@ class RosSide:
         while not self._closing.is_set():
             call = self._server.simulation.shared.guard.call  # that of the present simulation
             call(self._diagnostics.tick)
+            call(self._shapes.tick)
             if self._clock is None and not any(robot.listened for robot in self._robots):
                 self._closing.wait(LOOK_PERIOD)
                 continue

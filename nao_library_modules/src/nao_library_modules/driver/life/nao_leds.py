@@ -10,7 +10,7 @@ import rospy
 from std_msgs.msg import ColorRGBA
 
 from nao_library_actions.msg import BlinkAction, BlinkFeedback, BlinkResult
-from nao_library_msgs.msg import FadeRGB
+from nao_library_msgs.msg import FadeRGB, LedStates
 from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
@@ -20,12 +20,16 @@ from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ..base.node import interrupt_when_lost
+from ..base.lazy_topic import LazyTopic
+from ..base.node import interrupt_when_lost, number, publish
+from ..base.polling import Polling
 from .blinking import DURATION, EYES, Blinks, Colour, blink, fade
+from .led_states import LedReader
 
 QUEUE = 100
 COMPLAINT_PERIOD = 5.0
 SHUTDOWN_LIMIT = 2.0
+DEFAULT_RATE = 10.0
 
 
 class NaoLeds:
@@ -35,9 +39,12 @@ class NaoLeds:
         Subscribes `fade_rgb` (nao_library_msgs/FadeRGB): fades one after the other, in the order of the messages.
         Action `blink` (nao_library_actions/Blink): the eyes blink until the goal is cancelled or a newer one comes;
         so it never succeeds. `still_blinking` in its result tells that a newer one has come.
+        Publishes `led_states` (nao_library_msgs/LedStates): what each light shows, while somebody listens.
+        Parameter `~led_rate` (10 Hz).
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
+        rate = number(node, "~led_rate", DEFAULT_RATE, "reading rate")
         self._robot = robot
         self._clock = RosClock()
         self._chance = random.Random()
@@ -46,14 +53,27 @@ class NaoLeds:
         node.action("blink", BlinkAction, self._server)
         self._stop_watching = interrupt_when_lost(robot, node, self._server)
         node.subscriber("fade_rgb", FadeRGB, self._fade, queue_size=QUEUE)
+        self._reader = LedReader(robot)
+        self._states = node.publisher("led_states", LedStates, queue_size=1)
+        self._polling = Polling(robot, "lights", rate, self._clock, self._read)
+        node.if_it_fails(self._polling.close)
+        self._lazy = LazyTopic(self._polling.want, self._states)
 
     def reports(self) -> dict[str, Callable[[], Report]]:
-        return {"goals blink": self._server.counter.report}
+        return {"goals blink": self._server.counter.report, "lights": self._polling.report}
 
     def close(self) -> None:
+        self._polling.close()
         self._stop_watching()
         self._interrupt.stop()
         self._server.close(SHUTDOWN_LIMIT)
+
+    def _read(self) -> None:
+        message = LedStates()
+        message.header.stamp = rospy.Time.now()
+        shown = self._reader.read()
+        message.lights, message.colors = list(shown), [ColorRGBA(*colour, 1.0) for colour in shown.values()]
+        publish(self._states, message)
 
     def _fade(self, message: FadeRGB) -> None:
         colour, duration = _rgb(message.color), message.fade_duration.to_sec()

@@ -1,0 +1,1 @@
+"""What the pages show of a robot, live. Pure where it can be."""

@@ -1,0 +1,48 @@
+"""What the pages share of each robot: one live view, one set of senses, one feed a camera."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from .body_watch import BodyWatch
+from .camera_feed import NAMES, CameraFeed
+from .live_view import LiveView
+from .memory_topics import MemoryTopics
+from .senses import Senses
+from .simulator import Simulator
+
+
+@dataclass(frozen=True)
+class RobotViews:
+    """Of one robot; nothing is listened to before somebody wants it."""
+
+    robot: Any  # its RobotClient
+    senses: Senses
+    body: BodyWatch
+    simulator: Simulator
+    live: LiveView
+    cameras: Mapping[str, CameraFeed]
+
+
+class Views:
+    """Of all robots, made when a page or a trial first asks. Any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._robots: dict[str, RobotViews] = {}
+
+    def of(self, robot: Any) -> RobotViews:
+        """Those of a RobotClient."""
+        with self._lock:
+            found = self._robots.get(robot.namespace)
+            if found is None or found.robot is not robot:
+                memory, simulator = MemoryTopics(robot), Simulator(robot)
+                senses = Senses(robot, memory)
+                live = LiveView(robot, senses, memory, simulator)
+                cameras = {name: CameraFeed(robot, name) for name in NAMES}
+                found = RobotViews(robot, senses, BodyWatch(robot), simulator, live, cameras)
+                self._robots[robot.namespace] = found
+            return found
