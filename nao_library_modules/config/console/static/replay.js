@@ -3,16 +3,16 @@
 
 const LANES = [
   ["Steps", null],
-  ["Robot", ["sent", "ended", "cancelled"]],
+  ["Goals", null],
   ["Said", ["said"]],
-  ["Touched", ["touched", "felt"]],
+  ["Felt", ["touched", "felt"]],
   ["Heard", ["heard"]],
   ["Seen", ["seen"]],
   ["Wizard", ["pressed", "walked"]],
   ["Notes", ["note", "deviation"]],
 ];
 const COLOURS = {
-  done: "#2e7d32", timeout: "#b26a00", skipped: "#757575", failed: "#c62828", repeated: "#5e35b1", stopped: "#757575",
+  done: "#2e7d32", succeeded: "#2e7d32", aborted: "#c62828", preempted: "#757575", timeout: "#b26a00", skipped: "#757575", failed: "#c62828", repeated: "#5e35b1", stopped: "#757575",
   "": "#1565c0", note: "#1565c0", deviation: "#c62828", other: "#1565c0",
 };
 const LABELS = 84, ROW = 30, AXIS = 26;
@@ -36,6 +36,7 @@ class Replay {
     this.playing = false;
     this.view = [0, this.length];
     this.lanes = LANES.filter(([, kinds]) => kinds === null || trial.events.some((e) => kinds.includes(e.kind)));
+    this.bars = { Steps: trial.steps, Goals: trial.goals };
     this.build(root);
     this.resized = new ResizeObserver(() => this.draw());
     this.resized.observe(this.canvas);
@@ -220,7 +221,7 @@ class Replay {
       pen.beginPath();
       pen.rect(LABELS, top, width - LABELS, ROW);
       pen.clip();
-      if (kinds === null) this.steps(pen, top);
+      if (kinds === null) this.spans(pen, top, this.bars[name]);
       else this.events(pen, top, kinds, ink);
       pen.restore();
     });
@@ -247,8 +248,8 @@ class Replay {
     pen.globalAlpha = 1;
   }
 
-  steps(pen, top) {
-    for (const step of this.trial.steps) {
+  spans(pen, top, spans) {
+    for (const step of spans) {
       const left = this.placeOf(step.began - this.began), right = this.placeOf(step.ended - this.began);
       pen.fillStyle = COLOURS[step.outcome] || COLOURS.other;
       pen.fillRect(left, top + 3, Math.max(right - left - 1, 2), ROW - 6);
@@ -258,26 +259,29 @@ class Replay {
       pen.rect(left, top, right - left - 3, ROW);
       pen.clip();
       pen.fillStyle = "#fff";
-      pen.fillText(`${step.path} ${step.text}`, left + 4, top + ROW / 2);
+      pen.fillText(`${step.path} ${step.text}`.trim(), left + 4, top + ROW / 2);
       pen.restore();
     }
   }
 
   events(pen, top, kinds, ink) {
-    let free = -Infinity;
-    for (const event of this.trial.events) {
-      if (!kinds.includes(event.kind)) continue;
-      const x = this.placeOf(event.stamp - this.began);
+    const shown = this.trial.events.filter((event) => kinds.includes(event.kind));
+    const places = shown.map((event) => this.placeOf(event.stamp - this.began));
+    shown.forEach((event, i) => {
+      const x = places[i], room = (i + 1 < shown.length ? places[i + 1] : x + 2000) - x - 16;
       pen.fillStyle = COLOURS[event.kind] || COLOURS.other;
       pen.beginPath();
       pen.arc(x, top + ROW / 2, 5, 0, 7);
       pen.fill();
-      if (x < free) continue;
-      const text = event.text.length > 40 ? `${event.text.slice(0, 39)}…` : event.text;
+      if (room < 24) return;
+      pen.save();
+      pen.beginPath();
+      pen.rect(x, top, room + 8, ROW);
+      pen.clip();
       pen.fillStyle = ink;
-      pen.fillText(text, x + 8, top + ROW / 2);
-      free = x + 14 + pen.measureText(text).width;
-    }
+      pen.fillText(event.text, x + 8, top + ROW / 2);
+      pen.restore();
+    });
   }
 }
 

@@ -12,7 +12,7 @@ from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, R
 from ...study.errors import StudyError
 from ...study.files import StudyFiles, TrialFolder
 from ...study.log import read_events
-from ...study.state import TrialState
+from ...study.state import TAKEN_UP, TrialState
 from ...study.studies import Studies
 from ..frame import framed
 from .links import study_links
@@ -45,6 +45,7 @@ def replay_of(trial: TrialFolder) -> dict[str, Any]:
             }
             for step in state.outcomes
         ],
+        "goals": _goals(events, ended),
         "media": [
             {
                 "kind": file["recording"],
@@ -55,6 +56,23 @@ def replay_of(trial: TrialFolder) -> dict[str, Any]:
             if file["recording"] in ("video", "sound") and file.get("file") and file.get("began")
         ],
     }
+
+
+def _goals(events: list[dict[str, Any]], ended: float) -> list[dict[str, Any]]:
+    """Goals of the console; one whose end was not logged lasts until the trial was taken up again, or was over."""
+    goals: dict[str, dict[str, Any]] = {}
+    for event in events:
+        about = event.get("data") or {}
+        goal = about.get("goal")
+        if about.get("what") == TAKEN_UP:
+            for each in goals.values():
+                each["ended"] = min(each["ended"], event["stamp"])
+        if goal and event.get("kind") == "sent":
+            text = str(event.get("text", ""))
+            goals[goal] = {"path": "", "text": text, "began": event["stamp"], "ended": ended, "outcome": ""}
+        elif goal in goals and event.get("kind") == "ended":
+            goals[goal].update(ended=event["stamp"], outcome=about.get("state", ""))
+    return list(goals.values())
 
 
 def build(console: Any, studies: Studies) -> None:

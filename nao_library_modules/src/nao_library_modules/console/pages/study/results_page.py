@@ -124,8 +124,8 @@ def _plot(title: str, summaries: list[ConditionSummary], series: list[Any], lege
                 "grid": {"left": 40, "right": 10, "top": 30, "bottom": 60},
                 "xAxis": {
                     "type": "category",
-                    "data": [each.condition.replace(", ", "\n") for each in summaries],
-                    "axisLabel": {"interval": 0, "color": "#888"},
+                    "data": [_levels(each.condition) for each in summaries],
+                    "axisLabel": {"interval": 0, "color": "#888", "lineHeight": 15},
                 },
                 "yAxis": {"type": "value", "axisLabel": {"color": "#888"}},
                 "series": series,
@@ -144,6 +144,11 @@ def _reaction_series(summaries: list[ConditionSummary]) -> list[dict[str, Any]]:
 def _count_series(answer: str, summaries: list[ConditionSummary]) -> dict[str, Any]:
     counts = [each.answers.get(answer, 0) for each in summaries]
     return {"type": "bar", "name": answer, "stack": "answers", "data": counts, "barMaxWidth": 60}
+
+
+def _levels(condition: str) -> str:
+    """The levels of a condition beneath each other."""
+    return "\n".join(part.partition(": ")[2] or part for part in condition.split(", "))
 
 
 def _number(value: float | None) -> float | None:

@@ -339,7 +339,7 @@ class _StudyPage:
             event = self._fresh.popleft()
             by = f" ({event.by})" if event.by else ""
             with self._log:
-                ui.label(f"{event.stamp:.2f} {event.kind}{by}: {event.text}").move(self._log, 0)
+                ui.label(f"{event.stamp - state.began:.2f} s {event.kind}{by}: {event.text}").move(self._log, 0)
         for line in self._log.default_slot.children[SHOWN_EVENTS:]:
             self._log.remove(line)
 

@@ -1,0 +1,73 @@
+"""`nao study` where no servers run: protocols are checked, tables written."""
+
+from __future__ import annotations
+
+import csv
+import json
+from types import SimpleNamespace
+
+import pytest
+from click.testing import CliRunner
+from played_study import Trial
+
+from nao_library_modules.cli.app import nao
+from nao_library_modules.console.study import studies as module
+
+
+@pytest.fixture
+def run():
+    return lambda *words: CliRunner().invoke(nao, ["study", *map(str, words)])
+
+
+@pytest.fixture
+def played(tmp_path, monkeypatch):
+    """A study with a trial."""
+    monkeypatch.setattr(module, "settings", lambda namespace: {})
+    trial = Trial(tmp_path / "studies").begin()
+    trial.play()
+    return SimpleNamespace(folder=tmp_path / "studies", id=trial.runner.id)
+
+
+@pytest.mark.parametrize("name", ["ten_steps", "praise_2x2"])
+def test_protocols_that_come_along_fit_the_servers(run, tmp_path, name):
+    told = run("check", name, "--studies", tmp_path)
+    assert told.exit_code == 0, told.output
+
+
+def test_a_function_that_there_is_not_is_told_with_its_line(run, tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text("phases:\n  - steps:\n      - call: NaoLights.setColour\n")
+    told = run("check", file)
+    assert told.exit_code == 1
+    assert "line 3" in told.output
+    assert "did you mean 'setColor'" in told.output
+
+
+def test_a_protocol_that_there_is_not_is_told_with_those_that_are_close(run, tmp_path):
+    assert "did you mean 'ten_steps'" in run("check", "ten_step", "--studies", tmp_path).output
+
+
+def test_the_table_is_written_for_the_name_or_the_folder_of_a_study(run, played, tmp_path):
+    for number, words in enumerate((["two_by_two", "--studies", played.folder], [played.folder / "two_by_two"])):
+        file = tmp_path / f"{number}.csv"
+        told = run("table", *words, "--csv", file, "--json")
+        assert json.loads(told.stdout)["rows"] == len(list(csv.DictReader(file.open()))) == 4
+        assert {row["participant"] for row in csv.DictReader(file.open())} == {"P01"}
+
+
+def test_a_table_replaces_no_file_unless_that_is_asked_for(run, played, tmp_path):
+    (tmp_path / "table.csv").write_text("mine")
+    told = run("table", played.folder / "two_by_two", "--csv", tmp_path / "table.csv")
+    assert (told.exit_code, (tmp_path / "table.csv").read_text()) == (1, "mine")
+
+
+def test_studies_are_listed_with_their_trials(run, played):
+    told = json.loads(run("list", "--studies", played.folder, "--json").stdout)
+    assert told["studies"] == {"two_by_two": {"P01-1": "finished"}}
+    assert {"ten_steps", "praise_2x2"} <= {*told["protocols"]}
+
+
+def test_a_recording_that_there_is_not_is_refused(run):
+    told = run("run", "ten_steps", "--participant", "P01", "--record", "film")
+    assert told.exit_code == 2
+    assert "film" in told.output

@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""A trial in a browser: a touch, a word and a choice; its console is killed, and the network lost."""
+
+import shutil
+import tempfile
+from pathlib import Path
+
+import pytest
+import rospy
+from console_browser import ConsoleBrowser, ConsoleProgram
+from geometry_msgs.msg import Point
+
+from nao_library_actions.msg import NaoAudioInAction
+from nao_library_modules.console.study.files import StudyFiles
+from nao_library_msgs.srv import PersonSays
+from nao_sim_bridge.testing import RobotTestCase, wait_until
+
+TRIAL = "ten_steps/P01-1"
+
+
+@pytest.mark.timeout(400)
+class ConsoleStudy(RobotTestCase):
+    server = ("nao_audio_in", NaoAudioInAction)
+
+    def setUp(self):
+        super().setUp()
+        self.folder = Path(tempfile.mkdtemp(prefix="console_study"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.program = ConsoleProgram(self.folder)
+        self.addCleanup(self.program.close)
+        self.browser = self.browse()
+        self.files = StudyFiles(self.folder / "studies")
+
+    def browse(self):
+        browser = ConsoleBrowser(self.program).enter()
+        self.addCleanup(browser.close)
+        browser.open("/study")
+        return browser
+
+    def at(self, path):
+        """Wait until a step runs."""
+        wait_until(lambda: getattr(self.files.trial(TRIAL).state().current, "path", "") == path, 60.0, f"step {path}")
+
+    def begin(self):
+        self.browser.click(".q-select")
+        self.browser.click(".q-item", "ten_steps")
+        self.browser.reads("One trial of ten steps")
+        self.browser.type("input[aria-label='Participant (pseudonym)']", "P01")
+        for recording in ("Rosbag", "Video", "Sound"):
+            self.browser.click(".q-checkbox", recording)
+        self.browser.click("button", "Begin trial")
+
+    def say(self, text):
+        answer = rospy.ServiceProxy("nao_sim/person_says", PersonSays)(text, Point(1.0, 0.2, 0.6), "", 0.0)
+        self.assertTrue(answer.success, answer.message)
+
+    def test_a_trial_survives_the_end_of_its_console_and_of_the_network(self):
+        self.begin()
+        self.browser.reads("wait for a touch", "records bag", "records video", "records sound")
+        self.at("1.3")
+        self.robot.press(["Head/Touch/Front"])
+        self.at("2.1")
+        self.robot.press([])
+        self.program.kill()
+        self.program.start()
+        self.browser.enter().open("/study")
+        self.browser.click("button", "Take up again")
+        self.at("2.2")
+        other = self.browse()
+        other.reads("wait for a word", "records bag", "records video", "records sound")
+        while getattr(self.files.trial(TRIAL).state().current, "path", "") == "2.2":
+            self.say("yes")
+        self.browser.online(False)
+        other.click(".nao-holder")
+        other.click("button", "pleased")
+        self.browser.online(True)
+        other.reads("is finished")
+        self.browser.reads("is finished")
+        folder = self.files.trial(TRIAL)
+        state = folder.state()
+        self.assertEqual((state.values["head"], state.values["answer"], state.values["mood"]),
+                         ("front head", "yes", "pleased"))  # fmt: skip
+        self.assertEqual(
+            {each["recording"] for each in state.files if not each.get("error")}, {"bag", "video", "sound"}
+        )
+        files = {path.name for path in folder.path.iterdir()}
+        self.assertLessEqual({"events.csv", "trial.yaml", "trial.bag", "video.mp4", "sound.wav"}, files)
+        other.open("/study/results")
+        other.click("a", "replay")
+        other.click("button", "Play")
+        other.until(lambda: other.script("return (document.querySelector('video') || {}).currentTime > 0"), "the video")
+
+    def test_who_looks_on_begins_no_trial(self):
+        observer = ConsoleBrowser(self.program).enter(self.program.observer)
+        self.addCleanup(observer.close)
+        observer.open("/study")
+        observer.type("input[aria-label='Participant (pseudonym)']", "P01")
+        observer.click("button", "Begin trial")
+        observer.reads("observers look on")
+        self.assertEqual(self.files.studies(), [])
