@@ -52,7 +52,8 @@ ROOMS = {
     process_modules.language process_modules.designators process_modules.core process_modules.robot
     process_modules.modules process_modules.action_rules process_modules
     behaviors.language behaviors.run behaviors sweeps cli
-    console.files console.robots console.access console.pages console cli.commands
+    console.files console.robots console.access console.timeline console.view console.wizard console.study console.pages
+    console cli.commands
     """.split(),
     "nao_sim_bridge": """
     base model model.urdf world.painting world body.sensors body

@@ -551,7 +551,7 @@ def offered(monkeypatch):
 
 
 def test_commands_are_offered_without_a_stack_and_names_from_the_servers(offered, graph, run):
-    assert offered("nao ") == list(COMMANDS) and offered("nao st") == ["status", "stop"]
+    assert offered("nao ") == list(COMMANDS) and offered("nao st") == ["status", "stop", "study"]
     assert "--robot" in offered("nao say --")
     for line in ("nao call NaoL", "nao pose St", "nao run ", "nao get Dev", "nao help s"):
         assert offered(line) == []

@@ -270,6 +270,7 @@ def test_behaviours_are_listed_described_and_checked(behaviors):
     problems = {info.name: info.problem for info in listed("") if not info.steps}
     assert "did you mean 'wait'" in problems["broken"] and problems["lights"] == ""
     assert list(listed("lights")[0].steps)[0] == "1 repeat 1 times"
+    assert (listed("lights")[0].text, shown["lights"].text) == (TEXTS["lights"], "")
     result = behaviors.succeed(
         f("checkBehavior", "lights", parameters=["light=Brain1"]),
         f("checkBehavior", text="help: x\ndo: [{NaoLights.on: {lights: [FaceLeds], time: x}}]"),

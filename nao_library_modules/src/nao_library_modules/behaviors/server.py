@@ -8,6 +8,7 @@ from typing import Any
 
 from nao_library_actions.msg import NaoBehaviorAction
 from nao_library_msgs.srv import ListBehaviors, ListBehaviorsResponse
+from naoqi.errors import NaoError
 
 from ..base.answers import Outcome
 from ..base.paths import config_file
@@ -106,9 +107,20 @@ class NaoBehavior(NaoBasic):
             facts = [self.runs.preview(*asked)] if there else []
         else:
             facts = [facts_of(name, self.store.load, self.tables) for name in self.store.names()]
-        return ListBehaviorsResponse(
+        answer = ListBehaviorsResponse(
             [info_message(each, not request.text and self._is_shipped(each.name)) for each in facts]
         )
+        if request.name and not request.text:
+            for each in answer.behaviors:
+                each.text = self._text(each.name)
+        return answer
+
+    def _text(self, name: str) -> str:
+        """The YAML of a behaviour; empty where its file cannot be read, as its problem tells then."""
+        try:
+            return self.store.text(name)
+        except NaoError:
+            return ""
 
     def _is_shipped(self, name: str) -> bool:
         """Whether a name means one that comes with the library."""

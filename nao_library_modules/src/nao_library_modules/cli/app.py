@@ -30,6 +30,7 @@ COMMANDS = {
     "run": ("behaviors", "Run a stored behaviour."),
     "behaviors": ("behaviors", "The stored behaviours."),
     "check": ("behaviors", "Whether a behaviour can be run, and what it would do."),
+    "study": ("study", "Studies with participants: run a protocol, get its table."),
     "sweep": ("sweep", "How often a behaviour or a plan falls, over seeds, pushes and errors."),
     "call": ("calling", "Call any functions of a server, as one goal."),
     "get": ("memory", "Values in the robot's memory."),

@@ -80,6 +80,7 @@ class Console:
         self.robots = Robots()
         self.views = Views()
         self.controls = Controls()
+        self.views = Views()
         self.sessions = Sessions(None if settings.users is None else read_users(settings.users))
         self.app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         frame.build(self)

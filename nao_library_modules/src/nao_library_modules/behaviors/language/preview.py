@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -72,7 +72,7 @@ def _waits_inside(node: Node) -> float:
     if isinstance(node, ParallelNode):
         return max(map(waits_of, node.parts), default=0.0)
     if isinstance(node, OnTimeline):
-        return max(_times_of(node)[1].values(), default=0.0)
+        return max(times_of(node)[1].values(), default=0.0)
     return sum(map(waits_of, node.parts))
 
 
@@ -80,14 +80,17 @@ def in_order_of_time(node: Node) -> Sequence[Node]:
     """Parts of a node as they begin if goals take no time; of a timeline that may be another order than its own."""
     if not isinstance(node, OnTimeline):
         return node.parts
-    begins, _ = _times_of(node)
+    begins, _ = times_of(node)
     return [node.nodes[i] for i in sorted(begins, key=lambda i: (begins[i], i))]
 
 
-def _times_of(timeline: OnTimeline) -> tuple[dict[int, float], dict[int, float]]:
+def times_of(
+    timeline: OnTimeline, length: Callable[[Node], float] = waits_of
+) -> tuple[dict[int, float], dict[int, float]]:
     """When the entries of a timeline begin and end, s from its beginning. None waits for itself: that was checked.
 
-    Of one from which others are missing, as something is wrong with them, as much as can be told.
+    Of one from which others are missing, as something is wrong with them, as much as can be told. `length`: s that an
+    entry takes.
     """
     entries = timeline.nodes
     named = {name_of(entry): i for i, entry in enumerate(entries) if name_of(entry)}
@@ -105,7 +108,7 @@ def _times_of(timeline: OnTimeline) -> tuple[dict[int, float], dict[int, float]]
             else:
                 since = 0.0 if other is None else (ends if entry.at.of_end else begins)[other]
                 begins[i] = since + entry.at.offset
-            ends[i] = begins[i] + waits_of(entry)
+            ends[i] = begins[i] + length(entry)
     return begins, ends
 
 

@@ -121,6 +121,12 @@ def load(text: str, name: str) -> Any:
         raise BehaviorError(name, [Problem("", f"no YAML: {problem}", line)]) from error
 
 
+def compose(text: str, name: str) -> yaml.Node | None:
+    """The nodes of a text, which know their places in it; None if it is empty. Raises BehaviorError as `load`."""
+    load(text, name)
+    return yaml.compose(text, Loader=_Loader)
+
+
 class _Dumper(yaml.SafeDumper):
     """Without anchors: people read and change these files. Quotes what YAML 1.1 or 1.2 would not take for a text."""
 

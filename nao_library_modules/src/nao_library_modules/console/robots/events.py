@@ -37,7 +37,7 @@ class EventStream:
         self._events: deque[ConsoleEvent] = deque(maxlen=KEPT)
         self._listeners: dict[object, Callable[[ConsoleEvent], None]] = {}
 
-    def add(self, kind: str, text: str, by: str = "", stamp: float | None = None, **data: Any) -> ConsoleEvent:
+    def add(self, kind: str, text: str, /, by: str = "", stamp: float | None = None, **data: Any) -> ConsoleEvent:
         """Something has happened, now or at `stamp`."""
         event = ConsoleEvent(self._clock() if stamp is None else stamp, kind, self._robot, text, by, data)
         with self._lock:

@@ -141,10 +141,10 @@ class RobotClient:
     def send_goal(self, goal: CommandGoal, by: str = "", label: str = "") -> Run:
         """Send a goal. Raises NotThere if no server takes it within SERVER_LIMIT."""
         client = self._client(goal.server, goal.action)
-        names = [function.function for function in goal.goal.functions]
+        names = [function.function for function in getattr(goal.goal, "functions", ())]  # those of plans have none
         run = Run("", self.namespace, goal.server, names, label or ", ".join(names), by or CONSOLE, self.now())
         tracker = _OwnedGoal(self._owner_line(goal.server))
-        chain = plain(goal.goal)["functions"]
+        chain = plain(goal.goal).get("functions", [plain(goal.goal)])
         handle = client.send_goal(goal.goal, partial(self._moved, run, tracker), partial(self._told, run))
         self._note(run, tracker, handle)
         self.events.add("sent", f"{goal.server}: {run.label}", run.by, goal=run.id, server=goal.server, chain=chain)

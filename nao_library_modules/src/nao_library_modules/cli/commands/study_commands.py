@@ -1,0 +1,373 @@
+"""`nao study`: studies with participants, without a browser."""
+
+from __future__ import annotations
+
+import queue
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from naoqi.errors import NaoError
+
+from ...base.suggestion import of_those
+from ...base.whole_file import FileTrouble, write_whole
+from ..errors import CommandFailed, CommandInterrupted
+from ..files import overwrite_option, wanted_file
+from ..output import say_json, say_lines, table
+from ..settings import CliSettings, NaoCommand, NaoGroup, settings_of
+
+if TYPE_CHECKING:
+    from ...console.study.files import StudyFiles
+    from ...console.study.protocol import StudyProtocol, WantedRecordings
+    from ...console.study.runner import TrialRunner
+    from ...console.study.studies import Studies
+
+FOLDER = "~/.ros/nao_studies"
+END = ".yaml"
+RECORDED = ("bag", "video", "sound")
+WIZARD = {"n": "next", "r": "repeat", "a": "abort"}
+folder_option = click.option(
+    "--studies",
+    "folder",
+    default=FOLDER,
+    show_default=True,
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Folder of the studies.",
+)
+
+
+@click.group(cls=NaoGroup, name="study")
+def study_command() -> None:
+    """Studies with participants: check protocols, run trials, get the table.
+
+    The page "Study" of `nao console` does the same with the same files.
+    """
+
+
+@study_command.command("list", cls=NaoCommand)
+@folder_option
+@click.pass_context
+def list_studies(context: click.Context, folder: Path) -> None:
+    """The protocols, the studies, and the trials that have not ended."""
+    files = _files(folder)
+    protocols = {name: str(path) for name, path in files.protocols().items()}
+    trials = {name: [(trial, trial.state()) for trial in files.trials(name)] for name in files.studies()}
+    if settings_of(context).json:
+        states = {name: {trial.path.name: state.status for trial, state in found} for name, found in trials.items()}
+        say_json({"protocols": protocols, "studies": states})
+        return
+    say_lines(table([("protocol", name, path) for name, path in protocols.items()]))
+    say_lines(table([("study", name, f"{len(found)} trials") for name, found in trials.items()]))
+    opened = [(trial, state) for found in trials.values() for trial, state in found if not state.over]
+    say_lines(table([("open", trial.id, state.status or "empty") for trial, state in opened]))
+
+
+@study_command.command("check", cls=NaoCommand)
+@click.argument("protocol", metavar="PROTOCOL|FILE")
+@folder_option
+@click.pass_context
+def check(context: click.Context, protocol: str, folder: Path) -> None:
+    """Whether a protocol can be run, also where no servers run: each mistake is told with its line."""
+    from ...behaviors.language.errors import Problem
+    from ...console.study.course import all_steps
+    from ...console.study.order import order_of
+    from ...console.study.protocol import CommandStep
+
+    read = _protocol(_files(folder), protocol)
+    describe = _describe_offline()
+    problems = [
+        str(Problem(f"step {path}", problem, step.line))
+        for path, step in all_steps(read)
+        if isinstance(step, CommandStep)
+        for problem in _command_problems(step.command, describe)
+    ]
+    if problems:
+        raise CommandFailed("\n".join([f"protocol {read.name} cannot be run:", *problems]))
+    order = order_of(read, 1)
+    if settings_of(context).json:
+        say_json({"name": read.name, "order": order})
+        return
+    click.echo(f"nothing wrong was found in {read.name}")
+    if read.factors:
+        click.echo(f"participant 1 has {len(order)} trials:")
+        say_lines(f"  {i}. {_words(condition)}" for i, condition in enumerate(order, 1))
+
+
+@study_command.command("run", cls=NaoCommand)
+@click.argument("protocol", metavar="PROTOCOL|FILE")
+@click.option("--participant", required=True, metavar="PSEUDONYM", help="Who takes part.")
+@click.option(
+    "--trial", "position", type=click.IntRange(1), help="Which of the participant's.  [default: the next one]"
+)
+@click.option("--all", "every", is_flag=True, help="All trials that the participant still has.")
+@click.option("--choose", multiple=True, metavar="LABEL=CHOICE", help="Of a step of the wizard; the others are asked.")
+@click.option("--record", metavar="bag,video,sound", help="What is recorded.  [default: as the protocol has it]")
+@folder_option
+@click.pass_context
+def run(
+    context: click.Context,
+    protocol: str,
+    participant: str,
+    position: int | None,
+    every: bool,
+    choose: tuple[str, ...],
+    record: str | None,
+    folder: Path,
+) -> None:
+    """Run a trial of a participant here, and wait for its end; what the wizard decides is asked.
+
+    Ctrl-C aborts the trial. What was logged stays.
+    """
+    settings = settings_of(context)
+    files = _files(folder)
+    read = _protocol(files, protocol)
+    wanted = _recordings(read, record)
+    choices = _choices(choose)
+    studies, robot = _studies(settings, files)
+    ids: list[str] = []
+    while not ids or (every and not position and not _done(studies, read, participant)):
+        more = {"position": position or 0, "record": wanted}
+        begin = partial(studies.begin, read, participant, robot, "nao", **more)
+        ids.append(_play(settings, begin, choices))
+    if settings.json:
+        say_json({"trials": ids})
+
+
+@study_command.command("take-up", cls=NaoCommand)
+@click.argument("trial", metavar="STUDY/PSEUDONYM-N")
+@click.option("--choose", multiple=True, metavar="LABEL=CHOICE", help="Of a step of the wizard; the others are asked.")
+@folder_option
+@click.pass_context
+def take_up(context: click.Context, trial: str, choose: tuple[str, ...], folder: Path) -> None:
+    """Go on with a trial whose program was gone, behind the last step that had ended."""
+    settings = settings_of(context)
+    choices = _choices(choose)
+    studies, robot = _studies(settings, _files(folder))
+    _play(settings, partial(studies.take_up, trial, robot, "nao"), choices)
+    if settings.json:
+        say_json({"trials": [trial]})
+
+
+@study_command.command("table", cls=NaoCommand)
+@click.argument("study", metavar="STUDY|DIR")
+@click.option("--csv", "file", default="", type=click.Path(), metavar="FILE.csv", help="A row a trial and step.")
+@overwrite_option
+@folder_option
+@click.pass_context
+def study_table(context: click.Context, study: str, file: str, overwrite: bool, folder: Path) -> None:
+    """Answers and reaction times by condition; with --csv the whole table as a file.
+
+    STUDY is the name of one in the folder of the studies, or its own folder.
+    """
+    from ...console.study.files import StudyFiles
+    from ...console.study.table import summaries_of, table_of
+
+    target = wanted_file(file, overwrite, ("csv",))
+    path = Path(study).expanduser().absolute()
+    files, name = (StudyFiles(path.parent), path.name) if path.is_dir() else (_files(folder), study)
+    found = _told(lambda: table_of(files, name))
+    if target is not None:
+        target = target / f"{name}.csv" if target.is_dir() else target
+        try:
+            write_whole(target, found.csv())
+        except FileTrouble as error:
+            raise CommandFailed(str(error)) from None
+    summaries = summaries_of(found)
+    if settings_of(context).json:
+        rows = [
+            {
+                "step": each.label,
+                "condition": each.condition,
+                "count": each.count,
+                "answers": each.answers,
+                "mean_s": each.mean,
+                "median_s": each.median,
+                "deviation_s": each.deviation,
+            }
+            for each in summaries
+        ]
+        say_json({"rows": len(found.rows), "csv": str(target or ""), "summaries": rows})
+        return
+    lines = [("step", "condition", "times", "mean s", "median s", "answers")]
+    lines += [
+        (
+            *(each.label, each.condition, str(each.count), _number(each.mean), _number(each.median)),
+            ", ".join(f"{answer} {count}" for answer, count in sorted(each.answers.items())),
+        )
+        for each in summaries
+    ]
+    say_lines(table(lines))
+    if target is not None:
+        click.echo(f"written: {target}, {len(found.rows)} rows")
+
+
+def _files(folder: Path) -> StudyFiles:
+    from ...console.study.files import StudyFiles
+
+    return StudyFiles(folder)
+
+
+def _protocol(files: StudyFiles, name: str) -> StudyProtocol:
+    """A protocol by its name or its file."""
+    from ...console.study.reader import read_protocol_file
+
+    if name.endswith(END) or "/" in name:
+        return _told(lambda: read_protocol_file(Path(name).expanduser()))
+    known = files.protocols()
+    if name not in known:
+        raise CommandFailed(f"there is no protocol {name!r}{of_those(name, known)}; a file ends in {END}")
+    return _told(lambda: read_protocol_file(known[name]))
+
+
+def _told(act: Callable[[], Any]) -> Any:
+    """What a function answers; its errors are those of the command."""
+    try:
+        return act()
+    except (NaoError, OSError) as error:
+        raise CommandFailed(str(error)) from None
+
+
+def _describe_offline() -> Callable[[str], Any]:
+    """What the code alone knows of servers; NaoError for others."""
+    from nao_library_msgs.srv import DescribeFunctionsRequest
+
+    from ...functions.describe_offline import offline_servers
+
+    servers = {server.name: server for server in offline_servers()}
+
+    def describe(name: str) -> Any:
+        if name not in servers:
+            raise NaoError(f"there is no server {name!r}{of_those(name, servers)}")
+        return servers[name].service.answer(DescribeFunctionsRequest())
+
+    return describe
+
+
+def _command_problems(command: Any, describe: Callable[[str], Any]) -> list[str]:
+    from ...console.robots.commands import command_problems
+
+    return command_problems(command, describe)
+
+
+def _studies(settings: CliSettings, files: StudyFiles) -> tuple[Studies, Any]:
+    """The studies, and the robot that is meant."""
+    from ...console.study.alone import studies_alone
+    from ..goals import start_node
+
+    namespace = settings.stack.namespace
+    start_node()
+    return _told(lambda: studies_alone(files, namespace))
+
+
+def _recordings(protocol: StudyProtocol, text: str | None) -> WantedRecordings | None:
+    from ...console.study.protocol import BAG_TOPICS, WantedRecordings
+
+    if text is None:
+        return None
+    words = [word for word in text.split(",") if word]
+    for word in words:
+        if word not in RECORDED:
+            raise click.UsageError(f"there is no recording {word!r}{of_those(word, RECORDED)}")
+    bag = protocol.record.bag or BAG_TOPICS
+    video = protocol.record.video or "top"
+    return WantedRecordings(bag if "bag" in words else (), video if "video" in words else "", "sound" in words)
+
+
+def _choices(texts: Sequence[str]) -> dict[str, str]:
+    choices = {}
+    for text in texts:
+        label, equals, choice = text.partition("=")
+        if not equals or not label:
+            raise click.UsageError(f"{text!r} is no choice: LABEL=CHOICE")
+        choices[label] = choice
+    return choices
+
+
+def _done(studies: Studies, protocol: StudyProtocol, participant: str) -> bool:
+    from ...console.study.errors import StudyError
+
+    try:
+        studies.position_of(protocol, participant)
+    except StudyError:
+        return True
+    return False
+
+
+def _play(settings: CliSettings, begin: Callable[..., TrialRunner], choices: Mapping[str, str]) -> str:
+    """Begin a trial, tell of it, and decide what the wizard decides, until it is over; its id."""
+    from ...console.study.protocol import ChoiceStep
+    from ...console.study.state import FINISHED, HELD
+
+    changes: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    runner = _told(lambda: begin(listener=changes.put))
+    click.echo(f"trial {runner.id}: {_words(runner.state.about['condition']) or 'no factors'}", err=settings.json)
+    shown, asked = 0, None
+    try:
+        while not runner.wait(0):
+            changes.get()
+            shown = _show(settings, runner, shown)
+            outcome = runner.outcome
+            place = (outcome.path, outcome.attempt, outcome.outcome) if outcome is not None else None
+            if place == asked or outcome is None:
+                continue
+            step = runner.step
+            if runner.state.status == HELD:
+                asked = place
+                _decide(runner, outcome.error)
+            elif isinstance(step, ChoiceStep):
+                asked = place
+                runner.choose(_chosen(step, outcome.text, choices), "nao")
+    except (KeyboardInterrupt, click.Abort):
+        runner.abort("nao")
+        runner.wait()
+        raise CommandInterrupted("the trial is aborted") from None
+    except (NaoError, click.ClickException) as error:
+        runner.abort("nao")
+        runner.wait()
+        raise CommandFailed(getattr(error, "message", str(error))) from None
+    _show(settings, runner, shown)
+    if runner.state.status != FINISHED:
+        raise CommandFailed(f"trial {runner.id} is {runner.state.status}")
+    return runner.id
+
+
+def _show(settings: CliSettings, runner: TrialRunner, shown: int) -> int:
+    """Tell of steps that have ended since; how many were told."""
+    ended = [each for each in list(runner.state.outcomes) if each.ended is not None]
+    for each in ended[shown:]:
+        answer = f" {each.answer}" if each.answer else ""
+        seconds = f" after {each.seconds:.2f} s" if each.seconds is not None and each.answer else ""
+        error = f": {each.error}" if each.error else ""
+        click.echo(f"  {each.path} {each.text}: {each.outcome}{answer}{seconds}{error}", err=settings.json)
+    return len(ended)
+
+
+def _chosen(step: Any, question: str, choices: Mapping[str, str]) -> str:
+    choice = choices.get(step.label)
+    if choice is not None:
+        return choice
+    if not sys.stdin.isatty():
+        label = step.label or "LABEL"
+        raise CommandFailed(f"{question}: nobody can be asked; --choose {label}={step.choices[0]} does that")
+    return click.prompt(question, type=click.Choice(step.choices), err=True)
+
+
+def _decide(runner: TrialRunner, error: str) -> None:
+    """Ask what is to be done with a step that failed."""
+    if not sys.stdin.isatty():
+        raise CommandFailed(f"a step failed: {error}")
+    words = ", ".join(f"{key}: {word}" for key, word in WIZARD.items())
+    key = click.prompt(f"a step failed: {error}. {words}", type=click.Choice(tuple(WIZARD)), err=True)
+    getattr(runner, WIZARD[key])("nao")
+
+
+def _words(condition: Mapping[str, str]) -> str:
+    return ", ".join(f"{name}: {level}" for name, level in condition.items())
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.3f}"

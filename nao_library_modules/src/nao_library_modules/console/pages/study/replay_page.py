@@ -1,0 +1,97 @@
+"""`/study/replay?trial=STUDY/PSEUDONYM-N`: a trial as a timeline with its video."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from nicegui import run, ui
+from starlette.requests import Request
+from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+
+from ...study.errors import StudyError
+from ...study.files import StudyFiles, TrialFolder
+from ...study.log import read_events
+from ...study.state import TrialState
+from ...study.studies import Studies
+from ..frame import framed
+from .links import study_links
+
+LOGGED = ("n", "stamp", "kind", "by", "text")
+
+
+def replay_of(trial: TrialFolder) -> dict[str, Any]:
+    """What the timeline shows of a trial, JSON values; times are ROS times, s."""
+    events = read_events(trial.path)
+    state = TrialState.of(events)
+    stamps = [event["stamp"] for event in events if event.get("stamp")] or [0.0]
+    ended = state.ended or max(stamps)
+    return {
+        "trial": trial.id,
+        "began": state.began or min(stamps),
+        "ended": ended,
+        "events": sorted(
+            ({name: event.get(name) or "" for name in LOGGED} for event in events if event.get("stamp")),
+            key=lambda event: event["stamp"],
+        ),
+        "steps": [
+            {
+                "path": step.path,
+                "text": step.text,
+                "began": step.began,
+                "ended": ended if step.ended is None else step.ended,
+                "outcome": step.outcome,
+                "answer": step.answer,
+            }
+            for step in state.outcomes
+        ],
+        "media": [
+            {
+                "kind": file["recording"],
+                "url": f"/console/study/media/{trial.id}/{file['file']}",
+                "began": file["began"],
+            }
+            for file in state.files
+            if file["recording"] in ("video", "sound") and file.get("file") and file.get("began")
+        ],
+    }
+
+
+def build(console: Any, studies: Studies) -> None:
+    """Add the page, its data, and the media."""
+    files: StudyFiles = studies.files
+
+    @console.app.get("/console/study/replay/{study}/{name}")
+    async def data(study: str, name: str) -> Response:
+        try:
+            return JSONResponse(await run.io_bound(lambda: replay_of(files.trial(f"{study}/{name}"))))
+        except StudyError as error:
+            return PlainTextResponse(str(error), 404)
+
+    @console.app.get("/console/study/media/{study}/{name}/{file}")
+    async def media(study: str, name: str, file: str) -> Response:
+        try:
+            path = await run.io_bound(lambda: files.media(f"{study}/{name}", file))
+        except StudyError as error:
+            return PlainTextResponse(str(error), 404)
+        return FileResponse(path)  # answers parts, which a browser needs to go to a time
+
+    @ui.page("/study/replay")
+    async def show(request: Request, trial: str = "") -> None:
+        with framed(console, "Study", request) as page:
+            study_links(page)
+            try:
+                folder = await run.io_bound(lambda: files.trial(trial))
+            except StudyError as error:
+                ui.label(str(error)).classes("text-negative")
+                return
+            ui.label(f"Trial {folder.id}").classes("text-h6")
+            place = ui.element("div").classes("w-full")
+            url = f"/console/study/replay/{folder.id}"
+            ui.timer(
+                0.1,
+                lambda: ui.run_javascript(
+                    f"import('/console/static/replay.js').then(m => m.mount('c{place.id}', {json.dumps(url)}))"
+                ),
+                once=True,
+            )

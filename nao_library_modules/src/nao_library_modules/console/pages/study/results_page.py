@@ -1,0 +1,150 @@
+"""`/study/results`: trials of a study, counts and reaction times by condition, and the table."""
+
+from __future__ import annotations
+
+from typing import Any
+from urllib.parse import quote
+
+from nicegui import run, ui
+from starlette.requests import Request
+
+from ...study.errors import StudyError
+from ...study.studies import Studies
+from ...study.table import ConditionSummary, StudyTable, summaries_of, table_of
+from ..frame import framed
+from .links import study_links
+
+MOST_ROWS = 20
+"""Rows of a table on the page at once."""
+
+
+def build(console: Any, studies: Studies) -> None:
+    """Add the page."""
+
+    @ui.page("/study/results")
+    async def show(request: Request, study: str = "") -> None:
+        with framed(console, "Study", request) as page:
+            study_links(page)
+            names = await run.io_bound(studies.files.studies)
+            if not names:
+                ui.label("There are no trials yet.")
+                return
+            chosen = study if study in names else names[0]
+            ui.select(
+                names,
+                value=chosen,
+                label="Study",
+                on_change=lambda event: ui.navigate.to(
+                    f"/study/results?robot={quote(page.robot.name)}&study={quote(event.value)}"
+                ),
+            ).classes("min-w-[16rem]")
+            try:
+                trials = await run.io_bound(lambda: [(each, each.state()) for each in studies.files.trials(chosen)])
+                table = await run.io_bound(lambda: table_of(studies.files, chosen))
+            except StudyError as error:
+                ui.label(str(error)).classes("text-negative")
+                return
+            _trials(page, trials)
+            _summaries(summaries_of(table))
+            ui.button(
+                "Table as CSV", icon="download", on_click=lambda: ui.download(_csv(table), f"{chosen}.csv", "text/csv")
+            ).props("no-caps")
+
+
+def _csv(table: StudyTable) -> bytes:
+    return table.csv().encode("utf-8-sig")  # the mark by which spreadsheets know the encoding
+
+
+def _trials(page: Any, trials: list[Any]) -> None:
+    ui.label("Trials").classes("text-h6")
+    with ui.element("div").classes("w-full overflow-auto max-h-[40vh]"), ui.grid(columns=6).classes(
+        "items-center gap-x-6"
+    ):
+        for title in ("Trial", "Condition", "State", "Steps", "Notes, deviations", "Replay"):
+            ui.label(title).classes("text-bold")
+        for trial, state in trials:
+            ui.label(trial.path.name)
+            ui.label(", ".join(f"{name}: {level}" for name, level in state.about.get("condition", {}).items()))
+            ui.label(state.status or "empty")
+            ui.label(str(len(state.outcomes)))
+            ui.label(f"{state.notes}, {state.deviations}")
+            target = f"/study/replay?robot={quote(page.robot.name)}&trial={quote(trial.id)}"
+            ui.link("replay", target).props(f'aria-label="replay of {trial.path.name}"')
+
+
+def _summaries(summaries: list[ConditionSummary]) -> None:
+    if not summaries:
+        ui.label("No step with an answer was done yet.")
+        return
+    ui.label("Answers and reaction times").classes("text-h6")
+    columns = [
+        {"name": name, "label": label, "field": name, "align": "left", "sortable": True}
+        for name, label in (
+            ("label", "Step"),
+            ("condition", "Condition"),
+            ("count", "Times"),
+            ("answers", "Answers"),
+            ("mean", "Mean, s"),
+            ("median", "Median, s"),
+            ("deviation", "Standard deviation, s"),
+        )
+    ]
+    rows = [
+        {
+            "id": i,
+            "label": each.label,
+            "condition": each.condition,
+            "count": each.count,
+            "answers": ", ".join(f"{answer} {count}" for answer, count in sorted(each.answers.items())),
+            "mean": _number(each.mean),
+            "median": _number(each.median),
+            "deviation": _number(each.deviation),
+        }
+        for i, each in enumerate(summaries)
+    ]
+    ui.table(columns=columns, rows=rows, row_key="id", pagination=MOST_ROWS).classes("w-full").props("dense flat")
+    with ui.row().classes("w-full"):
+        for label in dict.fromkeys(each.label for each in summaries):
+            of_step = [each for each in summaries if each.label == label]
+            if any(each.reactions for each in of_step):
+                _plot(f"Reaction time of {label}, s", of_step, _reaction_series(of_step))
+            answers = list(dict.fromkeys(answer for each in of_step for answer in each.answers))
+            _plot(f"Answers of {label}", of_step, [_count_series(answer, of_step) for answer in answers], legend=True)
+
+
+def _plot(title: str, summaries: list[ConditionSummary], series: list[Any], legend: bool = False) -> None:
+    """A plot; the table above has the same numbers, for who does not see it."""
+    with ui.column().classes("min-w-[20rem] flex-1 gap-0"):
+        ui.label(title).classes("text-subtitle2")
+        ui.echart(
+            {
+                "animation": False,
+                "aria": {"enabled": True},
+                "legend": {"show": legend, "textStyle": {"color": "#888"}},
+                "grid": {"left": 40, "right": 10, "top": 30, "bottom": 60},
+                "xAxis": {
+                    "type": "category",
+                    "data": [each.condition.replace(", ", "\n") for each in summaries],
+                    "axisLabel": {"interval": 0, "color": "#888"},
+                },
+                "yAxis": {"type": "value", "axisLabel": {"color": "#888"}},
+                "series": series,
+            }
+        ).classes("w-full h-72")
+
+
+def _reaction_series(summaries: list[ConditionSummary]) -> list[dict[str, Any]]:
+    points = [[i, seconds] for i, each in enumerate(summaries) for seconds in each.reactions]
+    return [
+        {"type": "bar", "name": "mean", "data": [each.mean for each in summaries], "barMaxWidth": 60},
+        {"type": "scatter", "name": "single", "data": points, "symbolSize": 7, "itemStyle": {"color": "#e65100"}},
+    ]
+
+
+def _count_series(answer: str, summaries: list[ConditionSummary]) -> dict[str, Any]:
+    counts = [each.answers.get(answer, 0) for each in summaries]
+    return {"type": "bar", "name": answer, "stack": "answers", "data": counts, "barMaxWidth": 60}
+
+
+def _number(value: float | None) -> float | None:
+    return None if value is None else round(value, 3)

@@ -1,0 +1,440 @@
+"""`/study`: begins trials, and steers the one that runs on the robot.
+
+The trial runs in the console; a page shows what there is of it, whenever it is opened.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+from nicegui import run, ui
+from starlette.requests import Request
+
+from naoqi.errors import NaoError
+
+from ...files.yaml_file import ConsoleFileError
+from ...study.course import all_steps
+from ...study.errors import StudyError
+from ...study.order import order_of
+from ...study.protocol import BAG_TOPICS, BranchStep, ChoiceStep, RoundsStep, StudyProtocol, WantedRecordings
+from ...study.reader import read_protocol
+from ...study.runner import TrialRunner
+from ...study.state import DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, SKIPPED, STOPPED, TIMEOUT, TrialState
+from ...study.studies import Studies
+from ..frame import framed
+from .links import study_links
+
+PERIOD = 0.1
+"""s between looks at whether the trial has changed, while the page is open."""
+SHOWN_EVENTS = 60
+NEW = "new_study"
+EXAMPLE = """\
+name: new_study
+help: What it is about.
+phases:
+  - phase: Task
+    steps:
+      - say: Please touch my head.
+      - {wait: touch, sensors: [head], timeout: 20, label: head}
+"""
+ICONS = {
+    "": "radio_button_unchecked",
+    RUNNING: "play_circle",
+    DONE: "check_circle",
+    TIMEOUT: "hourglass_disabled",
+    SKIPPED: "skip_next",
+    FAILED: "error",
+    REPEATED: "replay",
+    STOPPED: "stop_circle",
+}
+STATUS_COLOURS = {RUNNING: "positive", PAUSED: "warning", HELD: "negative"}
+SHORTCUTS = {"p": "pause or go on", "n": "next", "r": "repeat", "m": "write a note", "1..9": "a choice"}
+
+
+def build(console: Any, studies: Studies) -> None:
+    """Add the page."""
+
+    @ui.page("/study")
+    async def show(request: Request) -> None:
+        with framed(console, "Study", request) as page:
+            study_links(page)
+            await _StudyPage(page, studies).build()
+
+
+class _StudyPage:
+    """What one visitor sees."""
+
+    def __init__(self, page: Any, studies: Studies) -> None:
+        self.page, self.studies, self.robot = page, studies, page.robot
+        self.runner: TrialRunner | None = None
+        self.protocol: StudyProtocol | None = None
+        self._dirty = True
+        self._leave: Any = None
+        self._shown: tuple[bool, Any] | None = None
+        self._fresh: deque[Any] = deque(maxlen=SHOWN_EVENTS)  # events that are not shown yet
+        self._recordings: tuple[str, ...] | None = None
+        self._choices_of: tuple[str, int] | None = None
+
+    async def build(self) -> None:
+        self._area = ui.column().classes("w-full gap-4")
+        self._follow()
+        leave = [self.studies.on_change(self._mark), self.robot.events.subscribe(self._keep)]
+        self.page.every(PERIOD, self._refresh)
+        self.page.on_leave(lambda: [each() for each in (*leave, self._leave) if each])
+        ui.keyboard(on_key=self._key, ignore=["input", "select", "textarea"])
+        await self._refresh()
+
+    def _mark(self, *_: Any) -> None:
+        """Called in any thread."""
+        self._dirty = True
+
+    def _keep(self, event: Any) -> None:
+        self._fresh.append(event)
+        self._dirty = True
+
+    def _follow(self) -> None:
+        """Look at the trial that runs on the robot, which another page may have begun."""
+        runner = self.studies.running(self.robot.namespace)
+        if runner is not self.runner:
+            if self._leave is not None:
+                self._leave()
+            self.runner = runner
+            self._leave = runner.on_change(self._mark) if runner is not None else None
+            self._dirty = True
+            self._shown = None
+
+    async def _refresh(self) -> None:
+        self._follow()
+        running = self.runner is not None and not self.runner.state.over
+        if self._shown != (running, self.runner):
+            self._shown = (running, self.runner)
+            self._area.clear()
+            with self._area:
+                if running:
+                    self._build_trial()
+                else:
+                    await self._build_begin()
+        elif self._dirty and running:
+            self._dirty = False
+            self._update_trial()
+        if running:
+            self._tick()
+
+    # A trial that is to begin
+
+    async def _build_begin(self) -> None:
+        last = self.runner
+        if last is not None:
+            state = last.state
+            done = sum(each.outcome == DONE for each in state.outcomes)
+            ui.label(f"Trial {last.id} is {state.status}: {done} steps were done.").props('role="status"')
+        opened = await run.io_bound(self.studies.open_trials)
+        if opened:
+            with ui.card().classes("w-full"):
+                ui.label("Trials that have not ended").classes("text-h6")
+                for folder, state in opened:
+                    with ui.row().classes("items-center"):
+                        ui.label(f"{folder.id}: {state.status}, last step {state.path or 'none'}")
+                        if state.recordings:
+                            ui.badge(f"records {', '.join(state.recordings)}").props("color=negative")
+                        ui.button(
+                            "Take up again", icon="restart_alt", on_click=lambda _, each=folder.id: self._take_up(each)
+                        ).props("no-caps")
+        with ui.card().classes("w-full"):
+            ui.label("New trial").classes("text-h6")
+            names = list(await run.io_bound(self.studies.files.protocols))
+            with ui.row().classes("items-start w-full"):
+                self._choice = ui.select(names, label="Protocol", on_change=self._read).classes("min-w-[16rem]")
+                self._person = ui.input("Participant (pseudonym)", on_change=self._tell_order).classes("min-w-[12rem]")
+                self._person.props('maxlength=64 autocomplete="off"')
+            self._help = ui.label().classes("whitespace-pre-line")
+            with ui.row():
+                self._bag = ui.checkbox("Rosbag")
+                self._video = ui.checkbox("Video of the camera")
+                self._sound = ui.checkbox("Sound of the microphones")
+            self._begin_button = ui.button("Begin trial", icon="play_arrow", on_click=self._begin).props("no-caps")
+            self._problems = ui.column().classes("text-negative gap-0").props('role="alert"')
+        with ui.expansion("Protocol as YAML", icon="edit").classes("w-full"):
+            self._name = ui.input("Name", value=NEW).props("maxlength=64")
+            self._text = (
+                ui.textarea("Protocol", value=EXAMPLE).classes("w-full font-mono").props("autogrow spellcheck=false")
+            )
+            with ui.row():
+                ui.button("Check", on_click=self._check).props("no-caps outline")
+                ui.button("Save", on_click=self._save).props("no-caps")
+        if names:
+            self._choice.value = names[0]
+
+    async def _read(self) -> None:
+        name = self._choice.value
+        try:
+            text = await run.io_bound(self.studies.files.protocol_text, name)
+            self._name.value, self._text.value = name, text
+            self.protocol = read_protocol(text, name)
+        except (NaoError, OSError) as error:
+            self.protocol = None
+            self._tell_problems(error)
+        else:
+            record = self.protocol.record
+            self._bag.value, self._video.value, self._sound.value = bool(record.bag), bool(record.video), record.sound
+            self._problems.clear()
+        self._begin_button.set_enabled(self.protocol is not None)
+        self._tell_order()
+
+    def _tell_order(self) -> None:
+        protocol = self.protocol
+        if protocol is None:
+            self._help.text = ""
+            return
+        lines = [protocol.help]
+        number = self.studies.files.participants(protocol.name).get(self._person.value.strip(), 0)
+        if protocol.factors and number:
+            order = order_of(protocol, number)
+            lines += [f"Participant {number} has {len(order)} trials, in this order:"]
+            lines += [
+                f"{i}. {', '.join(f'{name}: {level}' for name, level in c.items())}" for i, c in enumerate(order, 1)
+            ]
+        elif protocol.factors:
+            lines += [f"A participant has {len(order_of(protocol, 1))} trials."]
+        self._help.text = "\n".join(lines)
+
+    async def _begin(self) -> None:
+        if self.protocol is None or not self.page.operate():
+            return
+        pseudonym, protocol = self._person.value.strip(), self.protocol
+        if not pseudonym:
+            ui.notify("The trial needs the pseudonym of its participant", type="warning")
+            return
+        bag = protocol.record.bag or BAG_TOPICS
+        wanted = WantedRecordings(
+            bag if self._bag.value else (),
+            (protocol.record.video or "top") if self._video.value else "",
+            bool(self._sound.value),
+        )
+        by = self.page.visitor.name
+        await self._try(lambda: self.studies.begin(protocol, pseudonym, self.robot, by, record=wanted))
+
+    async def _take_up(self, trial: str) -> None:
+        if self.page.operate():
+            await self._try(lambda: self.studies.take_up(trial, self.robot, self.page.visitor.name))
+
+    async def _try(self, begin: Any) -> None:
+        try:
+            await run.io_bound(begin)
+        except (NaoError, OSError) as error:
+            ui.notify(str(error), type="negative", multi_line=True)
+        await self._refresh()
+
+    def _check(self) -> bool:
+        try:
+            read_protocol(self._text.value, self._name.value)
+        except ConsoleFileError as error:
+            self._tell_problems(error)
+            ui.notify("The protocol cannot be run", type="negative")
+            return False
+        self._problems.clear()
+        ui.notify("Nothing wrong was found", type="positive")
+        return True
+
+    async def _save(self) -> None:
+        if not self.page.operate() or not self._check():
+            return
+        try:
+            name = self._name.value
+            await run.io_bound(self.studies.files.store_protocol, name, self._text.value)
+        except (NaoError, OSError) as error:
+            ui.notify(str(error), type="negative")
+            return
+        names = list(self.studies.files.protocols())
+        self._choice.set_options(names)
+        self._choice.value = name
+        await self._read()
+
+    def _tell_problems(self, error: Exception) -> None:
+        self._problems.clear()
+        with self._problems:
+            for problem in error.problems if isinstance(error, ConsoleFileError) else [error]:
+                ui.label(str(problem))
+
+    # A trial that runs
+
+    def _build_trial(self) -> None:
+        runner = self.runner
+        assert runner is not None
+        about = runner.state.about
+        with ui.card().classes("w-full"):
+            with ui.row().classes("items-center w-full"):
+                ui.label(f"{about['study']}, {about['participant']}, trial {about['position']}").classes("text-h6")
+                condition = ", ".join(f"{name}: {level}" for name, level in about["condition"].items())
+                if condition:
+                    ui.label(condition)
+                self._status = ui.badge().props('role="status"')
+                self._recorded = ui.row()
+            self._now = ui.label().classes("text-h5").props('role="status" aria-live="polite"')
+            self._since = ui.label().classes("text-caption")
+            self._error = ui.label().classes("text-negative").props('role="alert"')
+            self._choices = ui.row().classes("min-h-[3.5rem]")
+            with ui.row():
+                self._pause = ui.button("Pause", on_click=self._toggle).props("no-caps")
+                self._next = self._button("Next", "skip_next", lambda by: runner.next(by))
+                self._repeat = self._button("Repeat", "replay", lambda by: runner.repeat(by))
+                ui.button("Abort", icon="cancel", color="negative", on_click=self._abort).props("no-caps outline")
+            with ui.row().classes("items-center w-full"):
+                self._note = ui.input("Note").classes("flex-1").on("keydown.enter", lambda: self._write("note"))
+                ui.button("Note", on_click=lambda: self._write("note")).props("no-caps outline")
+                ui.button("Deviation", on_click=lambda: self._write("deviation")).props(
+                    "no-caps outline color=negative"
+                )
+        with ui.row().classes("w-full items-start no-wrap max-md:flex-wrap"):
+            with ui.card().classes("flex-1 min-w-[18rem]"):
+                self._build_steps(runner)
+            with ui.card().classes("flex-1 min-w-[18rem]"):
+                ui.label("Events").classes("text-h6")
+                self._log = ui.column().classes("w-full gap-0 max-h-[50vh] overflow-auto text-sm").props("tabindex=0")
+        keys = ", ".join(f"{key}: {what}" for key, what in SHORTCUTS.items())
+        ui.label(f"Keys: {keys}").classes("text-caption")
+        self._fresh.clear()
+        self._fresh.extend(self.robot.events.last(SHOWN_EVENTS))
+        self._choices_of = self._recordings = None
+        self._update_trial()
+
+    def _build_steps(self, runner: TrialRunner) -> None:
+        self._marks: dict[str, Any] = {}
+        phase = ""
+        for path, step in all_steps(runner.protocol):
+            name = runner.protocol.phases[int(path.partition(".")[0]) - 1].name
+            if name != phase:
+                phase = name
+                ui.label(name).classes("text-subtitle1 text-bold")
+            with ui.row().classes("items-center gap-2 no-wrap").style(f"padding-left: {path.count('.') * 10 - 10}px"):
+                if isinstance(step, BranchStep):
+                    branches = [" and ".join(map(str, ifs)) or "else" for ifs, _ in step.branches]
+                    ui.label(f"{path} branch: {'; '.join(branches)}").classes("italic")
+                elif isinstance(step, RoundsStep):
+                    ui.label(f"{path} {step.count} rounds").classes("italic")
+                else:
+                    self._marks[_any_round(path)] = ui.icon(ICONS[""]).props('role="img" aria-label="to come"')
+                    ui.label(f"{path} {step.text}")
+
+    def _update_trial(self) -> None:
+        runner = self.runner
+        assert runner is not None
+        state: TrialState = runner.state
+        outcome = runner.outcome
+        self._status.text = state.status
+        self._status.props(f"color={STATUS_COLOURS.get(state.status, 'grey')}")
+        self._now.text = runner.title or (f"paused behind step {state.path}" if state.path else "...")
+        self._error.text = runner.log.trouble or (outcome.error if outcome is not None and state.status == HELD else "")
+        self._pause.text = "Go on" if state.status in (PAUSED, HELD) else "Pause"
+        if tuple(state.recordings) != self._recordings:
+            self._recordings = tuple(state.recordings)
+            self._recorded.clear()
+            with self._recorded:
+                for kind in state.recordings:
+                    ui.badge(f"records {kind}").props("color=negative")
+        self._update_choices(runner)
+        self._update_marks(state)
+        while self._fresh:
+            event = self._fresh.popleft()
+            by = f" ({event.by})" if event.by else ""
+            with self._log:
+                ui.label(f"{event.stamp:.2f} {event.kind}{by}: {event.text}").move(self._log, 0)
+        for line in self._log.default_slot.children[SHOWN_EVENTS:]:
+            self._log.remove(line)
+
+    def _update_choices(self, runner: TrialRunner) -> None:
+        step, outcome = runner.step, runner.outcome
+        place = (outcome.path, outcome.attempt) if isinstance(step, ChoiceStep) and outcome is not None else None
+        if place == self._choices_of:
+            return
+        self._choices_of = place
+        self._choices.clear()
+        if place is not None and isinstance(step, ChoiceStep):
+            with self._choices:
+                for i, choice in enumerate(step.choices, 1):
+                    text = f"{i}  {choice}" if i < 10 else choice
+                    ui.button(text, on_click=lambda _, each=choice: self._choose(each)).props("no-caps size=lg")
+
+    def _update_marks(self, state: TrialState) -> None:
+        latest = {_any_round(outcome.path): outcome for outcome in state.outcomes}
+        for path, mark in self._marks.items():
+            outcome = latest.get(path)
+            kind = "" if outcome is None else RUNNING if outcome.ended is None else outcome.outcome
+            if mark.name != ICONS[kind]:
+                mark.name = ICONS[kind]
+                mark.props(f'aria-label="{kind}"')
+
+    def _tick(self) -> None:
+        outcome = self.runner.outcome if self.runner is not None else None
+        if outcome is not None and outcome.ended is None:
+            again = f", attempt {outcome.attempt}" if outcome.attempt > 1 else ""
+            self._since.text = (
+                f"step {outcome.path}, {outcome.phase}, for {self.robot.now() - outcome.began:.0f} s{again}"
+            )
+        else:
+            self._since.text = ""
+
+    def _button(self, text: str, icon: str, act: Any) -> Any:
+        def press() -> None:
+            if self.page.operate():
+                act(self.page.visitor.name)
+
+        return ui.button(text, icon=icon, on_click=press).props("no-caps")
+
+    def _toggle(self) -> None:
+        runner = self.runner
+        if runner is not None and self.page.operate():
+            act = runner.go_on if runner.state.status in (PAUSED, HELD) else runner.pause
+            act(self.page.visitor.name)
+
+    async def _abort(self) -> None:
+        runner = self.runner
+        if runner is None or not self.page.operate():
+            return
+        with ui.dialog() as dialog, ui.card():
+            ui.label(f"Abort trial {runner.id}? What was logged stays.")
+            with ui.row():
+                ui.button("Abort", color="negative", on_click=lambda: dialog.submit(True)).props("no-caps")
+                ui.button("Go on", on_click=lambda: dialog.submit(False)).props("no-caps outline")
+        if await dialog:
+            runner.abort(self.page.visitor.name)
+
+    def _choose(self, choice: str) -> None:
+        if self.runner is not None and self.page.operate():
+            try:
+                self.runner.choose(choice, self.page.visitor.name)
+            except StudyError as error:
+                ui.notify(str(error), type="warning")
+
+    def _write(self, kind: str) -> None:
+        text = self._note.value.strip()
+        if self.runner is None or not self.page.operate():
+            return
+        if not text:
+            ui.notify("Write what is to be noted", type="warning")
+            return
+        (self.runner.note if kind == "note" else self.runner.deviation)(text, self.page.visitor.name)
+        self._note.value = ""
+
+    def _key(self, event: Any) -> None:
+        runner = self.runner
+        if runner is None or runner.state.over or not event.action.keydown or event.action.repeat:
+            return
+        if event.modifiers.ctrl or event.modifiers.alt or event.modifiers.meta:
+            return
+        key, by = event.key.name, self.page.visitor.name
+        step = runner.step
+        if key == "m":
+            self._note.run_method("focus")
+        elif key == "p":
+            self._toggle()
+        elif key in ("n", "r") and self.page.operate():
+            (runner.next if key == "n" else runner.repeat)(by)
+        elif key.isdigit() and isinstance(step, ChoiceStep) and 0 < int(key) <= len(step.choices):
+            self._choose(step.choices[int(key) - 1])
+
+
+def _any_round(path: str) -> str:
+    """A path with all its rounds taken for the first one, as the list of steps has it."""
+    return ".".join("r1" if part[0] == "r" else part for part in path.split("."))

@@ -1,0 +1,363 @@
+"""The wizard's page: buttons from a file, free text, walking by hand, the head by the camera picture."""
+
+from __future__ import annotations
+
+import asyncio
+import uuid
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from fastapi import Request, WebSocket, WebSocketDisconnect
+from nicegui import context, run, ui
+
+from naoqi.errors import NaoError
+
+from ...base.paths import config_file
+from ..access.guard import session_of
+from ..access.sessions import Session
+from ..robots.commands import RobotCommand
+from ..wizard.desk import PLANS, WizardDesk
+from ..wizard.layout_file import CurrentLayout, LayoutFile
+from ..wizard.model import WizardLayout
+from ..wizard.session import HEAD, PRESS, PageRights, WizardSession, read_message
+from ..wizard.wire import layout_message
+from .frame import PageContext, framed
+from .wizard_editor import WizardEditor
+
+OWN_FILE = "~/.ros/nao_console.yaml"
+"""What is edited where the console was started without a file: the shipped one stays as it is."""
+LOOK_PERIOD = 2.0
+"""s between two looks whether the file has changed on the disk."""
+HISTORY_SHOWN = 6
+
+
+class WizardParts:
+    """What all pages of the wizard share."""
+
+    def __init__(self, console: Any) -> None:
+        """Read the console's file."""
+        shipped = config_file("console") / "console.yaml"
+        path = Path(console.settings.buttons)
+        own = Path(OWN_FILE).expanduser() if path == shipped else path
+        self.console = console
+        self.file = LayoutFile(own, shipped)
+        self.current = CurrentLayout(self.file)
+        self.desk = WizardDesk()
+
+
+def build(console: Any) -> None:
+    """Register the page and its WebSocket."""
+    parts = WizardParts(console)
+
+    @ui.page("/wizard")
+    def wizard(request: Request) -> None:
+        with framed(console, "Wizard", request) as page:
+            _WizardPage(parts, page).draw()
+
+    @console.app.websocket("/console/drive")
+    async def drive(socket: WebSocket) -> None:
+        await _DriveSocket(parts, socket).serve()
+
+
+class _WizardPage:
+    """The parts of one open page that are made of NiceGUI's elements."""
+
+    def __init__(self, parts: WizardParts, page: PageContext) -> None:
+        self._parts = parts
+        self._desk = parts.desk
+        self._page = page
+        self._space = page.robot.namespace
+        self._client = context.client
+        self._place = -1  # in the history, of the text field
+
+    def draw(self) -> None:
+        """Make the page."""
+        page = self._page
+        page.static("camera.js")
+        page.static("wizard.js")
+        editor = WizardEditor(self._parts.file, self._parts.current, page)
+        page.every(LOOK_PERIOD, self._parts.current.look)
+        self._follow(self._parts.current.subscribe, self._changed)
+        self._follow(self._desk.subscribe, self._show_desk)
+        page.robot.prepare(servers_of(self._parts.current.layout))
+        with ui.element("div").classes("w-full grid gap-4 grid-cols-1 lg:grid-cols-3"):
+            with ui.column().classes("lg:col-span-2 w-full gap-3"):
+                self._talk()
+                with ui.row().classes("w-full items-center"):
+                    self._title = ui.label(self._parts.current.layout.title).classes("text-h6").props("role=heading")
+                    ui.space()
+                    ui.button("Arm again", icon="restart_alt", on_click=self._arm).props("flat no-caps").tooltip(
+                        "Buttons that are for once can be pressed again"
+                    )
+                    ui.button("Edit", icon="edit", on_click=editor.open).props("flat no-caps").tooltip(
+                        "Change the buttons"
+                    )
+                self._problems = ui.label().classes("text-negative").props("role=alert")
+                ui.element("nao-wizard-buttons").props(f'robot="{self._space}"')
+            with ui.column().classes("w-full gap-3"):
+                self._names_card()
+                with ui.card().classes("w-full"):
+                    self._camera()
+                with ui.card().classes("w-full"):
+                    ui.label("Walk").classes("text-subtitle1").props("role=heading aria-level=2")
+                    ui.element("nao-wizard-drive").props(f'robot="{self._space}"')
+        self._show_problems()
+
+    # --- free text ----------------------------------------------------------------------------------------------------
+
+    def _talk(self) -> None:
+        with ui.card().classes("w-full"):
+            with ui.row().classes("w-full items-center no-wrap"):
+                self._text = ui.input("Say").classes("flex-grow").props("clearable maxlength=2000")
+                self._text.on("keydown.enter", self._say)
+                self._text.on("keydown.up", lambda: self._recall(1))
+                self._text.on("keydown.down", lambda: self._recall(-1))
+                self._animated = ui.checkbox("animated", value=True)
+                ui.button("Say", icon="record_voice_over", on_click=self._say).props("no-caps")
+            with ui.row().classes("w-full items-center"):
+                self._templates = ui.select(
+                    list(self._parts.current.layout.templates), label="Templates", on_change=self._choose
+                ).classes("min-w-64 flex-grow")
+            self._history = ui.row().classes("w-full gap-1")
+            self._draw_history()
+
+    async def _say(self) -> None:
+        text = self._text.value or ""
+        if not self._page.operate():
+            return
+        self._desk.take_names(self._parts.current.layout, self._space)
+        try:
+            await run.io_bound(self._desk.say, self._page.robot, text, self._animated.value, self._page.visitor.name)
+        except NaoError as error:
+            self._page.notify(str(error), "negative")
+            return
+        self._text.value = ""
+        self._place = -1
+
+    def _choose(self, event: Any) -> None:
+        if event.value:
+            self._text.value = event.value
+            self._templates.value = None
+            self._text.run_method("focus")
+
+    def _recall(self, step: int) -> None:
+        texts = self._desk.history(self._space)
+        self._place = min(max(self._place + step, -1), len(texts) - 1)
+        self._text.value = texts[self._place] if self._place >= 0 else ""
+
+    def _draw_history(self) -> None:
+        self._history.clear()
+        with self._history:
+            for text in self._desk.history(self._space)[:HISTORY_SHOWN]:
+                ui.button(text[:60], icon="history", on_click=lambda _, text=text: self._take(text)).props(
+                    "flat dense no-caps size=sm"
+                ).tooltip("Say this again: it goes into the field")
+
+    def _take(self, text: str) -> None:
+        self._text.value = text
+        self._text.run_method("focus")
+
+    # --- names, camera, file ------------------------------------------------------------------------------------------
+
+    def _names_card(self) -> None:
+        self._names = ui.card().classes("w-full")
+        self._draw_names()
+
+    def _draw_names(self) -> None:
+        self._names.clear()
+        values = self._desk.values(self._parts.current.layout, self._space)
+        self._names.set_visibility(bool(values))
+        with self._names:
+            ui.label("Names").classes("text-subtitle1").props("role=heading aria-level=2")
+            self._fields = {
+                name: ui.input(name, value=value, on_change=lambda event, name=name: self._name(name, event.value))
+                .props("dense maxlength=100 debounce=200")
+                .classes("w-full")
+                for name, value in values.items()
+            }
+
+    def _name(self, name: str, value: str | None) -> None:
+        self._desk.set_values(self._space, {name: value or ""})
+
+    def _camera(self) -> None:
+        with ui.row().classes("w-full items-center"):
+            ui.label("Head").classes("text-subtitle1").props("role=heading aria-level=2")
+            ui.space()
+            choice = ui.toggle({"top": "Top", "bottom": "Bottom"}, value="top").props("no-caps dense")
+            shown = ui.switch("picture", value=True)
+        holder = ui.element("div").classes("w-full")
+
+        def show() -> None:
+            holder.clear()
+            if shown.value:
+                with holder:
+                    ui.element("nao-camera").props(f'robot="{self._space}" camera="{choice.value}"')
+
+        choice.on_value_change(show)
+        shown.on_value_change(show)
+        show()
+        ui.label("Click: the robot looks there. Drag: the head turns along.").classes("text-caption")
+
+    def _arm(self) -> None:
+        if self._page.operate():
+            self._desk.arm(self._space)
+
+    def _changed(self) -> None:
+        """The file is another one."""
+        layout = self._parts.current.layout
+        self._title.text = layout.title
+        self._templates.set_options(list(layout.templates))
+        self._draw_names()
+        self._show_problems()
+        self._page.robot.prepare(servers_of(layout))
+
+    def _show_desk(self) -> None:
+        """Show what was typed and said on other pages, too."""
+        for name, value in self._desk.values(self._parts.current.layout, self._space).items():
+            field = self._fields.get(name)
+            if field is not None and (field.value or "").split() != value.split():  # nobody's space is taken away
+                field.value = value
+        texts = tuple(self._desk.history(self._space)[:HISTORY_SHOWN])
+        if texts != getattr(self, "_shown", ()):
+            self._shown = texts
+            self._draw_history()
+
+    def _show_problems(self) -> None:
+        problems = self._parts.current.problems
+        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        self._problems.text = (
+            f"The file is wrong, its former buttons are shown: {problems[0]}{more}" if problems else ""
+        )
+        self._problems.set_visibility(bool(problems))
+
+    def _follow(self, subscribe: Any, callback: Any) -> None:
+        """Have something called in the event loop, on this page, whatever thread tells of it."""
+        loop = asyncio.get_running_loop()
+
+        def in_page() -> None:
+            with self._client:
+                callback()
+
+        self._page.on_leave(subscribe(lambda: loop.call_soon_threadsafe(in_page)))
+
+
+class _DriveSocket:
+    """One WebSocket of a page. Walks and stops are carried out in the event loop, presses and the head beside it."""
+
+    def __init__(self, parts: WizardParts, socket: WebSocket) -> None:
+        self._parts = parts
+        self._socket = socket
+        self._session = session_of(socket)
+        self._wake = asyncio.Event()
+        self._lanes: dict[str, ThreadPoolExecutor] = {}
+        self._notices: list[str] = []
+
+    async def serve(self) -> None:
+        """Answer until the page is gone."""
+        socket, console = self._socket, self._parts.console
+        try:
+            robot = console.robots.robot(socket.query_params.get("robot", ""))
+        except NaoError as error:
+            await socket.close(4404, str(error)[:100])
+            return
+        await socket.accept()
+        wizard = WizardSession(
+            uuid.uuid4().hex,
+            robot,
+            self._parts.desk,
+            lambda: self._parts.current.layout,
+            _rights(console, self._session),
+            console.robots.robot,
+            _head_pointer,
+        )
+        loop = asyncio.get_running_loop()
+        wake = lambda: loop.call_soon_threadsafe(self._wake.set)  # noqa: E731
+        ends = [self._parts.desk.subscribe(wake), self._parts.current.subscribe(wake)]
+        teller = asyncio.create_task(self._tell(wizard))
+        try:
+            while True:
+                self._take(wizard, await socket.receive_text())
+        except WebSocketDisconnect:
+            pass
+        finally:
+            teller.cancel()
+            for end in ends:
+                end()
+            for lane in self._lanes.values():
+                lane.shutdown(wait=False)
+            await loop.run_in_executor(None, wizard.leave)
+
+    def _take(self, wizard: WizardSession, text: str) -> None:
+        try:
+            kind, message = read_message(text)
+        except ValueError as error:
+            self._notice(str(error))
+            return
+        if kind not in (PRESS, HEAD):
+            self._notice(wizard.take(kind, message))
+            return
+        if kind not in self._lanes:
+            self._lanes[kind] = ThreadPoolExecutor(1, f"wizard {kind}")
+        done = asyncio.get_running_loop().run_in_executor(self._lanes[kind], wizard.take, kind, message)
+        done.add_done_callback(self._taken)
+
+    def _taken(self, done: Any) -> None:
+        if not done.cancelled():
+            self._notice(done.result())
+
+    def _notice(self, text: str) -> None:
+        if text:
+            self._notices.append(text)
+            self._wake.set()
+
+    async def _tell(self, wizard: WizardSession) -> None:
+        """Tell the page its layout, the states of its buttons, and what was refused, as they change."""
+        revision, states = None, None
+        with suppress(WebSocketDisconnect, RuntimeError):
+            while True:
+                layout = self._parts.current.layout
+                message: dict[str, Any] = {}
+                if layout.revision != revision:
+                    message, revision, states = layout_message(layout), layout.revision, None
+                now = wizard.states()
+                if now != states:
+                    message["states"], states = now, now
+                if message:
+                    await self._socket.send_json(message)
+                notices, self._notices = self._notices, []
+                for text in notices:
+                    await self._socket.send_json({"notice": text})
+                await self._wake.wait()
+                self._wake.clear()
+
+
+def _head_pointer(robot: Any) -> Any:
+    from ..wizard.head_pointer import HeadPointer
+
+    return HeadPointer(robot)
+
+
+def _rights(console: Any, session: Session) -> PageRights:
+    controls = console.controls
+
+    def known() -> bool:
+        return session.operator and console.sessions.get(session.key) is session
+
+    def refusal(namespace: str) -> str:
+        if not known():
+            return controls.refusal(namespace, session) if not session.operator else "you are logged out: log in again"
+        return "" if controls.may_move(namespace, session) else controls.refusal(namespace, session)
+
+    return PageRights(session.name, refusal, known)
+
+
+def servers_of(layout: WizardLayout) -> list[str]:
+    """Servers that the buttons of a layout use, each once; that of plans is left out."""
+    servers = {
+        button.action.server
+        for _, button in layout.buttons()
+        if isinstance(button.action, RobotCommand) and not button.robot
+    }
+    return sorted(server for server in servers if server and server != PLANS)

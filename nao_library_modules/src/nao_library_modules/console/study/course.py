@@ -1,0 +1,123 @@
+"""From one step of a protocol to the next. Pure.
+
+A path names a step for good: `2.3` is the third step of the second phase, `2.3.b1.2` the second of the first branch
+there, `2.3.r4.2` the second of the fourth round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from .errors import StudyError
+from .protocol import FIRST, LAST, BranchStep, ProtocolStep, RoundsStep, StudyProtocol
+
+
+def following(protocol: StudyProtocol, path: str, values: Mapping[str, Any]) -> str:
+    """Path of the step that comes behind another one; empty at the end of the trial.
+
+    `path`: of that one; empty: the first step is wanted. `values`: of the trial, for branches and phases.
+    """
+    parts = path.split(".") if path else ["0"]
+    if path:
+        lists = _lists(protocol, parts)
+        while lists:
+            group, steps, length = lists.pop()
+            prefix, known = parts[:length], {**values, **_rounds(protocol, parts[:length])}
+            found = _first(steps, prefix, known, int(parts[length]))
+            if not found and isinstance(group, RoundsStep):
+                found = _first_round(group, prefix[:-1], known, int(prefix[-1][1:]) + 1)
+            if found:
+                return ".".join(found)
+    for i, phase in enumerate(protocol.phases[int(parts[0]) :], int(parts[0]) + 1):
+        if (phase.only == FIRST and values["trial"] != 1) or (
+            phase.only == LAST and values["trial"] != values["trials"]
+        ):
+            continue
+        found = _first(phase.steps, [str(i)], values, 0)
+        if found:
+            return ".".join(found)
+    return ""
+
+
+def step_at(protocol: StudyProtocol, path: str) -> ProtocolStep:
+    """The step of a path. Raises StudyError if there is none: the protocol is not the one that the path is of."""
+    parts = path.split(".")
+    *_, (_, steps, length) = _lists(protocol, parts)
+    try:
+        return steps[int(parts[length]) - 1]
+    except (IndexError, ValueError):
+        raise StudyError(f"there is no step {path} in protocol {protocol.name}") from None
+
+
+def phase_of(protocol: StudyProtocol, path: str) -> str:
+    """Name of the phase that a step is in."""
+    return protocol.phases[int(path.partition(".")[0]) - 1].name
+
+
+def rounds_of(protocol: StudyProtocol, path: str) -> dict[str, int]:
+    """Values of the rounds that a step is in: name -> 1, 2, ..."""
+    return _rounds(protocol, path.split("."))
+
+
+def all_steps(protocol: StudyProtocol) -> Iterator[tuple[str, ProtocolStep]]:
+    """Steps with their paths in the order of the file, groups among them; of rounds the first one."""
+    for i, phase in enumerate(protocol.phases, 1):
+        yield from _walk(phase.steps, str(i))
+
+
+def _walk(steps: tuple[ProtocolStep, ...], prefix: str) -> Iterator[tuple[str, ProtocolStep]]:
+    for i, step in enumerate(steps, 1):
+        path = f"{prefix}.{i}"
+        yield path, step
+        for part, inner in step.inner():
+            if part[0] != "r" or part == "r1":
+                yield from _walk(inner, f"{path}.{part}")
+
+
+def _lists(protocol: StudyProtocol, parts: list[str]) -> list[tuple[Any, tuple[ProtocolStep, ...], int]]:
+    """The lists of steps along a path, from outside.
+
+    Of each the group that it is in (None: the phase), and how many parts of the path lead to it.
+    """
+    try:
+        steps = protocol.phases[int(parts[0]) - 1].steps
+        lists: list[tuple[Any, tuple[ProtocolStep, ...], int]] = [(None, steps, 1)]
+        for i in range(2, len(parts) - 1, 2):
+            group = steps[int(parts[i - 1]) - 1]
+            steps = dict(group.inner())[parts[i]]
+            lists.append((group, steps, i + 1))
+    except (IndexError, KeyError, ValueError):
+        raise StudyError(f"there is no step {'.'.join(parts)} in protocol {protocol.name}") from None
+    return lists
+
+
+def _rounds(protocol: StudyProtocol, parts: list[str]) -> dict[str, int]:
+    values = {}
+    for group, _, length in _lists(protocol, [*parts, "1"] if len(parts) % 2 else parts):
+        if isinstance(group, RoundsStep) and group.name:
+            values[group.name] = int(parts[length - 1][1:])
+    return values
+
+
+def _first(steps: tuple[ProtocolStep, ...], prefix: list[str], values: Mapping[str, Any], start: int) -> list[str]:
+    """Path of the first step that is done in a list, from a place on, counted from 0; empty if there is none."""
+    for i, step in enumerate(steps[start:], start + 1):
+        path = [*prefix, str(i)]
+        if isinstance(step, BranchStep):
+            number = step.branch(values)
+            path = _first(step.branches[number - 1][1], [*path, f"b{number}"], values, 0) if number else []
+        elif isinstance(step, RoundsStep):
+            path = _first_round(step, path, values, 1)
+        if path:
+            return path
+    return []
+
+
+def _first_round(group: RoundsStep, path: list[str], values: Mapping[str, Any], start: int) -> list[str]:
+    for number in range(start, group.count + 1):
+        known = {**values, group.name: number} if group.name else values
+        found = _first(group.steps, [*path, f"r{number}"], known, 0)
+        if found:
+            return found
+    return []

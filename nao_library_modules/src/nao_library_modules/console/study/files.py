@@ -1,0 +1,164 @@
+"""Where studies are: DIR/STUDY/PSEUDONYM-N, a folder a trial; DIR/protocols, the protocols of this computer."""
+
+from __future__ import annotations
+
+import fcntl
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ...base.paths import config_file
+from ...base.suggestion import of_those
+from ...base.whole_file import write_whole
+from ...behaviors.language.yaml_text import dump, load
+from .errors import StudyError
+from .log import read_events
+from .protocol import StudyProtocol
+from .reader import NAME, NAME_FORM, read_protocol, read_protocol_file
+from .state import TrialState
+
+SHIPPED, OWN = "console/protocols", "protocols"
+PARTICIPANTS, ABOUT, PROTOCOL = "participants.yaml", "trial.yaml", "protocol.yaml"
+END = ".yaml"
+MEDIA = re.compile(r"(video|sound)(-\d+)?\.(mp4|avi|wav|ogg)")
+"""Files of a trial that pages may have."""
+_TRIAL = re.compile(r"(?P<participant>.+)-(?P<number>\d+)")
+
+
+@dataclass(frozen=True)
+class TrialFolder:
+    """A trial on the disk."""
+
+    path: Path
+    study: str
+    participant: str
+    number: int  # of the trial of this participant, from 1; also of one that was aborted
+
+    @property
+    def id(self) -> str:
+        """Its name: STUDY/PSEUDONYM-N."""
+        return f"{self.study}/{self.path.name}"
+
+    def state(self) -> TrialState:
+        """How far it is, from its events. Raises StudyError if they cannot be read."""
+        return TrialState.of(read_events(self.path))
+
+    def protocol(self) -> StudyProtocol:
+        """The protocol as it was when the trial began."""
+        return read_protocol_file(self.path / PROTOCOL)
+
+
+class StudyFiles:
+    """The files of all studies.
+
+    `folder`: of the studies; made when something is written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder.expanduser().absolute()
+
+    def protocols(self) -> dict[str, Path]:
+        """Protocols by their names: those that come along, and those of this computer, which go before."""
+        shipped = sorted(config_file(SHIPPED).glob(f"*{END}"))
+        own = sorted((self.folder / OWN).glob(f"*{END}"))
+        return {path.stem: path for path in (*shipped, *own)}
+
+    def protocol_text(self, name: str) -> str:
+        """Text of a protocol. Raises StudyError if there is none."""
+        known = self.protocols()
+        if name not in known:
+            raise StudyError(f"there is no protocol {name!r}{of_those(name, known)}")
+        return known[name].read_text(encoding="utf-8")
+
+    def store_protocol(self, name: str, text: str) -> Path:
+        """Store a protocol of this computer; where it is. Raises ConsoleFileError if it cannot be run."""
+        _require_name(name, "protocol")
+        read_protocol(text, name)
+        return write_whole(self.folder / OWN / f"{name}{END}", text)
+
+    def studies(self) -> list[str]:
+        """Names of the studies that have trials."""
+        return sorted(path.parent.name for path in self.folder.glob(f"*/{PARTICIPANTS}"))
+
+    def trials(self, study: str) -> list[TrialFolder]:
+        """Trials of a study, by participant and number."""
+        _require_name(study, "study")
+        found = []
+        for path in (self.folder / study).glob("*-*"):
+            match = _TRIAL.fullmatch(path.name)
+            if match and NAME.fullmatch(match["participant"]) and path.is_dir():
+                found.append(TrialFolder(path, study, match["participant"], int(match["number"])))
+        return sorted(found, key=lambda trial: (trial.participant, trial.number))
+
+    def trial(self, trial_id: str) -> TrialFolder:
+        """A trial by its id. Raises StudyError if there is none."""
+        study, _, name = trial_id.partition("/")
+        trials = {trial.id: trial for trial in self.trials(study)}
+        if trial_id not in trials:
+            raise StudyError(f"there is no trial {trial_id!r}{of_those(trial_id, trials)}")
+        return trials[trial_id]
+
+    def media(self, trial_id: str, name: str) -> Path:
+        """A video or sound of a trial. Raises StudyError if there is none, or the name is of something else."""
+        path = self.trial(trial_id).path / name
+        if not MEDIA.fullmatch(name) or path.is_symlink() or not path.is_file():
+            raise StudyError(f"there is no {name!r} of trial {trial_id}")
+        return path
+
+    def participants(self, study: str) -> dict[str, int]:
+        """Numbers of the participants of a study by their pseudonyms."""
+        path = self.folder / study / PARTICIPANTS
+        if not path.is_file():
+            return {}
+        numbers = load(path.read_text(encoding="utf-8"), path.name)
+        if not isinstance(numbers, dict) or not all(isinstance(number, int) for number in numbers.values()):
+            raise StudyError(f"{path} is to be a mapping of pseudonyms to numbers")
+        return dict(numbers)
+
+    def number_of(self, study: str, pseudonym: str) -> int:
+        """Number of a participant: a new one has that of the pseudonym (P07: 7) if it is free, else the lowest free."""
+        _require_name(pseudonym, "participant")
+        with self._locked(study):
+            numbers = self.participants(study)
+            if pseudonym not in numbers:
+                digits = re.search(r"\d+$", pseudonym)
+                number, taken = int(digits[0]) if digits else 0, {*numbers.values()}
+                if number < 1 or number in taken:
+                    number = next(i for i in range(1, len(taken) + 2) if i not in taken)
+                numbers[pseudonym] = number
+                write_whole(self.folder / study / PARTICIPANTS, dump(numbers))
+            return numbers[pseudonym]
+
+    def new_trial(self, study: str, pseudonym: str) -> TrialFolder:
+        """Folder of a new trial, which has the next number."""
+        with self._locked(study):
+            number = max((t.number for t in self.trials(study) if t.participant == pseudonym), default=0) + 1
+            path = self.folder / study / f"{pseudonym}-{number}"
+            path.mkdir()
+            return TrialFolder(path, study, pseudonym, number)
+
+    def describe(self, trial: TrialFolder, about: Mapping[str, Any]) -> None:
+        """Write what is told of a trial beside its events."""
+        write_whole(trial.path / ABOUT, dump(dict(about)))
+
+    @contextmanager
+    def _locked(self, study: str) -> Iterator[None]:
+        """Keep other programs from giving the same number at the same time."""
+        _require_name(study, "study")
+        folder = self.folder / study
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            file = (folder / ".lock").open("w")
+        except OSError as error:
+            raise StudyError(f"{folder} cannot be written: {error.strerror}") from error
+        with file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            yield
+
+
+def _require_name(name: str, what: str) -> None:
+    if not NAME.fullmatch(name) or (what == "study" and name == OWN):
+        raise StudyError(f"{name!r} is no name of a {what}: {NAME_FORM}")

@@ -1,0 +1,196 @@
+"""Recordings of a trial: a rosbag as a process of its own, videos and sounds by the servers.
+
+All of them go on when the console is killed, and a trial that is taken up again finds them by what its log tells.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from naoqi.errors import NaoError
+
+from ...base.whole_file import FileTrouble, move_whole
+from ..robots.commands import call
+from . import state as told
+from .protocol import WantedRecordings
+
+BAG, VIDEO, SOUND = "bag", "video", "sound"
+LONGEST_BAG = "4h"
+"""Of a bag whose console does not come back."""
+LIMIT = 30.0
+"""s of this computer that a server, or rosbag, has for the begin or the end of a recording."""
+PART = 0.05
+"""s between looks at a process that is no child of this one."""
+
+
+class TrialRecordings:
+    """Begins what is wanted of a trial, and ends what runs.
+
+    `folder`: of the trial; files come there where they can be reached. `wanted`: what is recorded.
+    """
+
+    def __init__(self, folder: Path, wanted: WantedRecordings) -> None:
+        self._folder, self._wanted = folder, wanted
+        self._bag: subprocess.Popen[bytes] | None = None
+
+    def begin(self, runner: Any) -> None:
+        """Begin what is wanted and does not run yet. What cannot be recorded is a deviation of the trial."""
+        running = dict(runner.state.recordings)
+        bag = running.get(BAG)
+        if bag is not None and not _is_bag(bag):
+            self._tell_end(runner, BAG, file=bag["file"], error="the process was gone")
+            bag = None
+        for kind, wanted, begin in (
+            (BAG, self._wanted.bag and bag is None, self._begin_bag),
+            (VIDEO, self._wanted.video and VIDEO not in running, self._begin_video),
+            (SOUND, self._wanted.sound and SOUND not in running, self._begin_sound),
+        ):
+            if wanted:
+                try:
+                    begin(runner)
+                except (NaoError, OSError) as error:
+                    runner.deviation(f"there is no {kind}: {error}")
+
+    def end(self, runner: Any) -> None:
+        """End what runs, and fetch the files."""
+        ends = {BAG: self._end_bag, VIDEO: self._end_video, SOUND: self._end_sound}
+        for kind, about in list(runner.state.recordings.items()):
+            try:
+                ends[kind](runner, about)
+            except (NaoError, OSError) as error:
+                self._tell_end(runner, kind, error=str(error))
+                runner.deviation(f"the {kind} could not be ended: {error}")
+
+    def _begin_bag(self, runner: Any) -> None:
+        file = _free(self._folder / "trial.bag")
+        space = runner.robot.namespace.rstrip("/")
+        topics = [topic if topic.startswith("/") else f"{space}/{topic}" for topic in self._wanted.bag]
+        command = ["rosbag", "record", "--lz4", f"--duration={LONGEST_BAG}", "-O", str(file), *topics]
+        with (self._folder / "rosbag.log").open("ab") as output:
+            self._bag = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=output,
+                start_new_session=True,  # neither Ctrl-C nor the end of the console ends it
+            )
+        self._tell_begin(runner, BAG, file=file.name, pid=self._bag.pid, topics=topics)
+
+    def _end_bag(self, runner: Any, about: Mapping[str, Any]) -> None:
+        pid = int(about["pid"])
+        if _is_bag(about):
+            os.killpg(pid, signal.SIGINT)
+        if self._bag is not None and self._bag.pid == pid:
+            self._bag.wait(LIMIT)
+        else:
+            _wait_for_end(pid)
+        file = self._folder / str(about["file"])
+        problem = {} if file.exists() else {"error": "rosbag left no whole file: see rosbag.log"}
+        self._tell_end(runner, BAG, file=file.name, **problem)
+
+    def _begin_video(self, runner: Any) -> None:
+        fields = {"id": self._name(runner), "camera": self._wanted.video, "file_type": "mp4"}
+        run = self._send(runner, "NaoVision", "startRecording", **fields)
+        self._tell_begin(runner, VIDEO, name=fields["id"], at=_path_of(run))
+
+    def _end_video(self, runner: Any, about: Mapping[str, Any]) -> None:
+        run = self._send(runner, "NaoVision", "stopRecording", id=about["name"])
+        for video in run.result.get("recordings") or [{}]:
+            file = self._fetch(video.get("path", ""), f"video{Path(video.get('path', '')).suffix or '.mp4'}")
+            self._tell_end(
+                runner,
+                VIDEO,
+                file=file,
+                began=_seconds(video.get("began")),
+                duration=video.get("duration", 0.0),
+                error=video.get("error", "") if file else "there is no file",
+            )
+
+    def _begin_sound(self, runner: Any) -> None:
+        name = f"{self._name(runner)}.wav"
+        run = self._send(runner, "nao_audio_in", "startRecording", str_param=name, overwrite=True)
+        results = run.result.get("results") or [{}]
+        self._tell_begin(runner, SOUND, name=name, began=_seconds(results[-1].get("end")) or runner.robot.now())
+
+    def _end_sound(self, runner: Any, about: Mapping[str, Any]) -> None:
+        run = self._send(runner, "nao_audio_in", "stopRecording")
+        for sound in run.result.get("files") or [{}]:
+            file = self._fetch(sound.get("file", ""), "sound.wav")
+            duration, began = sound.get("duration", 0.0), about.get("began")
+            problem = {} if file else {"error": f"on the robot alone: {sound.get('path', '')}"}
+            self._tell_end(runner, SOUND, file=file, began=began, duration=duration, **problem)
+
+    @staticmethod
+    def _send(runner: Any, server: str, function: str, **fields: Any) -> Any:
+        run = runner.robot.send(call(server, function, **fields))
+        if not run.wait(LIMIT):
+            run.cancel()
+            raise NaoError(f"{server} does not answer within {LIMIT:g} s")
+        if run.state != "succeeded":
+            raise NaoError(run.text or run.state)
+        return run
+
+    @staticmethod
+    def _name(runner: Any) -> str:
+        return runner.id.replace("/", "_")[-64:]
+
+    def _fetch(self, path: str, name: str) -> str:
+        """Put a file of a server into the folder; its name there, empty if it is not on this computer."""
+        source = Path(path)
+        if not path or not source.is_file():
+            return ""
+        try:
+            return move_whole(source, self._folder / name).name
+        except FileTrouble:
+            return ""
+
+    @staticmethod
+    def _tell_begin(runner: Any, kind: str, **about: Any) -> None:
+        runner.tell(told.RECORDING_BEGAN, f"the {kind} is recorded", recording=kind, **about)
+
+    @staticmethod
+    def _tell_end(runner: Any, kind: str, **about: Any) -> None:
+        error = about.get("error", "")
+        text = f"the {kind} has ended" + (f": {error}" if error else "")
+        runner.tell(told.RECORDING_ENDED, text, recording=kind, **about)
+
+
+def _is_bag(about: Mapping[str, Any]) -> bool:
+    """Whether the process of a bag runs: processes of other programs may have had its number since."""
+    try:
+        command = Path(f"/proc/{int(about['pid'])}/cmdline").read_bytes()
+    except (OSError, ValueError):
+        return False
+    return str(about["file"]).encode() in command and b"record" in command
+
+
+def _wait_for_end(pid: int) -> None:
+    """Wait for the end of a process that is no child of this one, which nothing tells: look at it now and then."""
+    limit = time.monotonic() + LIMIT
+    while Path(f"/proc/{pid}").exists() and time.monotonic() < limit:
+        time.sleep(PART)
+
+
+def _free(path: Path) -> Path:
+    """A name that no recording has had in this trial."""
+    number, name = 2, path
+    while name.exists() or name.with_suffix(".bag.active").exists():
+        name = path.with_name(f"{path.stem}-{number}{path.suffix}")
+        number += 1
+    return name
+
+
+def _path_of(run: Any) -> str:
+    answers = run.result.get("memList") or [""]
+    return str(answers[0])
+
+
+def _seconds(value: Any) -> float | None:
+    to_sec = getattr(value, "to_sec", None)
+    return float(to_sec() if to_sec is not None else value or 0.0) or None

@@ -1,0 +1,250 @@
+"""The studies of a console: begins trials, takes them up again, and knows those that run."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import platform
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, replace
+from typing import Any
+from xml.etree import ElementTree
+
+from ...base.paths import config_file
+from .conditions import filled
+from .errors import StudyError
+from .files import PROTOCOL, StudyFiles, TrialFolder
+from .log import TrialLog, write_events_table
+from .order import order_of
+from .protocol import StudyProtocol, WantedRecordings
+from .reader import hash_of
+from .recordings import TrialRecordings
+from .runner import TrialRunner
+from .state import FINISHED, TrialState
+
+LONGEST_SETTING = 500
+"""Characters of a parameter that is kept with a trial; descriptions of robots are longer."""
+
+
+class Studies:
+    """Studies in a folder. Its functions may be called from any thread.
+
+    `files`: of the studies. `senses`: holds what adds touches, words and faces to the events of a robot while a trial
+    runs; returns what ends that.
+    """
+
+    def __init__(self, files: StudyFiles, senses: Callable[[Any], Callable[[], None]] = lambda _: lambda: None) -> None:
+        self.files = files
+        self._senses = senses
+        self._lock = threading.Lock()
+        self._runners: dict[str, TrialRunner] = {}
+        self._listeners: list[Callable[[], None]] = []
+
+    def running(self, namespace: str) -> TrialRunner | None:
+        """The trial that runs on a robot, or was the last one."""
+        with self._lock:
+            return self._runners.get(namespace)
+
+    def open_trials(self) -> list[tuple[TrialFolder, TrialState]]:
+        """Trials that were begun, are not over, and run nowhere in this program."""
+        with self._lock:
+            here = {runner.id for runner in self._runners.values() if not runner.state.over}
+        found = []
+        for study in self.files.studies():
+            for trial in self.files.trials(study):
+                state = trial.state()
+                if state.status and not state.over and trial.id not in here:
+                    found.append((trial, state))
+        return found
+
+    def position_of(self, protocol: StudyProtocol, pseudonym: str) -> int:
+        """Which of his trials, from 1, is the next of a participant: the first that is not finished.
+
+        Raises StudyError if all are.
+        """
+        finished = {
+            state.about.get("position")
+            for trial in self.files.trials(protocol.name)
+            if trial.participant == pseudonym
+            for state in (trial.state(),)
+            if state.status == FINISHED
+        }
+        count = len(order_of(protocol, 1))
+        position = next((i for i in range(1, count + 1) if i not in finished), 0)
+        if not position:
+            raise StudyError(f"{pseudonym} has done all {count} trials of {protocol.name}")
+        return position
+
+    def begin(
+        self,
+        protocol: StudyProtocol,
+        pseudonym: str,
+        robot: Any,
+        by: str = "",
+        position: int = 0,
+        record: WantedRecordings | None = None,
+        listener: Callable[[TrialRunner], None] | None = None,
+    ) -> TrialRunner:
+        """Begin a trial.
+
+        Args:
+            protocol: Of the study.
+            pseudonym: Of the participant.
+            robot: The `RobotClient`.
+            by: Who begins it.
+            position: Which of the participant's trials, from 1; 0: the first that is not finished.
+            record: What is recorded; as the protocol has it without.
+            listener: Called after each event, also the first one.
+
+        Raises:
+            StudyError: It cannot begin: a trial runs on the robot, the participant is done, files cannot be written.
+        """
+        with self._lock:
+            self._require_free(robot)
+            number = self.files.number_of(protocol.name, pseudonym)
+            order = order_of(protocol, number)
+            position = position or self.position_of(protocol, pseudonym)
+            if not 1 <= position <= len(order):
+                raise StudyError(f"there is no trial {position} in {protocol.name}: a participant has {len(order)}")
+            condition = order[position - 1]
+            wanted = protocol.record if record is None else record
+            trial = self.files.new_trial(protocol.name, pseudonym)
+            (trial.path / PROTOCOL).write_text(protocol.text, encoding="utf-8")
+            given = {"participant": pseudonym, "number": number, "trial": position, "trials": len(order)}
+            values = {**protocol.values_in(condition), **given}
+            values = {name: filled(each, values) if isinstance(each, str) else each for name, each in values.items()}
+            about = {
+                "study": protocol.name,
+                "participant": pseudonym,
+                "number": number,
+                "position": position,
+                "condition": condition,
+                "order": order,
+                "seed": protocol.seed,
+                "protocol_sha256": hash_of(protocol.text),
+                "record": _plain(asdict(wanted)),
+            }
+            self.files.describe(
+                trial,
+                {
+                    **about,
+                    "trial": trial.id,
+                    "by": by,
+                    "robot": robot.namespace,
+                    "began": robot.now(),
+                    "versions": versions(),
+                    "settings": settings(robot.namespace),
+                },
+            )
+            return self._start(
+                protocol, trial, robot, by, {**about, "trial": trial.id, "values": values}, wanted, listener
+            )
+
+    def take_up(
+        self, trial_id: str, robot: Any, by: str = "", listener: Callable[[TrialRunner], None] | None = None
+    ) -> TrialRunner:
+        """Go on with a trial whose console was gone, behind the last step that had ended.
+
+        Raises StudyError if it is over, runs elsewhere, or a trial runs on the robot.
+        """
+        with self._lock:
+            self._require_free(robot)
+            trial = self.files.trial(trial_id)
+            state = trial.state()
+            if state.over or not state.status:
+                raise StudyError(f"trial {trial_id} is {state.status or 'empty'}: it cannot be taken up again")
+            record = dict(state.about.get("record", {}))
+            wanted = replace(WantedRecordings(**record), bag=tuple(record.get("bag", ())))
+            return self._start(trial.protocol(), trial, robot, by, state.about, wanted, listener)
+
+    def on_change(self, listener: Callable[[], None]) -> Callable[[], None]:
+        """Have a function called when a trial begins or is over; returns what ends that."""
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener)
+
+    def _start(
+        self,
+        protocol: StudyProtocol,
+        trial: TrialFolder,
+        robot: Any,
+        by: str,
+        about: Mapping[str, Any],
+        wanted: WantedRecordings,
+        listener: Callable[[TrialRunner], None] | None,
+    ) -> TrialRunner:
+        trial_log = TrialLog(trial.path)
+        state = trial.state()  # read behind the lock of the log
+        leave = self._senses(robot)
+
+        def end(runner: TrialRunner) -> None:
+            leave()
+            write_events_table(trial.path)
+            self._tell()
+
+        runner = TrialRunner(
+            protocol, robot, trial_log, state, about, ros_after, TrialRecordings(trial.path, wanted), end
+        )
+        self._runners[robot.namespace] = runner
+        if listener is not None:
+            runner.on_change(listener)
+        runner.start(by)
+        self._tell()
+        return runner
+
+    def _require_free(self, robot: Any) -> None:
+        runner = self._runners.get(robot.namespace)
+        if runner is not None and not runner.wait(0):
+            raise StudyError(f"trial {runner.id} runs on this robot: it has to be over before")
+
+    def _tell(self) -> None:
+        for listener in list(self._listeners):
+            listener()
+
+
+def ros_after(seconds: float, callback: Callable[[], None]) -> Callable[[], None]:
+    """Have a function called once after so many s of ROS time; returns what prevents that."""
+    import rospy
+
+    timer = rospy.Timer(rospy.Duration.from_sec(seconds), lambda _: callback(), oneshot=True)
+    return timer.shutdown
+
+
+def versions() -> dict[str, str]:
+    """Of what a trial runs with."""
+    package = ElementTree.parse(config_file("limits.json").parents[1] / "package.xml").findtext("version", "")
+    found = {"nao_library": package, "python": platform.python_version(), "system": platform.platform()}
+    for name in ("nicegui", "rospy"):
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue
+    return {**found, "ros": os.environ.get("ROS_DISTRO", "")}
+
+
+def settings(namespace: str) -> dict[str, Any]:
+    """Parameters of the master below a namespace, but for long texts."""
+    import rospy
+
+    try:
+        found = rospy.get_param(namespace)
+    except Exception as error:  # rospy raises socket.error, ROSException, KeyError
+        return {"error": str(error)}
+    return _short(found) if isinstance(found, dict) else {}
+
+
+def _short(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(name): _short(each) for name, each in value.items()}
+    if isinstance(value, list):
+        return [_short(each) for each in value][:LONGEST_SETTING]
+    text = str(value)
+    if len(text) > LONGEST_SETTING:
+        return f"{text[:40]}... ({len(text)} characters)"
+    return value if isinstance(value, (bool, int, float, str)) else text
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _plain(each) for name, each in value.items()}
+    return [_plain(each) for each in value] if isinstance(value, (list, tuple)) else value

@@ -1,0 +1,259 @@
+"""A behaviour that is edited: its text, what is read of it, and the way back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...behaviors.language.errors import BehaviorError, Problem
+from ...behaviors.language.model import Behavior
+from ...behaviors.language.reader import read
+from ...behaviors.language.yaml_text import load
+from .steps import functions_in, group_of, kind_of_step, place_of, shifted, step_path, stretches
+from .yaml_places import (
+    EditRefused,
+    Place,
+    delete_item,
+    delete_key,
+    insert_item,
+    move_item,
+    set_value,
+    value_at,
+)
+
+MOST_KEPT = 200
+"""Former texts."""
+TEMPLATE = """\
+help: {help}
+do:
+  - wait: 1.0
+"""
+SHORTEST = 0.05
+"""s that a step has at least which is stretched by hand."""
+
+
+class BehaviorDocument:
+    """The text of a behaviour and its history; every edit is an edit of the text. For one thread.
+
+    Args:
+        name: That it is stored under; empty for a new one.
+        shipped: Whether it comes with the library: it is stored under another name.
+
+    Attributes:
+        text: As it is now.
+        behavior: As far as it can be read; None where it cannot.
+        problems: What is wrong with the text by itself.
+        content: Its values; None where it is no YAML.
+    """
+
+    def __init__(self, name: str, text: str, shipped: bool = False) -> None:
+        self.name = name
+        self.shipped = shipped
+        self._stored = text
+        self._before: list[str] = []
+        self._after: list[str] = []
+        self._take(text)
+
+    @classmethod
+    def new(cls, help_: str = "What it does.") -> BehaviorDocument:
+        """One that is not stored yet."""
+        document = cls("", TEMPLATE.format(help=help_))
+        document._stored = ""
+        return document
+
+    @property
+    def changed(self) -> bool:
+        """Whether it differs from what is stored."""
+        return self.text != self._stored
+
+    @property
+    def can_undo(self) -> bool:
+        return bool(self._before)
+
+    @property
+    def can_redo(self) -> bool:
+        return bool(self._after)
+
+    @property
+    def file(self) -> str:
+        """What problems call its file."""
+        return f"{self.name or 'new'}.yaml"
+
+    def stored(self, name: str) -> None:
+        """Note that it is stored as it is now."""
+        self.name, self.shipped, self._stored = name, False, self.text
+
+    def set_text(self, text: str) -> None:
+        """Replace the whole text."""
+        if text != self.text:
+            self._before = [*self._before, self.text][-MOST_KEPT:]
+            self._after.clear()
+            self._take(text)
+
+    def undo(self) -> None:
+        if self._before:
+            self._after.append(self.text)
+            self._take(self._before.pop())
+
+    def redo(self) -> None:
+        if self._after:
+            self._before.append(self.text)
+            self._take(self._after.pop())
+
+    # --- looking ------------------------------------------------------------------------------------------------------
+
+    def step(self, path: str) -> Any:
+        """The values of a step. Raises EditRefused if there is none of that path."""
+        return value_at(self.content, place_of(self.content, path))
+
+    def has(self, path: str) -> bool:
+        try:
+            self.step(path)
+        except EditRefused:
+            return False
+        return True
+
+    def in_timeline(self, path: str) -> bool:
+        """Whether a step is an entry of a timeline."""
+        return place_of(self.content, path)[-2] == "timeline"
+
+    # --- edits: each raises EditRefused with what to do instead -------------------------------------------------------
+
+    def set_key(self, path: str, key: str, value: Any) -> None:
+        """Give a step another value of a key of its own, as label, at, for or wait; None removes it."""
+        place = self._place(path)
+        if isinstance(value_at(self.content, place), list):
+            raise EditRefused(f"a list of steps has no {key}: write `do: [...]`, which may have it")
+        self._change((*place, key), value)
+
+    def set_field(self, path: str, number: int, field: str, value: Any) -> None:
+        """Give a field of one of the functions of a step another value; None removes it. `number`: counted from 0."""
+        functions = functions_in(self.step(path))
+        if number >= len(functions):
+            raise EditRefused(f"step {path} has no function {number + 1}: the text has changed")
+        self._change((*self._place(path), *functions[number][3], field), value)
+
+    def set_parameter(self, path: str, name: str, value: Any) -> None:
+        """Give a parameter of a box another value; None: its default."""
+        place = self._place(path)
+        given = value_at(self.content, place).get("parameters")
+        if given is None and value is None:
+            return
+        if given is None:
+            self._change((*place, "parameters"), {name: value})
+        else:
+            self._change((*place, "parameters", name), value)
+
+    def shift(self, path: str, seconds: float) -> None:
+        """Have an entry of a timeline begin later by so many s, or sooner."""
+        step = self.step(path)
+        if not self.in_timeline(path) or not isinstance(step, dict):
+            raise EditRefused("only entries of a timeline have a time: others follow each other")
+        if "barrier" in step:
+            raise EditRefused("a barrier comes when all above has ended")
+        self.set_key(path, "at", shifted(step.get("at", 0.0), seconds))
+
+    def stretch(self, path: str, former: float, seconds: float) -> None:
+        """Have a step take so many s. `former`: s that it takes now."""
+        for place, value in stretches(self.step(path)):
+            old = max(former, SHORTEST)
+            self._set((*self._place(path), *place), value(old, max(seconds, SHORTEST)))
+            return
+        raise EditRefused("it takes what it takes: give it a duration, or a time after which it is ended (for)")
+
+    def insert(self, step: Any, path: str = "", inside: bool = False, begin: float = 0.0) -> str:
+        """Put in a step behind another one, inside of a group behind all, or at the end of all; its path.
+
+        `begin`: s from the beginning, where it becomes an entry of a timeline.
+        """
+        place, index, above = self._spot(path, inside)
+        if place[-1] == "timeline":
+            step = {**step, "at": round(begin, 2)} if "barrier" not in step else step
+        self.set_text(insert_item(self.text, place, index, step))
+        return f"{above}.{index + 1}" if above else str(index + 1)
+
+    def duplicate(self, path: str) -> str:
+        """Put in a step once more behind itself, without its label; the path of the second."""
+        place = self._place(path)
+        step = self.step(path)
+        if isinstance(step, dict):
+            step = {key: value for key, value in step.items() if key != "label"}
+        self.set_text(insert_item(self.text, place[:-1], int(place[-1]) + 1, step))
+        return self._with_number(path, int(place[-1]) + 2)
+
+    def delete(self, path: str) -> None:
+        self.set_text(delete_item(self.text, self._place(path)))
+
+    def move(self, path: str, target: str, inside: bool = False, after: bool = True) -> None:
+        """Move a step beside another one, or into a group behind all that is in it.
+
+        An entry of a timeline that leaves it has no time any more; one that comes to one gets one.
+        """
+        place, index, _ = self._spot(target, inside)
+        if not inside and not after:
+            index -= 1
+        source = self._place(path)
+        step, text = self.step(path), self.text
+        if isinstance(step, dict):
+            if place[-1] != "timeline" and "at" in step:
+                text = delete_key(text, (*source, "at"))
+            elif place[-1] == "timeline" and "at" not in step and "barrier" not in step:
+                text = set_value(text, (*source, "at"), 0.0)
+        self.set_text(move_item(text, source, place, index))
+
+    def reorder(self, path: str, by: int) -> str:
+        """Move a step among those beside it; where it is then. `by`: 1: later, -1: sooner."""
+        place = self._place(path)
+        position = int(place[-1])
+        last = len(value_at(self.content, place[:-1])) - 1
+        new = min(max(position + by, 0), last)
+        if new != position:
+            self.set_text(move_item(self.text, place, place[:-1], new + (new > position)))
+        return self._with_number(path, new + 1)
+
+    # --- helpers ------------------------------------------------------------------------------------------------------
+
+    def _take(self, text: str) -> None:
+        self.text = text
+        self.problems: tuple[Problem, ...] = ()
+        self.behavior: Behavior | None = None
+        self.content: Any = None
+        try:
+            self.content = load(text, self.name or "new")
+            self.behavior = read(text, self.name or "new", self.file)
+        except BehaviorError as error:
+            self.behavior, self.problems = error.readable, error.problems
+
+    def _place(self, path: str) -> Place:
+        return place_of(self.content, step_path(path))
+
+    def _spot(self, path: str, inside: bool) -> tuple[Place, int, str]:
+        """The list behind a step, or inside of it; the position there; and the path of the group that has the list."""
+        if not path:
+            return ("do",), len(value_at(self.content, ("do",))), ""
+        place = self._place(path)
+        if not inside:
+            return place[:-1], int(place[-1]) + 1, path.rpartition(".")[0]
+        step = value_at(self.content, place)
+        key = group_of(step)
+        if key is None:
+            raise EditRefused(f"a step {kind_of_step(step)} holds no others")
+        inner = (*place, key) if key else place
+        return inner, len(value_at(self.content, inner)), path
+
+    def _change(self, place: Place, value: Any) -> None:
+        if value is not None:
+            self._set(place, value)
+        elif place[-1] in (value_at(self.content, place[:-1]) or ()):
+            self._edit(lambda text: delete_key(text, place))
+
+    def _set(self, place: Place, value: Any) -> None:
+        self._edit(lambda text: set_value(text, place, value))
+
+    def _edit(self, edit: Callable[[str], str]) -> None:
+        self.set_text(edit(self.text))
+
+    @staticmethod
+    def _with_number(path: str, number: int) -> str:
+        above, dot, _ = path.rpartition(".")
+        return f"{above}{dot}{number}"

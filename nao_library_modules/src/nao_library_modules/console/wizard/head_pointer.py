@@ -1,0 +1,150 @@
+"""Turns the head by what is done on a camera picture. The only part of the wizard that talks to topics itself."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import Any
+
+import rospy
+from sensor_msgs.msg import CameraInfo, JointState
+
+from nao_library_msgs.msg import JointAnglesWithSpeed
+from naoqi.errors import NaoError
+
+from ...nao.camera_facts import CAMERA_NAMES, CAMERAS
+from ...nao.gaze import load_head
+from .pointing import HEAD, Angles, CameraLens, dragged, looked_at
+
+ANGLES, STATES = "joint_angles", "joint_states"
+PATIENCE = 3.0
+"""s of this computer that the first message may take."""
+DRAG_SPEED, LOOK_SPEED = 0.3, 0.15
+"""Fractions of the joints' top speed."""
+_NAMES = {name: CAMERA_NAMES[number] for number, name in CAMERAS.items()}
+
+
+class NoHead(NaoError):
+    """The head cannot be turned by a picture; the text tells what is missing."""
+
+
+class HeadPointer:
+    """Pointing on the pictures of one robot, for one page. One thread at a time.
+
+    Nothing is subscribed before the first pointing, and all of it ends with `close`.
+
+    ROS API:
+        Publishes `joint_angles` (nao_library_msgs/JointAnglesWithSpeed). Subscribes `joint_states` and, of the cameras
+        that are pointed on, `nao_robot/camera/NAME/camera_info`.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        """`robot`: the `robots.robot.RobotClient`."""
+        self._robot = robot
+        self._ends: list[Callable[[], None]] = []
+        self._changed = threading.Condition()
+        self._now: Angles | None = None
+        self._lenses: dict[str, CameraLens] = {}
+        self._asked: set[str] = set()
+        self._publisher: Any = None
+        self._drag: tuple[CameraLens, tuple[float, float], Angles] | None = None
+
+    def point(self, kind: str, camera: str, x: float, y: float, by: str) -> None:
+        """Take one event of the picture.
+
+        Args:
+            kind: click looks at the point; start, drag and end move the picture along.
+            camera: top or bottom.
+            x: Place in the picture, from 0 at the left to 1.
+            y: The same, from 0 at the top.
+            by: User who points.
+
+        Raises:
+            NoHead: The driver or the camera does not run.
+        """
+        if kind == "click":
+            lens, now = self._lens(camera), self._angles()
+            head = load_head()
+            angles = looked_at(head, head.cameras[_NAMES[camera]], lens, (x, y), now)
+            self._send(angles, LOOK_SPEED)
+            told = f"looks at a point of the {camera} picture"
+            self._robot.events.add("looked", told, by, camera=camera, x=x, y=y, angles=list(angles))
+        elif kind == "start":
+            self._drag = (self._lens(camera), (x, y), self._angles())
+        elif self._drag is not None:
+            lens, start, before = self._drag
+            angles = dragged(lens, start, (x, y), before)
+            self._send(angles, DRAG_SPEED)
+            if kind == "end":
+                self._drag = None
+                told = f"turns the head by the {camera} picture"
+                self._robot.events.add("looked", told, by, camera=camera, angles=list(angles))
+
+    def close(self) -> None:
+        """Forget the robot."""
+        for end in self._ends:
+            end()
+        self._ends.clear()
+        if self._publisher is not None:
+            self._publisher.unregister()
+            self._publisher = None
+
+    def _send(self, angles: Angles, speed: float) -> None:
+        self._publisher.publish(JointAnglesWithSpeed(joint_names=list(HEAD), joint_angles=list(angles), speed=speed))
+
+    def _angles(self) -> Angles:
+        if self._publisher is None:
+            connected = threading.Event()
+            self._publisher = rospy.Publisher(
+                self._robot.namespace + ANGLES,
+                JointAnglesWithSpeed,
+                subscriber_listener=_Connected(connected),
+                queue_size=1,
+                tcp_nodelay=True,
+            )
+            self._ends.append(self._robot.topic(STATES, JointState, self._on_states))
+            connected.wait(PATIENCE)
+        if not self._publisher.get_num_connections():
+            raise NoHead("nobody takes joint_angles: the driver's part nao_controller does not run")
+        with self._changed:
+            if not self._changed.wait_for(lambda: self._now is not None, PATIENCE):
+                raise NoHead("nobody tells where the head is: the driver's part nao_joint_states does not run")
+            return self._now  # type: ignore[return-value]
+
+    def _lens(self, camera: str) -> CameraLens:
+        if camera not in _NAMES:
+            raise NoHead(f"there is no camera {camera!r}: there are {', '.join(_NAMES)}")
+        if camera not in self._asked:
+            self._asked.add(camera)
+            topic = f"nao_robot/camera/{camera}/camera_info"
+            self._ends.append(self._robot.topic(topic, CameraInfo, lambda info: self._on_lens(camera, info)))
+        with self._changed:
+            if not self._changed.wait_for(lambda: camera in self._lenses, PATIENCE):
+                raise NoHead(f"nobody tells what the {camera} camera sees: the driver's part nao_camera does not run")
+            return self._lenses[camera]
+
+    def _on_states(self, states: JointState) -> None:
+        of = dict(zip(states.name, states.position))
+        if all(joint in of for joint in HEAD):
+            with self._changed:
+                self._now = (of[HEAD[0]], of[HEAD[1]])
+                self._changed.notify_all()
+
+    def _on_lens(self, camera: str, info: CameraInfo) -> None:
+        try:
+            lens = CameraLens.of(info.width, info.height, tuple(info.K))
+        except ValueError:
+            return
+        with self._changed:
+            self._lenses[camera] = lens
+            self._changed.notify_all()
+
+
+class _Connected(rospy.SubscribeListener):
+    """Sets an event once somebody subscribes."""
+
+    def __init__(self, event: threading.Event) -> None:
+        self._event = event
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
+        self._event.set()

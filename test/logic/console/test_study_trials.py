@@ -1,0 +1,218 @@
+"""Trials: controls, what is logged of them, what survives a kill, and the table."""
+
+from __future__ import annotations
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+from pathlib import Path
+
+import played_study
+import pytest
+from played_study import LIMIT, PlayedRobot, Trial
+
+from nao_library_modules.console.study import studies as module
+from nao_library_modules.console.study.errors import StudyError
+from nao_library_modules.console.study.log import EVENTS, TABLE, TrialLog, guarded, read_events
+from nao_library_modules.console.study.state import TrialState
+from nao_library_modules.console.study.table import summaries_of, table_of
+
+
+@pytest.fixture(autouse=True)
+def no_ros(monkeypatch):
+    monkeypatch.setattr(module, "settings", lambda namespace: {})
+    monkeypatch.setattr(module, "ros_after", lambda seconds, callback: lambda: None)
+
+
+@pytest.fixture
+def trial(tmp_path):
+    return Trial(tmp_path)
+
+
+def test_a_trial_does_its_steps_and_measures_the_reaction(trial):
+    state = trial.begin().play("no")
+    assert state.status == "finished"
+    assert [each.path for each in state.outcomes] == ["1.1", "2.1", "2.2", "2.3.b1.1", "2.4"]
+    assert (state.outcomes[1].answer, state.outcomes[1].seconds) == ("front head", pytest.approx(0.7))
+    assert trial.robot.runs[-1].command.chain[0][1]["str_param"] in ("Thanks, P01", "Right")
+
+
+def test_next_ends_a_step_without_answer_and_a_late_answer_counts_no_more(trial):
+    trial.begin().at("2.1").runner.next("ann")
+    trial.at("2.2").runner.next()
+    assert [each.outcome for each in trial.end().outcomes] == ["done", "skipped", "skipped", "done"]
+    assert trial.runner.state.values["head"] == "none"
+
+
+def test_repeat_begins_a_step_anew(trial):
+    trial.begin().at("2.1").runner.repeat()
+    trial.at("2.1", 2).touch(1.0)
+    trial.at("2.2").runner.choose("yes")
+    assert [each.outcome for each in trial.end().outcomes[1:3]] == ["repeated", "done"]
+
+
+def test_a_pause_ends_a_wait_that_begins_anew_behind_it(trial):
+    trial.begin().at("2.1").runner.pause()
+    trial.until(lambda: trial.runner.state.status == "paused")
+    trial.runner.go_on()
+    trial.at("2.1", 2).touch(1.0)
+    trial.at("2.2").runner.choose("yes")
+    assert trial.end().status == "finished"
+
+
+def test_abort_ends_the_goal_and_the_trial(trial):
+    trial.begin().at("2.1").runner.abort("ann")
+    assert trial.end().status == "aborted"
+    assert all(run.done for run in trial.robot.runs)
+
+
+def test_a_step_that_fails_waits_for_the_wizard(tmp_path):
+    trial = Trial(tmp_path, PlayedRobot(plays=())).begin().at("1.1")
+    assert trial.robot.sent.acquire(timeout=LIMIT)
+    trial.robot.runs[-1].end("aborted", "no voice")
+    trial.until(lambda: trial.runner.state.status == "held")
+    assert trial.runner.outcome.error == "no voice"
+    trial.runner.repeat()
+    trial.at("1.1", 2).runner.abort()
+    trial.end()
+
+
+def test_a_choice_that_there_is_not_is_refused(trial):
+    trial.begin().at("2.1")
+    with pytest.raises(StudyError, match="no choice 'yes'"):
+        trial.runner.choose("yes")
+    trial.runner.abort()
+    trial.end()
+
+
+def test_one_trial_at_a_time_runs_on_a_robot(trial):
+    trial.begin()
+    with pytest.raises(StudyError, match="runs on this robot"):
+        trial.studies.begin(trial.protocol, "P02", trial.robot)
+    trial.runner.abort()
+    trial.end()
+
+
+def test_a_participant_goes_on_with_the_first_trial_that_is_not_finished(trial):
+    trial.begin().runner.abort()
+    trial.end()
+    for _ in range(4):
+        trial.begin()
+        if trial.runner.state.values["trial"] > 1:
+            trial.at("2.1")
+        trial.play()
+    states = [each.state() for each in trial.files.trials("two_by_two")]
+    assert [state.about["position"] for state in states] == [1, 1, 2, 3, 4]
+    assert len({tuple(state.about["condition"].items()) for state in states[1:]}) == 4
+    with pytest.raises(StudyError, match="has done all 4 trials"):
+        trial.begin()
+
+
+def test_all_that_happens_to_the_robot_is_logged_with_notes_and_deviations(trial):
+    trial.begin().at("2.1")
+    trial.robot.events.add("heard", "a noise", loud=True)
+    trial.runner.note("looks away", "ann")
+    trial.runner.deviation("the door opened", "ann")
+    state = trial.play()
+    events = read_events(trial.files.trial("two_by_two/P01-1").path)
+    assert {"heard", "note", "deviation", "trial"} <= {each["kind"] for each in events}
+    assert (state.notes, state.deviations) == (1, 1)
+    assert (trial.files.folder / "two_by_two/P01-1" / TABLE).read_text().count("\n") == len(events) + 1
+
+
+KILLED = """
+    import os, signal, sys
+    from pathlib import Path
+    sys.path.append({support!r})
+    from played_study import Trial
+    from nao_library_modules.console.study import studies as module
+    module.settings = lambda namespace: {{}}
+    trial = Trial(Path({folder!r})).begin().at("2.1")
+    trial.touch(0.25)
+    trial.at("2.2")
+    trial.runner.note("the last words")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_a_trial_whose_program_was_killed_is_taken_up_at_the_step_that_had_not_ended(tmp_path):
+    code = KILLED.format(support=str(Path(played_study.__file__).parent), folder=str(tmp_path))
+    killed = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], timeout=60, check=False)
+    assert killed.returncode == -signal.SIGKILL
+    trial = Trial(tmp_path)
+    ((folder, state),) = trial.studies.open_trials()
+    assert (folder.id, state.status, state.path, state.notes) == ("two_by_two/P01-1", "interrupted", "2.1", 1)
+    trial.take_up().at("2.2", 2).runner.choose("yes")
+    state = trial.end()
+    assert state.status == "finished"
+    assert state.values["head_seconds"] == pytest.approx(0.25)
+    assert [each.outcome for each in state.outcomes] == ["done", "done", "stopped", "done", "done"]
+
+
+def test_a_line_that_was_cut_short_is_left_out_and_written_over(tmp_path):
+    log = TrialLog(tmp_path)
+    log.add({"kind": "note", "text": "whole"})
+    log.close()
+    with (tmp_path / EVENTS).open("ab") as file:
+        file.write(b'{"kind": "no')
+    assert [each["text"] for each in read_events(tmp_path)] == ["whole"]
+    log = TrialLog(tmp_path)
+    log.add({"kind": "note", "text": "next", "data": {"x": float("nan")}})
+    log.close()
+    assert [(each["n"], each["text"]) for each in read_events(tmp_path)] == [(1, "whole"), (2, "next")]
+
+
+def test_two_programs_do_not_write_one_log(tmp_path):
+    log = TrialLog(tmp_path)
+    with pytest.raises(StudyError, match="another program"):
+        TrialLog(tmp_path)
+    log.close()
+
+
+def test_what_is_logged_is_on_the_disk_within_half_a_second(tmp_path, monkeypatch):
+    synced, real = threading.Event(), os.fsync
+    log = TrialLog(tmp_path)
+    monkeypatch.setattr(os, "fsync", lambda descriptor: (real(descriptor), synced.set()))
+    log.add({"kind": "note"})
+    assert synced.wait(0.5)
+    log.close()
+
+
+def test_the_table_has_a_row_for_each_trial_and_step_and_no_formulas(trial):
+    for seconds in (0.5, 1.0):
+        trial.begin()
+        trial.play(seconds=seconds)
+    table = table_of(trial.files, "two_by_two")
+    rows = list(csv.DictReader(table.csv().splitlines()))
+    heads = [row for row in rows if row["label"] == "head"]
+    assert [row["reaction_s"] for row in heads] == ["0.5", "1.0"]
+    assert {"voice", "reply"} <= {*rows[0]}
+    found = [(each.label, each.count, each.mean) for each in summaries_of(table) if each.label == "head"]
+    assert sorted(found) == [("head", 1, 0.5), ("head", 1, 1.0)]
+
+
+@pytest.mark.parametrize("cell, cells", [("=1+1", "'=1+1"), ("-x", "'-x"), ("@a", "'@a"), (-1.5, -1.5), ("a=b", "a=b")])
+def test_cells_are_no_formulas(cell, cells):
+    assert guarded(cell) == cells
+
+
+@pytest.mark.parametrize("name", ["../x", "events.jsonl", "video.mp4/../trial.yaml", "video.mp4"])
+def test_only_videos_and_sounds_of_a_trial_are_given_to_pages(trial, name):
+    trial.begin().play()
+    with pytest.raises(StudyError):
+        trial.files.media("two_by_two/P01-1", name)
+
+
+@pytest.mark.parametrize("name", ["../up", "a/b", "", "protocols"])
+def test_names_of_studies_stay_inside_of_the_folder(trial, name):
+    with pytest.raises(StudyError):
+        trial.files.trials(name)
+
+
+def test_the_state_of_a_log_is_that_of_its_trial(trial):
+    state = trial.begin().play()
+    assert TrialState.of(read_events(trial.files.trial("two_by_two/P01-1").path)) == state

@@ -1,0 +1,168 @@
+"""The console in a headless Chromium, beside the stack of the tests."""
+
+from __future__ import annotations
+
+import re
+import signal
+from pathlib import Path
+
+from ros_stack import start_program
+from selenium import webdriver
+from selenium.common.exceptions import StaleElementReferenceException, WebDriverException
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+
+from nao_library_modules.processes.own_stack import can_connect, free_port
+from nao_sim_bridge.testing import StackNotReady, wait_until
+
+DRIVER = "/usr/bin/chromedriver"
+OPTIONS = ("--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader", "--window-size=1400,1000", "--mute-audio")
+PROGRAM = Path(__file__).resolve().parents[2] / "nao_library_modules" / "nodes" / "nao"
+LIMIT = 60.0
+"""s of this computer for whatever is waited for."""
+
+
+class ConsoleProgram:
+    """`nao console`, started for a test.
+
+    Attributes:
+        url: Address with the token of an operator. observer: with that of an observer. base: without, no slash.
+    """
+
+    def __init__(self, folder, *options):
+        self.folder = folder
+        self._options = options
+        self.port = free_port()
+        self.base = f"http://127.0.0.1:{self.port}"
+        self._starts = 0
+        self.start()
+
+    def start(self):
+        self._starts += 1
+        self.log = self.folder / f"console_{self._starts}.txt"
+        with self.log.open("wb") as output:
+            self.process = start_program(
+                PROGRAM, "console", "--port", str(self.port), "--studies", str(self.folder / "studies"),
+                *self._options, stdout=output, stderr=output,
+            )  # fmt: skip
+        wait_until(self._answers, LIMIT, "the console's pages")
+        self.url, self.observer = re.findall(r"http://\S+token=\S+", self.log.read_text())[:2]
+
+    def kill(self):
+        """As if the computer took it away."""
+        self.process.kill()
+        self.process.wait(LIMIT)
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGINT)
+            self.process.wait(LIMIT)
+
+    def _answers(self):
+        assert self.process.poll() is None, self.log.read_text()
+        return "to look on" in self.log.read_text() and can_connect(self.port)
+
+
+class ConsoleBrowser:
+    """One browser with one page. Elements are found by CSS, waited for, and never kept."""
+
+    def __init__(self, program):
+        self.program = program
+        options = webdriver.ChromeOptions()
+        for option in OPTIONS:
+            options.add_argument(option)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        self.driver = webdriver.Chrome(options=options, service=Service(DRIVER))
+
+    def enter(self, url=""):
+        """Show the token, as who opens the printed address."""
+        self.driver.get(url or self.program.url)
+        return self
+
+    def open(self, path, robot="/"):
+        """Open a page, and wait until it is connected."""
+        self.driver.get(f"{self.program.base}{path}?robot={robot}")
+        self.until(
+            lambda: self.all(".nao-stop") and self.script("return window.socket && window.socket.connected"), path
+        )
+
+    def all(self, css, text=""):
+        """The elements of a selector that are shown and have a text in them."""
+        found = []
+        for element in self.driver.find_elements(By.CSS_SELECTOR, css):
+            try:
+                if element.is_displayed() and text.lower() in element.text.lower():
+                    found.append(element)
+            except StaleElementReferenceException:
+                continue  # the page has drawn it anew
+        return found
+
+    def one(self, css, text=""):
+        """Wait for an element."""
+        return self.until(lambda: (self.all(css, text) or [None])[0], f"{css} {text}")
+
+    def click(self, css, text=""):
+        """Click as soon as there is something that can be clicked."""
+
+        def try_it():
+            elements = self.all(css, text)
+            if not elements:
+                return False
+            try:
+                elements[0].click()
+            except WebDriverException:
+                return False
+            return True
+
+        self.until(try_it, f"a click on {css} {text}")
+
+    def type(self, css, text):
+        """Replace what a field holds."""
+        field = self.one(css)
+        ActionChains(self.driver).click(field).key_down("\ue009").send_keys("a").key_up("\ue009").perform()
+        field.send_keys(text)
+
+    def keys(self, *keys):
+        """Press keys wherever the focus is."""
+        ActionChains(self.driver).send_keys(*keys).perform()
+
+    def script(self, text, *arguments):
+        return self.driver.execute_script(text, *arguments)
+
+    def text(self):
+        """What is to be read on the page."""
+        return self.driver.find_element(By.TAG_NAME, "body").text
+
+    def reads(self, *texts):
+        """Wait until the page says all of these."""
+        self.until(lambda: all(text in self.text() for text in texts), f"the page says {texts}")
+
+    def until(self, condition, what):
+        """Wait for something; a screenshot is left beside the log of the console where it does not come."""
+        found = None
+
+        def holds():
+            nonlocal found
+            found = condition()
+            return bool(found)
+
+        try:
+            wait_until(holds, LIMIT, what)
+        except StackNotReady:
+            self.driver.save_screenshot(str(self.program.folder / "page.png"))
+            raise
+        return found
+
+    def online(self, there):
+        """Take the network away, or give it back."""
+        self.driver.execute_cdp_cmd("Network.enable", {})
+        conditions = {"offline": not there, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1}
+        self.driver.execute_cdp_cmd("Network.emulateNetworkConditions", conditions)
+
+    def complaints(self):
+        """What the browser has logged as an error."""
+        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] == "SEVERE"]
+
+    def close(self):
+        self.driver.quit()
