@@ -6,6 +6,7 @@ from nav_msgs.msg import Odometry
 from services import service
 from std_srvs.srv import SetBool
 
+from nao_library_msgs.msg import WorldShapes
 from nao_library_msgs.srv import (
     CaptionFilm,
     MoveObject,
@@ -13,6 +14,7 @@ from nao_library_msgs.srv import (
     ReleaseSensors,
     RemoveObject,
     SetFloat,
+    SetSpeed,
     StartFilm,
     StopFilm,
     TouchSensors,
@@ -98,6 +100,22 @@ class SimulatorServices(RobotTestCase):
         self.assertNotIn("b", self.simulation.objects())
         self.bad(remove(name="b"), "b")
         self.bad(place(description="{}", kind="ball"), "description is '{}', allowed is empty when")
+
+    def test_shapes_tell_where_things_are(self):
+        self.good(
+            service("nao_sim/place_object", PlaceObject)(name="cone", kind="ball", size=[0.1], pose=at(1, 0, 0.1))
+        )
+        told = rospy.wait_for_message("nao_sim/shapes", WorldShapes, timeout=60.0)
+        (shape,) = (shape for shape in told.shapes if shape.thing == "cone")
+        self.assertEqual((shape.what, shape.kind, list(shape.size)), ("ball", "sphere", [0.1]))
+        self.assertAlmostEqual(shape.pose.position.x, 1.0, delta=0.01)
+
+    def test_the_speed_is_set_and_a_wrong_one_is_told(self):
+        set_speed, before = service("nao_sim/set_speed", SetSpeed), self.simulation.speed()
+        self.addCleanup(set_speed, before)
+        self.good(set_speed(2.0))
+        self.assertEqual(self.simulation.speed(), 2.0)
+        self.bad(set_speed(-1.0), "speed")
 
     def test_the_charger_is_plugged_in_and_the_battery_set(self):
         plug, charge = service("nao_sim/plug_charger", SetBool), service("nao_sim/set_battery", SetFloat)

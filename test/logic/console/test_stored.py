@@ -7,20 +7,16 @@ from types import SimpleNamespace
 import pytest
 
 from nao_library_modules.behaviors.language.errors import NoSuchBehavior
+from nao_library_modules.console.robots.errors import NotThere
 from nao_library_modules.console.timeline.projected import read_run
 from nao_library_modules.console.timeline.stored import ALONE, StoredBehaviors, problems_in
 from nao_library_msgs.msg import BehaviorInfo, BehaviorProblem
-from naoqi.errors import NaoError
 
 BOX = "help: A box.\ndo: [{wait: 1.0}]\n"
 
 
-class Nobody(NaoError):
-    """There is no service."""
-
-
 def nobody(*_, **__):
-    raise Nobody("it does not run")
+    raise NotThere("it does not run")
 
 
 class Service:

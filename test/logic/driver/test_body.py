@@ -14,6 +14,7 @@ from nao_library_modules.base.paths import config_file
 from nao_library_modules.driver.base.robot_facts import KEYS, facts_of, info_fields
 from nao_library_modules.driver.joints.joint_sensors import JointSensors, read_motors, torque_per_ampere
 from nao_library_modules.driver.life.blinking import Blinks
+from nao_library_modules.driver.life.led_states import joined, shown
 from nao_library_modules.driver.sensors import body_reports as reports
 from nao_library_modules.driver.sensors.body_reports import BATTERY_FLAGS, Thresholds, battery_report, network_reports
 from nao_library_modules.driver.sensors.foot_pressure import keys_of, read_foot
@@ -213,3 +214,15 @@ def test_pauses_between_blinks_are_cut_at_both_ends_and_what_cannot_be_blinked_i
         ("blink_rate_sd", Blinks([RED], BLACK, 0.3, 1.0, -0.1)),
     ):
         refused(words, blinks.check, error=BadGoal)
+
+
+def test_lights_show_their_colours():
+    chest, ear, head = "ChestBoard/Led/{}/Actuator/Value", "Ears/Led/Left/0Deg/Actuator/Value", "Head/Led/Front/A/Value"
+    parts = {f"ChestLeds{part}": (chest.format(part),) for part in ("Red", "Green", "Blue")}
+    lights = joined({**parts, "LeftEarLed1": (ear,), "Brain0": (head,)})
+    values = {chest.format("Green"): 0.5, chest.format("Red"): None, ear: 1.0, head: 2.0}
+    assert shown(lights, values) == {
+        "ChestLeds": (0.0, 0.5, 0.0),
+        "LeftEarLed1": (0.0, 0.0, 1.0),
+        "Brain0": (1.0, 1.0, 1.0),
+    }

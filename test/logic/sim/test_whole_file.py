@@ -8,7 +8,8 @@ import re
 import pytest
 from disks import files, room
 
-from nao_sim_bridge.base.whole_file import FileTrouble, WholeFile, memory_file, tidy, write_whole
+from nao_sim_bridge.base.memory_file import memory_file
+from nao_sim_bridge.base.whole_file import FileTrouble, WholeFile, tidy, write_whole
 
 FULL = r"{} cannot be written: File too large, \d+\.\d MB free in {}"
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 import time
 
 import numpy as np
@@ -106,7 +108,7 @@ def test_equal_seeds_and_calls_are_equal_to_the_last_bit(noise, delay):
         assert stumble(first) == stumble(second)
 
 
-@pytest.mark.parametrize("world, robots", [("empty", 1), ("empty", 2), ("obstacles", 1), ("uneven", 1)])
+@pytest.mark.parametrize("world, robots", [("empty", 1), ("empty", 2), ("obstacles", 1), ("uneven", 1), ("lab", 1)])
 def test_a_reset_is_a_fresh_start_to_the_last_bit(world, robots):
     with NaoSim(seed=3, noise=1.0, world=world, robots=robots) as sim:
         once = stumble(sim)
@@ -437,6 +439,14 @@ def test_nobody_who_does_not_look_or_listen_pays_for_it(nao):
     nao.walk_to(0.1)
     simulation = nao._simulation
     assert simulation._sound is None and simulation._cameras is None and simulation.renderer.pid is None
+
+
+def test_the_first_simulation_loads_nothing_that_nobody_has_asked_for():
+    rooms = "cameras control.whole_body render sound walk world.objects world.visible".split()
+    unasked = {"PIL", "multiprocessing", "yaml", *(f"nao_sim_bridge.{room}" for room in rooms)}
+    program = f"import sys; from nao_sim_bridge import NaoSim; NaoSim(); print({unasked!r} & {{*sys.modules}})"
+    told = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True).stdout
+    assert told == "set()\n"
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from std_msgs.msg import ColorRGBA, String
 from std_srvs.srv import Empty, SetBool, Trigger
 
 from nao_library_actions.msg import BlinkAction, BlinkGoal, RunBehaviorAction, RunBehaviorGoal
-from nao_library_msgs.msg import FadeRGB
+from nao_library_msgs.msg import FadeRGB, LedStates
 from nao_library_msgs.srv import GetInstalledBehaviors
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
@@ -66,6 +66,14 @@ class DriverLedsBehaviors(unittest.TestCase):
                 self.fade.publish(FadeRGB("ChestLeds", color, Duration(duration)))
             self.robot.wait_for_leds(rgb(CHEST, RED), LIMIT)
             self.robot.wait_for_leds(rgb(CHEST, GREEN), LIMIT)
+
+    def test_states_tell_what_each_light_shows(self):
+        self.fade.publish(FadeRGB("ChestLeds", RED, Duration(0.0)))
+        self.robot.wait_for_leds(rgb(CHEST, RED), LIMIT)
+        told = rospy.wait_for_message("led_states", LedStates, timeout=LIMIT)
+        shown = dict(zip(told.lights, told.colors))
+        self.assertEqual((shown["ChestLeds"].r, shown["ChestLeds"].g, shown["ChestLeds"].b), (1.0, 0.0, 0.0))
+        self.assertEqual({shown["LeftEarLed1"].r, shown["LeftEarLed1"].g}, {0.0})
 
     def test_eyes_blink_until_they_are_told_to_stop(self):
         run = send(self.blink, blinks())

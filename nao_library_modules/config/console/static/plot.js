@@ -102,9 +102,9 @@ class NaoPlot extends HTMLElement {
     const known = this.values.filter((value) => Number.isFinite(value));
     const latest = this.values[this.values.length - 1];
     const shown = Number.isFinite(latest) ? written(latest) : "–";
-    const title = `${this.what.replace(/^[a-z_]+:/, "")}  ${this.problem || shown}`;
+    const title = `${this.what.replace(/^(joint|memory):/, "").replace(":", " ")}  ${this.problem || shown}`;
     this.canvas.setAttribute("aria-label", title);
-    pen.fillText(title, 6, 13);
+    pen.fillText(title, 6, 13, width - 34);
     if (!known.length) return;
     let low = Math.min(...known), high = Math.max(...known);
     const margin = Math.max((high - low) * 0.08, Math.abs(high) * 0.01, 0.005);

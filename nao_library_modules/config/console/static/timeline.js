@@ -44,8 +44,8 @@ class View {
   x(time) { return LEFT + time * this.scale; }
 
   fit() {
-    const width = Math.max(this.container.clientWidth - LEFT - RIGHT - 8, 200);
-    this.scale = Math.min(Math.max(width / Math.max(this.tracks.length, 1), SCALES.least), 200);
+    const width = Math.max(this.container.clientWidth - LEFT - RIGHT - 24, 200);
+    this.scale = Math.min(Math.max(width / Math.max(this.tracks.length, 1), SCALES.least), 400);
     this.render();
   }
 
@@ -54,11 +54,10 @@ class View {
     this.render();
   }
 
-  show(tracks, selected) {
-    const first = !this.scale;
+  show(tracks, selected, whole) {
     this.tracks = tracks;
     this.selected = selected;
-    if (first) this.fit(); else this.render();
+    if (whole || !this.scale) this.fit(); else this.render();
   }
 
   render() {
@@ -298,7 +297,7 @@ function view(id) {
   return known;
 }
 
-export const show = (id, tracks, selected) => view(id)?.show(tracks, selected);
+export const show = (id, tracks, selected, whole) => view(id)?.show(tracks, selected, whole);
 export const mark = (id, states, at) => { const known = view(id); if (known?.line) known.mark(states, at); };
 export const zoom = (id, factor) => { const known = view(id); if (known) { if (factor) known.zoom(factor); else known.fit(); } };
 export const focus = (id, path) => view(id)?.groups?.get(path)?.focus();

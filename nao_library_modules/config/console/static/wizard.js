@@ -478,8 +478,9 @@ class WizardDrive extends WizardElement {
 
   show(velocity) {
     const moves = velocity.some((part) => part !== 0);
-    const words = ["ahead", "to the left", "turning left"];
-    const parts = velocity.map((part, i) => (part ? `${Math.round(100 * part)} % ${words[i]}` : "")).filter(Boolean);
+    const words = [["ahead", "back"], ["to the left", "to the right"], ["turning left", "turning right"]];
+    const word = (part, i) => `${Math.round(100 * Math.abs(part))} % ${words[i][part > 0 ? 0 : 1]}`;
+    const parts = velocity.map((part, i) => (part ? word(part, i) : "")).filter(Boolean);
     this.told.textContent = moves ? `walks: ${parts.join(", ")}` : "stands";
     this.told.classList.toggle("walks", moves);
   }

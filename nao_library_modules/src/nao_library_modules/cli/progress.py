@@ -19,7 +19,7 @@ PERIOD = 0.15
 STEP = ("path", "what", "state", "text")
 """Fields that tell of a step of a behaviour."""
 NO_NAMES: Mapping[str, str] = MappingProxyType({})
-TOLD_ELSEWHERE = frozenset({"index", "function", "count"})
+TOLD_ELSEWHERE = frozenset({"index", "function", "count", "stamp"})
 
 
 def progress_text(fields: Mapping[str, Any], called: Mapping[str, str] = NO_NAMES, more: bool = True) -> str:

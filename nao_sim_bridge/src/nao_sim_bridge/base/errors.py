@@ -13,7 +13,6 @@ SimulationError (RuntimeError)
 
 from __future__ import annotations
 
-import difflib
 import math
 from typing import Any, Iterable, Sequence
 
@@ -31,6 +30,8 @@ def closest(name: Any, known: Iterable[str]) -> list[str]:
     lowered: dict[str, list[str]] = {}
     for candidate in known:
         lowered.setdefault(candidate.lower(), []).append(candidate)
+    import difflib  # most names are right
+
     close = difflib.get_close_matches(str(name).lower(), lowered, n=3, cutoff=0.5)
     return [candidate for key in close for candidate in lowered[key]][:3]
 

@@ -9,7 +9,6 @@ import itertools
 import logging
 import os
 import shutil
-import uuid
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Iterator
@@ -63,7 +62,7 @@ class WholeFile(io.RawIOBase):
         self._trouble: FileTrouble | None = None
         with self._telling():
             path.parent.mkdir(parents=True, exist_ok=True)
-            draft = path.parent / f".{uuid.uuid4().hex}{DRAFT}"
+            draft = path.parent / f".{os.urandom(16).hex()}{DRAFT}"
             self._file = draft.open("xb", buffering=0)  # whose rights are those of the umask
             self._draft: Path | None = draft
             with suppress(OSError):  # not every file system knows locks
@@ -198,18 +197,6 @@ def tidy(folder: Path) -> None:
     for path in folder.rglob(f"*{PART}[0-9]*"):
         if _nobody_writes(path):
             log.warning("%s is a recording that was not ended; what was to be replaced by it is still there", path)
-
-
-@contextmanager
-def memory_file(content: bytes) -> Iterator[str]:
-    """Path of a file for libraries that read nothing else; it takes no room on a disk."""
-    descriptor = os.memfd_create("nao_sim")
-    try:
-        with os.fdopen(os.dup(descriptor), "wb") as file:
-            file.write(content)
-        yield f"/proc/self/fd/{descriptor}"
-    finally:
-        os.close(descriptor)
 
 
 def _named(draft: Path, name: Path) -> bool:

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 from nao_sim_bridge.base.engine import LOAD_FLAGS, Engine
+from nao_sim_bridge.base.memory_file import memory_file
 from nao_sim_bridge.base.settings import ContactSettings
-from nao_sim_bridge.base.whole_file import memory_file
 from nao_sim_bridge.model.collision import apart
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.urdf.physics import physics_urdf
 
 # Columns of PyBullet's joint info.
 JOINT_NAME, LINK_NAME = 1, 12
+SPECK = '<visual><geometry><box size="0.01 0.01 0.01"/></geometry></visual>'
 
 
 def load_robot(engine: Engine, model: RobotModel) -> int:
     """Put a robot into a world; PyBullet's body id of it."""
-    with memory_file(physics_urdf(model).encode()) as path:
+    with memory_file(_description(model)) as path:
         return engine.loadURDF(path, flags=LOAD_FLAGS)
+
+
+@lru_cache(maxsize=None)
+def _description(model: RobotModel) -> bytes:
+    """URDF whose links have something to be seen, for the engine would make pictures of all that can be touched."""
+    return physics_urdf(model).replace("</inertial>", f"</inertial>{SPECK}").encode()
 
 
 def index_by(engine: Engine, robot: int, column: int) -> dict[str, int]:

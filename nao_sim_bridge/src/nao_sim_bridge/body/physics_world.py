@@ -40,12 +40,15 @@ class PhysicsWorld:
         engine: The world in the physics engine.
         bodies: The floor and the things of the world.
         robots: PyBullet's body ids of the robots.
+
+    Args:
+        engine: An empty one, see `clear`; None for a new one, which takes as long as 20 steps.
     """
 
-    def __init__(self, world: World, settings: Settings) -> None:
+    def __init__(self, world: World, settings: Settings, engine: Engine | None = None) -> None:
         self.world = world
         self._steps = settings.steps_per_tick
-        self.engine = Engine()
+        self.engine = engine or Engine()
         self.engine.setGravity(0, 0, -settings.gravity_m_s2)
         self.engine.setPhysicsEngineParameter(
             fixedTimeStep=settings.time_step_s,
@@ -55,6 +58,7 @@ class PhysicsWorld:
         self.bodies = WorldBodies(world, self.engine)
         self.robots: list[int] = []
         self._kept: SavedBodies | None = None
+        self._lost = False
         self._dropped: list[int] = []
         self._groups: dict[tuple[int, int], int] = {}
 
@@ -68,16 +72,26 @@ class PhysicsWorld:
             self.engine.stepSimulation()
 
     def keep(self) -> None:
-        """Remember all bodies as they are now, for `restore`."""
-        self._kept = self.save()
+        """Remember all bodies as they are now, for `restore`, if it can put them back."""
+        if not self.bodies.loose:
+            self._kept = self.save()
 
     def lose(self) -> None:
         """Forget what was kept: the engine is not to be trusted any more."""
         self._kept = None
+        self._lost = True
+
+    def clear(self) -> Engine | None:
+        """Take everything out of the engine and give it away, for another world; None if it is not to be trusted."""
+        if self._lost:
+            self.close()
+            return None
+        self.engine.resetSimulation()
+        return self.engine
 
     def restore(self) -> bool:
         """Put all bodies, to the last bit, to where they were at `keep`, if it can; what motors were told stays."""
-        # What can roll away is not put back to the last bit.
+        # What can roll away is not put back to the last bit: what the engine knows of neighbours stays in its order.
         if self._kept is None or self.bodies.loose or not self.fits(self._kept):
             return False
         self.load(self._kept)

@@ -80,7 +80,7 @@ class DeviceCommands:
 
     @staticmethod
     def _require_free(robot: SimulatedRobot, devices: Mapping[str, object]) -> None:
-        if not robot.locomotion.active:
+        if not robot.walking:
             return
         walking = {joint for leg in LEGS for joint in robot.model.chains[leg]}
         for device in devices:

@@ -100,7 +100,7 @@ class PostureChange:
         seen = self._look()
         there = self._exact()
         for _ in range(MOST_MOVES):
-            if self._robot.locomotion.active:  # begun between two moves
+            if self._robot.walking:  # begun between two moves
                 yield self._stop_walk
                 seen, there = self._look(), False
             if there and seen.posture == self._goal:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import random
+import threading
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Callable, Iterable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import BadValue, NotFinite, UnknownName, check_finite
 from nao_sim_bridge.base.readings import Pose
@@ -19,7 +20,6 @@ from nao_sim_bridge.body.led_animations import power_on
 from nao_sim_bridge.body.leds import LedBank
 from nao_sim_bridge.body.physics import NO_PUSHES, Physics
 from nao_sim_bridge.body.sensors.body import BodySensors
-from nao_sim_bridge.body.sensors.imperfection import Delay, Felt, Imperfection, Noise, load_noise
 from nao_sim_bridge.body.sensors.inertial import InertialUnit
 from nao_sim_bridge.body.sensors.power import PowerSystem
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
@@ -29,11 +29,14 @@ from nao_sim_bridge.control.balance.odometry import Odometry
 from nao_sim_bridge.control.balance.reflexes import Reflexes
 from nao_sim_bridge.control.balance.stability import Stability
 from nao_sim_bridge.control.joints.engine import MotionEngine
-from nao_sim_bridge.control.whole_body.whole_body import WholeBody
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.model.leds_layout import LedLayout
 from nao_sim_bridge.model.robot_model import RobotModel
-from nao_sim_bridge.walk.locomotion import Locomotion
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.body.sensors.imperfection import Imperfection
+    from nao_sim_bridge.control.whole_body.whole_body import WholeBody
+    from nao_sim_bridge.walk.locomotion import Locomotion
 
 # The links under which the soles are.
 ANKLES = ("l_ankle", "r_ankle")
@@ -55,8 +58,6 @@ class SimulatedRobot:
         joints: Command angles and stiffnesses.
         motion: Tasks and targets of the joints.
         stability: Balance and fall manager.
-        whole_body: Control of all joints at once.
-        locomotion: Walks.
         reflexes: What protects the robot from itself, from obstacles and from heat, and moves idle chains.
         leds: The LEDs.
         power: Heat of the motors, and the battery.
@@ -88,11 +89,11 @@ class SimulatedRobot:
         self.joints = JointCommands(model, angles)
         self.motion = MotionEngine(self.joints, task_ids)
         self.stability = Stability(model, settings, self.joints, self.motion)
-        self.whole_body = WholeBody(model, self.joints, self.motion)
         self.reflexes = Reflexes(model, self.joints, self.motion, lambda: self._sensed)
-        self.locomotion = Locomotion(
-            model, settings, self.joints, self.motion, self.stability, self.reflexes, task_ids, lambda: self._sensed
-        )
+        self._settings = settings
+        self._making = threading.Lock()
+        self._whole_body: WholeBody | None = None
+        self._locomotion: Locomotion | None = None
         self.leds = LedBank(len(leds.devices), task_ids)
         self.task_ids = task_ids
         self.leds.set(power_on(leds))
@@ -122,6 +123,40 @@ class SimulatedRobot:
     def time(self) -> float:
         """Simulated time since the robot was put into the world, s."""
         return self._ticks * self._dt
+
+    @property
+    def whole_body(self) -> WholeBody:
+        """Control of all joints at once; made when somebody first asks for it. Any thread."""
+        if self._whole_body is None:
+            from nao_sim_bridge.control.whole_body.whole_body import WholeBody  # few ask for it
+
+            with self._making:
+                self._whole_body = self._whole_body or WholeBody(self.model, self.joints, self.motion)
+        return self._whole_body
+
+    @property
+    def locomotion(self) -> Locomotion:
+        """Walks; made when somebody first asks for it. Any thread."""
+        if self._locomotion is None:
+            from nao_sim_bridge.walk.locomotion import Locomotion  # as for `whole_body`
+
+            with self._making:
+                self._locomotion = self._locomotion or Locomotion(
+                    self.model,
+                    self._settings,
+                    self.joints,
+                    self.motion,
+                    self.stability,
+                    self.reflexes,
+                    self.task_ids,
+                    lambda: self._sensed,
+                )
+        return self._locomotion
+
+    @property
+    def walking(self) -> bool:
+        """Whether a walk runs, from its begin until the robot stands again."""
+        return self._locomotion is not None and self._locomotion.active
 
     @property
     def snapshot(self) -> Snapshot | None:
@@ -231,9 +266,11 @@ class SimulatedRobot:
             return
         now = self.time
         self.task_ids.guard.call(self.leds.tick, now)
-        self.whole_body.suspended = self.getting_up or self.locomotion.active
+        walking = self.walking
+        if self._whole_body is not None:
+            self._whole_body.suspended = self.getting_up or walking
         self.reflexes.prepare(self._sensed, self.getting_up or self.stability.falls.falling, self.stability.on_feet)
-        if self.locomotion.active:
+        if walking:
             self.locomotion.tick(self._dt)
             self.motion.idle = self.locomotion.arms.over(self.motion.idle)
             self.reflexes.self_collision.suspended |= self.locomotion.arms.alone
@@ -288,7 +325,7 @@ class SimulatedRobot:
         work = self._sensors.motors.work
         self.power.advance(lambda: work(joints.torques, joints.velocities, self.joints.efforts), span)
         if self._imperfection is not None:
-            joints, imu, contacts, link_poses = self._imperfection.of(Felt(joints, imu, contacts, link_poses))
+            joints, imu, contacts, link_poses = self._imperfection.of(joints, imu, contacts, link_poses)
         loads = self._sensors.foot_loads(contacts)
         self._sensed = Snapshot(
             tick=tick,
@@ -336,6 +373,8 @@ class SimulatedRobot:
         ticks = round(scene.sensor_delay / self._dt)
         if not scene.sensor_noise and not ticks:
             return None
+        from nao_sim_bridge.body.sensors.imperfection import Delay, Imperfection, Noise, load_noise  # few need them
+
         noise = None
         if scene.sensor_noise:
             noise = Noise(load_noise(), scene.sensor_noise, self.random, self._ankles, self._dt)

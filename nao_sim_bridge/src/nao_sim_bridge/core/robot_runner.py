@@ -25,11 +25,12 @@ class RobotRunner:
 
     Attributes:
         thread: Of the world.
+        simulation: The robot; touched in the thread only.
     """
 
     def __init__(self, runner: SimulationRunner, simulation: Simulation) -> None:
         self.thread = runner
-        self._simulation = simulation
+        self.simulation = simulation
         self._lock = threading.RLock()  # held while a command runs
         self._left_behind = self._ended = False
 
@@ -40,7 +41,7 @@ class RobotRunner:
     @property
     def snapshot(self) -> Snapshot:
         """What the robot sensed at the last tick."""
-        return self._simulation.snapshot
+        return self.simulation.snapshot
 
     def execute(self, command: Callable[[], Any], name: str = "command") -> Task:
         """Run `command()` in the simulation thread; the task ends with what it returns or raises."""
@@ -57,8 +58,8 @@ class RobotRunner:
     def leave_behind(self) -> None:
         """The thread has another simulation now; simulation thread."""
         self._left_behind = True
-        self._simulation.task_ids.ask = lambda task: self.execute(task.kill)
-        self._simulation.shared.wake = lambda: None
+        self.simulation.task_ids.ask = lambda task: self.execute(task.kill)
+        self.simulation.shared.wake = lambda: None
 
     def end(self) -> None:
         """Run no more commands for a simulation that was left behind; returns when the last one is over."""

@@ -59,7 +59,7 @@ def run_steps(
 
 def stop_walk(robot: SimulatedRobot) -> Task | None:
     """Bring a walk to its end on two feet, before legs do something else; None when there is none."""
-    return robot.locomotion.stop() if robot.locomotion.active else None
+    return robot.locomotion.stop() if robot.walking else None
 
 
 def is_on_feet(robot: SimulatedRobot, snapshot: Snapshot) -> bool:

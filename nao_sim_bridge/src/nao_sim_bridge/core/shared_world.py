@@ -15,12 +15,13 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.hands import Hands
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.things import Things
-from nao_sim_bridge.render.client import Renderer
+from nao_sim_bridge.render import require_engine
 from nao_sim_bridge.world.places import ORIGIN, RobotPlace
-from nao_sim_bridge.world.render_state import RobotLook
 
 if TYPE_CHECKING:
+    from nao_sim_bridge.render.client import Renderer
     from nao_sim_bridge.sound.sound_world import Air
+    from nao_sim_bridge.world.render_state import RobotLook
 
 
 class WorldRobot(Protocol):
@@ -74,7 +75,6 @@ class SharedWorld:
         task_ids: Source of the numbers of all tasks.
         guard: Calls what belongs to a tick besides physics and sensors, and knows what of it has failed.
         things: What is in the world and may come, move and go; a reset puts it to where the world file says.
-        renderer: What draws, for all robots.
         ticks: Since the start; it never goes back.
         after_reset: Called at the end of each reset: world and robots are at the start again.
         wake: To be called, from any thread, when time need not wait any more for what a robot holds it for; set by
@@ -97,13 +97,24 @@ class SharedWorld:
         self.guard = self.task_ids.guard
         self.wake: Callable[[], None] = lambda: None
         self._air: Air | None = None
-        self.renderer = renderer if isinstance(renderer, Renderer) else Renderer(scene.world, scene.version, renderer)
+        if isinstance(renderer, str):
+            require_engine(renderer)
+        self._renderer = renderer
         self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
 
     @property
     def time(self) -> float:
         """Simulated time, s."""
         return self.ticks * self.settings.tick_s
+
+    @property
+    def renderer(self) -> Renderer:
+        """What draws, for all robots; made when somebody first asks for it."""
+        if isinstance(self._renderer, str):
+            from nao_sim_bridge.render.client import Renderer  # who is blind needs nothing of it
+
+            self._renderer = Renderer(self.scene.world, self.scene.version, self._renderer)
+        return self._renderer
 
     @property
     def next_place(self) -> RobotPlace:
@@ -163,8 +174,7 @@ class SharedWorld:
             self.guard.call(call)
 
     def _build_again(self) -> None:
-        self.physics.close()
-        self.physics = PhysicsWorld(self.world, self.settings)
+        self.physics = PhysicsWorld(self.world, self.settings, self.physics.clear())
         self.things.begin(self.physics)
         for robot in self.robots:
             robot.begin(self.physics)
@@ -240,8 +250,8 @@ class SharedWorld:
             self._air.stop_all()
         for robot in self.robots:
             robot.close_senses()
-        if not keep_renderer:
-            self.renderer.close()
+        if not (keep_renderer or isinstance(self._renderer, str)):
+            self._renderer.close()
         self.things.stop()
         if self.physics is not None:
             for robot in self.robots:

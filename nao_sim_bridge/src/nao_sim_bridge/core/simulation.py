@@ -19,13 +19,13 @@ from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture, start_pitch
-from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.world.places import RobotPlace, checked_places, on_circle
-from nao_sim_bridge.world.render_state import RenderState, RobotLook, preset_camera
 
 if TYPE_CHECKING:
     from nao_sim_bridge.cameras.cameras import Cameras
+    from nao_sim_bridge.render.client import Renderer
     from nao_sim_bridge.sound.sound_world import Air, SoundWorld
+    from nao_sim_bridge.world.render_state import RenderState, RobotLook
 
 SEED_STEP = 7919
 """Between the seeds of two robots of one world, so that no two of them have the same noise."""
@@ -48,7 +48,6 @@ class Simulation:
         snapshot: What was sensed at the last tick; any thread may read it.
         after_tick: Called with the snapshot at the end of every tick; they stay at a reset.
         after_reset: Called in the simulation thread when the robot is at its start again, with the world or alone.
-        renderer: What draws what the cameras see, and pictures from outside; any thread may ask.
         things: What is in the world and may come, move and go; a reset puts it to where the world file says.
         holds: As long as one of them answers True, time that runs faster than the wall clock waits: for work in other
             threads without which a fast run would give other results. Asked in the simulation thread.
@@ -78,7 +77,6 @@ class Simulation:
         self.task_ids = self.shared.task_ids
         self.after_tick: list[Callable[[Snapshot], None]] = []
         self.after_reset: list[Callable[[], None]] = []
-        self.renderer = self.shared.renderer
         self._sound: SoundWorld | None = None
         self._cameras: Cameras | None = None
         self.holds: list[Callable[[], bool]] = []
@@ -101,6 +99,11 @@ class Simulation:
     def physics(self) -> Physics:
         """Its body in the engine."""
         return self._physics
+
+    @property
+    def renderer(self) -> Renderer:
+        """What draws what the cameras see, and pictures from outside; any thread may ask."""
+        return self.shared.renderer
 
     @property
     def sound(self) -> SoundWorld:
@@ -179,6 +182,8 @@ class Simulation:
 
     def look(self) -> RobotLook:
         """What the robot looks like at the last tick. Any thread."""
+        from nao_sim_bridge.world.render_state import RobotLook  # whom nobody sees needs nothing of it
+
         torso = self.snapshot.torso
         return RobotLook(torso.position, torso.orientation, self.robot.true_positions, self.robot.leds.values)
 
@@ -188,6 +193,8 @@ class Simulation:
         Args:
             snapshot: The last one, which is taken if nobody gives it.
         """
+        from nao_sim_bridge.world.render_state import RenderState  # as for `look`
+
         now = snapshot or self.snapshot
         return RenderState(
             now.torso.position,
@@ -205,6 +212,8 @@ class Simulation:
 
         An UnknownName of the view, a BadValue of the size in pixels, or a RenderError where it cannot be drawn.
         """
+        from nao_sim_bridge.world.render_state import preset_camera  # as for `look`
+
         if not all(isinstance(size, int) and 1 <= size <= MAX_PIXELS for size in (width, height)):
             raise BadValue("picture size", (width, height), f"1 to {MAX_PIXELS} pixels each way")
         state = self.render_state()

@@ -20,7 +20,6 @@ from nao_sim_bridge.base.rotations import (
     rotate_back,
     vector3,
 )
-from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task, TaskIds
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.world import FLOOR, MOST_PARTS, World, WorldObject
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from nao_sim_bridge.body.physics_world import PhysicsWorld
     from nao_sim_bridge.world.bodies import WorldBodies
 
-MOST_PLACED = load_sizes().clients.things
 LONGEST_NAME = 64
 LARGEST = 10.0
 """Largest thing, m from its origin to its furthest point."""
@@ -110,14 +108,17 @@ class Things:
             BadValue: Its name is taken, it is too large or too far away, or there are too many things.
             NotAllowed: The robot is there.
         """
+        from nao_sim_bridge.base.sizes import load_sizes  # most things are those of the world
+
         taken = {FLOOR, *self.things}
         if thing.name in taken:
             allowed = f"one that is free (remove that thing, or move it); taken: {_listed(taken)}"
             raise BadValue("name", thing.name, allowed)
         if not 1 <= len(thing.name) <= LONGEST_NAME:
             raise BadValue("name", thing.name, f"1 to {LONGEST_NAME} characters")
-        if len(self.placed) >= MOST_PLACED:
-            raise BadValue("number of placed things", len(self.placed) + 1, f"{MOST_PLACED} at most")
+        most = load_sizes().clients.things
+        if len(self.placed) >= most:
+            raise BadValue("number of placed things", len(self.placed) + 1, f"{most} at most")
         if len(thing.touched) > MOST_PARTS:
             raise BadValue("parts", len(thing.touched), f"{MOST_PARTS} at most")
         reach = max(math.dist((0.0, 0.0, 0.0), shape.xyz) + _radius(shape) for shape in thing.touched)

@@ -10,7 +10,7 @@ from typing import Callable, Iterable, Sequence, Tuple
 import numpy as np
 import pocketsphinx
 
-from nao_sim_bridge.base.whole_file import memory_file
+from nao_sim_bridge.base.memory_file import memory_file
 from nao_sim_bridge.hearing.evidence import Evidence, Piece, evidence
 from nao_sim_bridge.hearing.grammars.grammar import OTHER_SPEECH, Grammar
 from nao_sim_bridge.hearing.listening import Hypothesis

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -12,14 +12,13 @@ from nao_sim_bridge.base.readings import FALLEN, FootForces, Pose
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Imu, Snapshot
 from nao_sim_bridge.control.joints.curves import SmoothCurve
-from nao_sim_bridge.core import sequences
 from nao_sim_bridge.core.robot import SimulatedRobot
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.library.session import Session
 from nao_sim_bridge.model.robot_model import joint_names
-from nao_sim_bridge.walk.body import foot_on_ground, robot_on_ground
-from nao_sim_bridge.walk.footsteps import FootPose
-from nao_sim_bridge.walk.gait import FeetGait
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.walk.footsteps import FootPose
 
 LONGEST = 600.0
 """s of simulated time that a call waits for what it has begun, if nobody says otherwise."""
@@ -195,12 +194,16 @@ class Nao:
     @property
     def pose_on_ground(self) -> FootPose:
         """x, y in m and yaw in rad of the point half way between the feet, in world."""
+        from nao_sim_bridge.walk.body import robot_on_ground  # with all of the walk, which few need
+
         now = self.snapshot
         return robot_on_ground(self.robot.locomotion.body, now.torso, now.positions)
 
     @property
     def feet(self) -> Feet:
         """What presses on the feet."""
+        from nao_sim_bridge.walk.body import foot_on_ground, robot_on_ground  # as above
+
         now, body = self.snapshot, self.robot.locomotion.body
         here = robot_on_ground(body, now.torso, now.positions)
         forces = now.left_foot, now.right_foot
@@ -330,10 +333,14 @@ class Nao:
 
     def wake_up(self, wait: bool = True) -> Motion:
         """Stiffen all joints, and stand up when on the feet."""
+        from nao_sim_bridge.core import sequences  # it begins awake
+
         return self._begin(lambda: sequences.wake_up(self.robot, lambda: self.snapshot, lambda: None), wait)
 
     def rest(self, wait: bool = True) -> Motion:
         """Crouch when on the feet, and let all joints go limp."""
+        from nao_sim_bridge.core import sequences  # as above
+
         return self._begin(lambda: sequences.rest(self.robot, lambda: self.snapshot, lambda: None), wait)
 
     def walk_to(self, x: float, y: float = 0.0, theta: float = 0.0, wait: bool = True) -> Motion:
@@ -348,6 +355,9 @@ class Nao:
         Raises:
             SimulationError: It cannot walk now: limp, lying, or not on its feet.
         """
+        from nao_sim_bridge.walk.footsteps import FootPose  # as for `pose_on_ground`
+        from nao_sim_bridge.walk.gait import FeetGait
+
         goal = FootPose(*finite_numbers("pose", (x, y, theta)))
         return self._begin(lambda: self.robot.locomotion.move_to([goal], FeetGait()), wait)
 
@@ -357,6 +367,8 @@ class Nao:
         Raises:
             SimulationError: It cannot walk now.
         """
+        from nao_sim_bridge.walk.gait import FeetGait  # as for `pose_on_ground`
+
         rate = finite_numbers("velocity", (x, y, theta))
         self.let_go()
         self._session.do(lambda: self.robot.locomotion.move(*rate, FeetGait()))

@@ -16,18 +16,20 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, Sequence
 
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, NotAllowed
-from nao_sim_bridge.core.saved_state import SavedState
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.core.simulation import SEED_STEP, robots_in
 from nao_sim_bridge.library.nao import Nao, finite_numbers
 from nao_sim_bridge.library.session import ENDLESS, Session
 from nao_sim_bridge.world.places import RobotPlace
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.core.saved_state import SavedState
 
 SIZES: Mapping[str, Any] = {"ball": 0.03, "box": [0.1, 0.1, 0.1], "cylinder": [0.05, 0.2]}
 """Of things that are placed by their kind alone, m."""
@@ -149,8 +151,10 @@ class NaoSim(Nao):
         if self._session.served:
             raise NotAllowed("the state of a robot that is served cannot be saved")
         for robot in (simulation.robot for simulation in self._session.simulations):
-            if robot.locomotion.active or robot.motion.tasks():
+            if robot.walking or robot.motion.tasks():
                 raise NotAllowed("a state can be saved while no motion and no walk is under way")
+        from nao_sim_bridge.core.saved_state import SavedState  # who never saves needs nothing of it
+
         return SavedState(self._session.shared, self._session.simulations)
 
     def restore_state(self, state: SavedState) -> None:

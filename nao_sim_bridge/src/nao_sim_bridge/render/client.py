@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Callable
 import numpy as np
 
 from nao_sim_bridge.base.child_process import ChildProcess
-from nao_sim_bridge.base.errors import SimulationError, UnknownName
+from nao_sim_bridge.base.errors import SimulationError
+from nao_sim_bridge.render import require_engine
 from nao_sim_bridge.world.render_state import Camera, RenderState, StateSender
 
 if TYPE_CHECKING:
@@ -30,7 +31,6 @@ class PictureRefused(RenderError):
     """The picture process is well but cannot make this picture."""
 
 
-ENGINES = ("auto", "opengl", "builtin")
 log = logging.getLogger("nao_sim.pictures")
 
 
@@ -65,8 +65,7 @@ class Renderer:
     """
 
     def __init__(self, world_name: str = "empty", version: str = "V6", engine: str = "auto") -> None:
-        if engine not in ENGINES:
-            raise UnknownName("renderer", engine, ENGINES)
+        require_engine(engine)
         self._world_name = world_name
         self._version = version
         self._asked = engine

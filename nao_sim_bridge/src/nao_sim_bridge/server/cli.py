@@ -13,7 +13,7 @@ from nao_sim_bridge.base.record_dir import DEFAULT_RECORD_DIR
 from nao_sim_bridge.core.simulation import Scene
 from nao_sim_bridge.model.postures import load_postures
 from nao_sim_bridge.model.robot_model import VERSIONS
-from nao_sim_bridge.render.client import ENGINES
+from nao_sim_bridge.render import ENGINES
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.world.places import MOST_ROBOTS, RobotPlace, parse_places
 from nao_sim_bridge.world.reader import world_names

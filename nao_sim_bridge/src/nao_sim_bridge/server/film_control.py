@@ -9,8 +9,7 @@ from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.record_dir import ClientFiles, unused
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task, worked_out
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.render.client import RenderError
 from nao_sim_bridge.server.film import END_LIMIT, Film, FilmReport
@@ -27,10 +26,7 @@ FILE, TYPE = "film.mp4", ".mp4"
 class FilmControl:
     """Begins and ends films, one at a time. For any thread."""
 
-    def __init__(
-        self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles, engine: str = "auto"
-    ) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner, files: ClientFiles, engine: str = "auto") -> None:
         self._runner = runner
         self._files = files
         self._engine = engine
@@ -66,7 +62,7 @@ class FilmControl:
             with self._lock:
                 if self._film is not None:
                     raise NotAllowed(f"{self._film.path.name} is being filmed: end it first")
-                film = Film(self._simulation, path, view, size, frame_rate, self._engine)
+                film = Film(self._runner.simulation, path, view, size, frame_rate, self._engine)
                 self._runner.call(film.begin)
                 self._film = film
             return str(path)

@@ -7,16 +7,14 @@ from typing import Any, Callable, Sequence
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.temperatures import BATTERY, HEAD
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import known, number
 
 COLDEST, HOTTEST = -40.0, 200.0
 
 
 class HandsControl:
-    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner) -> None:
         self._runner = runner
 
     def touch(self, sensors: Sequence[str], duration: float, wait: bool = True) -> Task:
@@ -28,7 +26,7 @@ class HandsControl:
         wanted, lasting = _names(sensors), number(duration, "duration", 0.0)
 
         def touch() -> Task | None:
-            task = self._simulation.hands.touch(wanted, lasting)
+            task = self._runner.simulation.hands.touch(wanted, lasting)
             return task if wait else None
 
         return self._runner.execute(touch, "touch")
@@ -36,7 +34,7 @@ class HandsControl:
     def release(self, sensors: Sequence[str] = ()) -> Task:
         """Let go; the task ends when the hands begin to leave: those on these sensors or, if none is named, all."""
         wanted = _names(sensors)
-        return self._runner.execute(lambda: self._simulation.hands.release(wanted), "release")
+        return self._runner.execute(lambda: self._runner.simulation.hands.release(wanted), "release")
 
 
 def _names(sensors: Any) -> list[str]:
@@ -48,8 +46,8 @@ def _names(sensors: Any) -> list[str]:
 class HealthControl:
     """Changes what a user of a robot cannot: each task ends when it is done."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner) -> None:
+        self._simulation = runner.simulation
         self._runner = runner
 
     def plug_charger(self, plugged: bool) -> Task:

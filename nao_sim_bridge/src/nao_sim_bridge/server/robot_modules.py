@@ -12,8 +12,6 @@ from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.behaviors.installed import InstalledBehaviors
 from nao_sim_bridge.behaviors.player import BehaviorPlayer
 from nao_sim_bridge.core.robot_runner import RobotRunner
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.hearing.recogniser import SpareProcess
 from nao_sim_bridge.naoqi import motion
 from nao_sim_bridge.naoqi.behaviors import animation_player, behavior_manager, frame_manager
@@ -73,55 +71,54 @@ class RobotModules:
     """The modules of one robot at time 0, and what only a simulator can do to it.
 
     Attributes:
-        simulation: Touched in the simulation thread only; replaced by a factory reset, with everything else in here.
-        runner: That thread, for this simulation.
+        runner: The thread of the simulation, as this robot has it.
+        simulation: Of the runner; replaced by a factory reset, with everything else in here.
         began: What `SimulatorServer.now` says at time 0 of the simulation, s.
     """
 
     def __init__(
         self,
         options: ServerOptions,
-        simulation: Simulation,
-        runner: SimulationRunner,
+        runner: RobotRunner,
         broker: Broker,
         workers: Workers,
         system: Callable[[MemoryStore, TimeZone], ALSystem],
     ) -> None:
-        self.simulation = simulation
-        self.runner = runner = RobotRunner(runner, simulation)
+        self.runner = runner
+        self.simulation = simulation = runner.simulation
         self.began = 0.0
         self.memory = memory = MemoryStore(lambda: simulation.snapshot.time, simulation.shared.guard)
         self.files = files = ClientFiles(options.record_dir, [sounds_directory()])
         sounds = SoundFiles(files, workers.sounds)
-        self._audio = AudioModules(simulation, runner, sounds, broker, memory, options.allow_private_streams)
-        self.speech = SpeechModules(simulation, runner, memory, files, broker, workers.voice)
-        posture = ALRobotPosture(simulation, runner, memory)
+        self._audio = AudioModules(runner, sounds, broker, memory, options.allow_private_streams)
+        self.speech = SpeechModules(runner, memory, files, broker, workers.voice)
+        posture = ALRobotPosture(runner, memory)
         library = self.speech.library
         player = BehaviorPlayer(simulation, self.speech.animator, library, self.speech.say, posture.goToPosture)
         running = RunningBehaviors(player, InstalledBehaviors(library), memory)
         zone = TimeZone()
-        self._life = LifeModules(simulation, runner, memory, broker, self.speech, posture, running, zone)
-        self.recognition = ALSpeechRecognition(simulation, runner, memory, files, workers.recogniser)
+        self._life = LifeModules(runner, memory, broker, self.speech, posture, running, zone)
+        self.recognition = ALSpeechRecognition(runner, memory, files, workers.recogniser)
         self.video = video_device.ALVideoDevice(simulation.cameras, files)
         self.vision = VisionModules(simulation, memory, files, workers.vision)
         cameras = simulation.cameras
         self._photographer = Photographer(cameras, PHOTOS)
         self._recorder = VideoRecorder(cameras, runner, FILMS)
-        self.sounds = WorldSoundsControl(simulation, runner, sounds, workers.persons)
-        self.things = ThingsControl(simulation, runner, files)
-        self.hands = HandsControl(simulation, runner)
-        self.film = FilmControl(simulation, runner, files, options.renderer)
-        self.health = HealthControl(simulation, runner)
-        self._body = BodyModules(simulation, runner, memory)
+        self.sounds = WorldSoundsControl(runner, sounds, workers.persons)
+        self.things = ThingsControl(runner, files)
+        self.hands = HandsControl(runner)
+        self.film = FilmControl(runner, files, options.renderer)
+        self.health = HealthControl(runner)
+        self._body = BodyModules(runner, memory)
         self.modules: dict[str, list[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
-            "ALLeds": leds.parts(simulation, runner),
-            "ALMotion": motion.parts(simulation, runner, memory),
+            "ALLeds": leds.parts(runner),
+            "ALMotion": motion.parts(runner, memory),
             "ALRobotPosture": [posture],
             **self._audio.modules,
             **self.speech.modules,
             behavior_manager.NAME: [behavior_manager.ALBehaviorManager(running, runner, memory, files)],
-            animation_player.NAME: [animation_player.ALAnimationPlayer(running, simulation, runner)],
+            animation_player.NAME: [animation_player.ALAnimationPlayer(running, runner)],
             frame_manager.NAME: [frame_manager.ALFrameManager(running, runner, files)],
             **self._life.modules,
             RECOGNITION: self.recognition.parts(),

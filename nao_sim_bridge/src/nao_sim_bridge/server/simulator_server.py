@@ -78,8 +78,8 @@ class SimulatorServer:
         self._make_world_anew = factory_reset or self._begin_anew
         self.broker = Broker()
         self._workers = Workers()
-        self.pictures = Pictures(simulation, self._thread)
         self._robot = self.modules_for(simulation)
+        self.pictures = Pictures(self._robot.runner)
         self._services: dict[str, Service] = {}
         self._outlets: list[SoundFile | SoundCard] = []
         self._resetting = threading.Lock()
@@ -213,7 +213,8 @@ class SimulatorServer:
 
     def modules_for(self, simulation: Simulation) -> RobotModules:
         """Modules for a robot at its start, which do nothing yet."""
-        return RobotModules(self.options, simulation, self._thread, self.broker, self._workers, self._system)
+        runner = RobotRunner(self._thread, simulation)
+        return RobotModules(self.options, runner, self.broker, self._workers, self._system)
 
     def take(self, robot: RobotModules, began: float) -> Callable[[], None]:
         """Be another robot from now on; simulation thread, which has just taken its simulation.
@@ -243,7 +244,7 @@ class SimulatorServer:
                 guarded(step)
             former.files.forget()  # what was completed meanwhile
             self._serve_again()
-            self.pictures.follow(robot.simulation)
+            self.pictures.follow(robot.runner)
 
         return close_former
 

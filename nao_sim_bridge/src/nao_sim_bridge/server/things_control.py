@@ -10,8 +10,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.yaml_values import load_yaml
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import number, numbers
 from nao_sim_bridge.world.objects import read_object
 
@@ -23,8 +22,8 @@ WHERE = "object"
 class ThingsControl:
     """Places, moves and removes things; their pictures may be files of clients."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, files: ClientFiles) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner, files: ClientFiles) -> None:
+        self._simulation = runner.simulation
         self._runner = runner
         self._files = files
 

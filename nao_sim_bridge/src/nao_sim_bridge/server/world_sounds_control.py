@@ -9,8 +9,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.core.world_sounds_playing import WorldSounds
 from nao_sim_bridge.naoqi.binding.arguments import number, numbers
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
@@ -30,15 +29,15 @@ class WorldSoundsControl:
     The studio makes the voices of persons: not that of the robot, for both may speak at the same time.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, sounds: SoundFiles, studio: Studio) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner, sounds: SoundFiles, studio: Studio) -> None:
+        self._simulation = runner.simulation
         self._runner = runner
         self._sounds = sounds
         self._studio = studio
-        self._numbers = simulation.sound.numbers
+        self._numbers = runner.simulation.sound.numbers
         self._lock = threading.Lock()
         self._being_made = 0
-        simulation.holds.append(lambda: self._being_made > 0)
+        runner.simulation.holds.append(lambda: self._being_made > 0)
 
     def begin(self) -> None:
         """Let the sounds of the world file begin; before time passes.

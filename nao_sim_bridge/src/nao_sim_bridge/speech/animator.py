@@ -122,7 +122,7 @@ class Animator:
     def _moved_by_others(self, indices: Sequence[int]) -> bool:
         robot = self._simulation.robot
         own = {index for move in self._moves.values() for index in move.indices}
-        return robot.locomotion.active or robot.motion.busy(set(indices) - own)
+        return robot.walking or robot.motion.busy(set(indices) - own)
 
     def _move(self, animation: Animation | None, indices: Sequence[int], curves: CurveBuilder) -> Task:
         task = self._simulation.robot.motion.follow("animation", indices, curves, noticed=False)

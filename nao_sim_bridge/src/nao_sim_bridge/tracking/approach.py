@@ -69,7 +69,7 @@ class Approach:
 
     def stop(self) -> None:
         """End a walk that was begun here."""
-        if self._goal is not None and self._simulation.robot.locomotion.active:
+        if self._goal is not None and self._simulation.robot.walking:
             self._simulation.robot.locomotion.stop()
         self.forget()
 

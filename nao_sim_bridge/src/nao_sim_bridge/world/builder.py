@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-import io
-from typing import Sequence
+from typing import Callable, Sequence
 
 from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw, multiply, rotate
-from nao_sim_bridge.base.whole_file import memory_file
-from nao_sim_bridge.model.meshes import Mesh, front_and_rest, merged, tessellate
 from nao_sim_bridge.model.shapes import Shape
-from nao_sim_bridge.world.pictures import WorldPicture, paint
-from nao_sim_bridge.world.world import FLOOR, MOST_PARTS, Color, Floor, Part, Rug, World, WorldObject
+from nao_sim_bridge.world.world import FLOOR, MOST_PARTS, Floor, Part, World, WorldObject
 
-FLOOR_EXTENT = 10.0
-"""Half the edge length of the visible floor, m; the floor of the physics has no end."""
-RUG_THICKNESS = 0.001
 NOWHERE = (0.0, 0.0, 0.0)
-UNTURNED = (0.0, 0.0, 0.0, 1.0)
-WHITE = (1.0, 1.0, 1.0)
 
 
 def build_world(world: World, engine: Engine, visual: bool) -> dict[str, int]:
@@ -30,7 +21,7 @@ def build_world(world: World, engine: Engine, visual: bool) -> dict[str, int]:
     Returns:
         PyBullet's body ids by name; `floor` is among them, its bumps are not.
     """
-    build_floor = _see_floor if visual else _touch_floor
+    build_floor, _ = _builders(visual)
     bodies = {FLOOR: build_floor(world.floor, engine)}
     for heap in heaps_of_bumps(world.floor):
         build_object(heap, world.floor, engine, visual)
@@ -40,7 +31,7 @@ def build_world(world: World, engine: Engine, visual: bool) -> dict[str, int]:
 
 def build_object(thing: WorldObject, floor: Floor, engine: Engine, visual: bool) -> int:
     """Put one thing into a PyBullet world, where it says; see `build_world`. Returns PyBullet's body id."""
-    build = _see_object if visual else _touch_object
+    _, build = _builders(visual)
     return build(thing, *place_of(thing, floor), engine)
 
 
@@ -59,19 +50,29 @@ def heaps_of_bumps(floor: Floor) -> list[WorldObject]:
     ]
 
 
-# --- touched ----------------------------------------------------------------------------------------------------------
+def _builders(visual: bool) -> tuple[Callable[..., int], Callable[..., int]]:
+    """What makes a floor, and what makes a thing."""
+    if not visual:
+        return _touch_floor, _touch_object
+    from nao_sim_bridge.world.visible import see_floor, see_object  # the physics needs nothing of it
+
+    return see_floor, see_object
 
 
 def _touch_floor(floor: Floor, engine: Engine) -> int:
     touched = engine.createCollisionShape(engine.GEOM_PLANE)
-    body = engine.createMultiBody(0.0, touched, baseOrientation=floor.orientation)
+    body = engine.createMultiBody(0.0, touched, _speck(engine), baseOrientation=floor.orientation)
     engine.changeDynamics(body, -1, lateralFriction=floor.friction)
     return body
 
 
 def _touch_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], engine: Engine) -> int:
     body = engine.createMultiBody(
-        thing.mass, _collision_shape(thing.touched, engine), basePosition=position, baseOrientation=orientation
+        thing.mass,
+        _collision_shape(thing.touched, engine),
+        _speck(engine),
+        basePosition=position,
+        baseOrientation=orientation,
     )
     engine.changeDynamics(
         body,
@@ -86,6 +87,11 @@ def _touch_object(thing: WorldObject, position: Sequence[float], orientation: Se
     return body
 
 
+def _speck(engine: Engine) -> int:
+    """Something to be seen that nobody looks at: without, the engine makes a picture of all that can be touched."""
+    return engine.createVisualShape(engine.GEOM_BOX, halfExtents=(0.01, 0.01, 0.01))
+
+
 def _collision_shape(shapes: Sequence[Shape], engine: Engine) -> int:
     """One shape of several, in the frame of their body."""
     return engine.createCollisionShapeArray(
@@ -97,92 +103,3 @@ def _collision_shape(shapes: Sequence[Shape], engine: Engine) -> int:
         collisionFramePositions=[shape.xyz for shape in shapes],
         collisionFrameOrientations=[from_roll_pitch_yaw(*shape.rpy) for shape in shapes],
     )
-
-
-# --- seen -------------------------------------------------------------------------------------------------------------
-
-
-def _see_floor(floor: Floor, engine: Engine) -> int:
-    extents = (FLOOR_EXTENT, FLOOR_EXTENT, 0.005)
-    seen = engine.createVisualShape(
-        engine.GEOM_BOX,
-        halfExtents=extents,
-        rgbaColor=(*floor.color, 1.0),
-        specularColor=NOWHERE,
-        # The top face is the floor: half the thickness below it.
-        visualFramePosition=(0.0, 0.0, -extents[2]),
-    )
-    return _body(
-        [seen, *(_see_rug(rug, number, engine) for number, rug in enumerate(floor.rugs, 1))],
-        NOWHERE,
-        floor.orientation,
-        engine,
-    )
-
-
-def _see_rug(rug: Rug, number: int, engine: Engine) -> int:
-    # Each is higher than the one before it, on which it may lie.
-    height = number * RUG_THICKNESS
-    shape = Shape("box", (*rug.size, height), (*rug.center, height / 2.0), (0.0, 0.0, rug.yaw))
-    return visual_shape(tessellate(shape).placed(shape), rug.color, engine)
-
-
-def _see_object(thing: WorldObject, position: Sequence[float], orientation: Sequence[float], engine: Engine) -> int:
-    by_color: dict[Color, list[Mesh]] = {}
-    pictures: list[tuple[WorldPicture, Mesh]] = []
-    for part in thing.parts:
-        mesh = tessellate(part.shape)
-        if part.picture is not None:
-            front, mesh = front_and_rest(mesh)
-            pictures.append((part.picture, front.placed(part.shape)))
-        by_color.setdefault(part.color, []).append(mesh.placed(part.shape))
-    seen = [visual_shape(merged(meshes), color, engine) for color, meshes in by_color.items()]
-    covered = [visual_shape(mesh, WHITE, engine) for _, mesh in pictures]
-    body = _body([*seen, *covered], position, orientation, engine)
-    for link, (picture, _) in enumerate(pictures, len(seen) - 1):
-        engine.changeVisualShape(body, link, textureUniqueId=texture(picture, engine))
-    return body
-
-
-def _body(seen: Sequence[int], position: Sequence[float], orientation: Sequence[float], engine: Engine) -> int:
-    """One body of several visual shapes: each has one colour, so all but the first are links that never move."""
-    count = len(seen) - 1
-    return engine.createMultiBody(
-        0.0,
-        -1,
-        seen[0],
-        basePosition=position,
-        baseOrientation=orientation,
-        linkMasses=[0.0] * count,
-        linkCollisionShapeIndices=[-1] * count,
-        linkVisualShapeIndices=list(seen[1:]),
-        linkPositions=[NOWHERE] * count,
-        linkOrientations=[UNTURNED] * count,
-        linkInertialFramePositions=[NOWHERE] * count,
-        linkInertialFrameOrientations=[UNTURNED] * count,
-        linkParentIndices=[0] * count,
-        linkJointTypes=[engine.JOINT_FIXED] * count,
-        linkJointAxis=[(0.0, 0.0, 1.0)] * count,
-    )
-
-
-def visual_shape(mesh: Mesh, color: Sequence[float], engine: Engine) -> int:
-    """Id of a visual shape, of a colour in 0..1; those that PyBullet makes itself are a few dozen flat triangles."""
-    return engine.createVisualShape(
-        engine.GEOM_MESH,
-        vertices=mesh.vertices.tolist(),
-        normals=mesh.normals.tolist(),
-        uvs=[(0.0, 0.0)] * len(mesh.vertices) if mesh.uvs is None else mesh.uvs.tolist(),
-        indices=mesh.faces.ravel().tolist(),
-        rgbaColor=(*color, 1.0),
-    )
-
-
-def texture(picture: WorldPicture, engine: Engine) -> int:
-    """Id of a texture for `changeVisualShape`; PyBullet takes them from files only."""
-    from PIL import Image  # most worlds have no pictures
-
-    content = io.BytesIO()
-    Image.fromarray(paint(picture)).save(content, "PNG")
-    with memory_file(content.getvalue()) as path:
-        return engine.loadTexture(path)

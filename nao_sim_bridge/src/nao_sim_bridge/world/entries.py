@@ -6,14 +6,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Callable
+from typing import TYPE_CHECKING, Any, Callable
 
 from nao_sim_bridge.base.config import vector
 from nao_sim_bridge.base.errors import BadValue, UnknownName, shortened
 from nao_sim_bridge.base.limits import check_world
 from nao_sim_bridge.model.shapes import Shape
-from nao_sim_bridge.world.pictures import WorldPicture
 from nao_sim_bridge.world.world import Color, Part, WorldError
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.world.pictures import WorldPicture
 
 GREY = (0.6, 0.6, 0.6)
 
@@ -63,6 +65,8 @@ def color(entry: Mapping, key: str, where: str, default: Color) -> Color:
 
 def picture(kind: str, content: Any, where: str) -> WorldPicture:
     """A picture, if there is one of that kind and content."""
+    from nao_sim_bridge.world.pictures import WorldPicture  # most worlds have none
+
     if not isinstance(content, str) and kind != "landmark":
         # YAML makes numbers of digits and forgets leading zeros.
         raise WorldError(where, f"is {content!r}, not a text: put it between quotes")

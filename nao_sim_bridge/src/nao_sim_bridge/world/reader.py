@@ -17,20 +17,34 @@ from __future__ import annotations
 import math
 import random
 from pathlib import Path
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence, Tuple
 
 import numpy as np
-import yaml
 
-from nao_sim_bridge.base.config import LARGEST_FILE, array, check_keys, read_bounded, vector, world_directory
+from nao_sim_bridge.base.config import (
+    LARGEST_FILE,
+    array,
+    check_keys,
+    read_bounded,
+    read_json,
+    vector,
+    world_directory,
+)
 from nao_sim_bridge.base.errors import BadValue, did_you_mean
-from nao_sim_bridge.base.yaml_values import load_yaml
 from nao_sim_bridge.model.shapes import Shape
 from nao_sim_bridge.world.entries import GREY, check_bounds, color, entries, number
-from nao_sim_bridge.world.objects import read_object
 from nao_sim_bridge.world.places import RobotPlace
-from nao_sim_bridge.world.sounds import read_sounds
-from nao_sim_bridge.world.world import FLOOR, Background, Floor, Light, Rug, World, WorldError
+from nao_sim_bridge.world.world import (
+    FLOOR,
+    Background,
+    Floor,
+    Light,
+    Rug,
+    World,
+    WorldError,
+    WorldObject,
+    WorldSound,
+)
 
 SECTIONS = ("description", "light", "background", "objects", "sounds", "robots")
 FLOOR_OPTIONS = ("color", "tile_color", "tile_size", "slope_deg", "rugs", "bumps")
@@ -39,6 +53,9 @@ MAX_SLOPE = 30.0
 BUMP_KEYS = ("count", "size", "height", "area")
 BUMP_OPTIONS = ("seed", "color", "keep_free")
 MOST_BUMPS = 500
+SUFFIXES = (".yaml", ".json")
+"""Of worlds that come along; what is read quickest is in JSON."""
+Entry = Tuple[str, Any]
 # So often a plate is thrown before its area is held for too small, for each plate asked for.
 THROWS = 50
 
@@ -51,13 +68,8 @@ def read_world(content: Any, name: str, where: str, folder: Path | None = None) 
     """
     check_keys(content, where, ("floor",), SECTIONS, WorldError)
     check_bounds(content, where)
-    beside = lambda file: (folder or Path()) / file  # noqa: E731
-    objects = tuple(read_object(entry, place, beside) for place, entry in entries(content, "objects", where))
-    names = [FLOOR, *(thing.name for thing in objects)]
-    for index, thing in enumerate(objects):
-        if thing.name in names[: index + 1]:
-            raise WorldError(f"{where}: objects[{index}].name", f"{thing.name!r} is taken")
-    sounds = read_sounds(entries(content, "sounds", where), names[1:], folder)
+    objects = _read_objects(entries(content, "objects", where), where, folder)
+    sounds = _read_sounds(entries(content, "sounds", where), [thing.name for thing in objects], folder)
     return World(
         name=name,
         description=str(content.get("description", "")),
@@ -68,6 +80,28 @@ def read_world(content: Any, name: str, where: str, folder: Path | None = None) 
         sounds=sounds,
         robots=tuple(_read_place(entry, place) for place, entry in entries(content, "robots", where)),
     )
+
+
+def _read_objects(listed: Sequence[Entry], where: str, folder: Path | None) -> tuple[WorldObject, ...]:
+    if not listed:
+        return ()
+    from nao_sim_bridge.world.objects import read_object  # a world without things needs nothing of it
+
+    beside = lambda file: (folder or Path()) / file  # noqa: E731
+    objects = tuple(read_object(entry, place, beside) for place, entry in listed)
+    names = [FLOOR, *(thing.name for thing in objects)]
+    for index, thing in enumerate(objects):
+        if thing.name in names[: index + 1]:
+            raise WorldError(f"{where}: objects[{index}].name", f"{thing.name!r} is taken")
+    return objects
+
+
+def _read_sounds(listed: Sequence[Entry], objects: Sequence[str], folder: Path | None) -> tuple[WorldSound, ...]:
+    if not listed:
+        return ()
+    from nao_sim_bridge.world.sounds import read_sounds  # as for things
+
+    return read_sounds(listed, objects, folder)
 
 
 def _read_place(entry: Any, where: str) -> RobotPlace:
@@ -173,7 +207,7 @@ def _read_background(entry: Any, where: str) -> Background:
 
 def world_names() -> tuple[str, ...]:
     """Worlds that come with the package."""
-    return tuple(sorted(path.stem for path in world_directory().glob("*.yaml")))
+    return tuple(sorted(path.stem for path in world_directory().iterdir() if path.suffix in SUFFIXES))
 
 
 def load_world(name_or_path: str) -> World:
@@ -188,7 +222,14 @@ def load_world(name_or_path: str) -> World:
             hint = did_you_mean(name_or_path, world_names())
             there = f"there are: {', '.join(world_names())}; or give a path to a .yaml"
             raise WorldError("world", f"no world {name_or_path!r}{hint} ({there})")
-        path = world_directory() / f"{name_or_path}.yaml"
+        path = world_directory() / f"{name_or_path}.json"
+        if path.exists():
+            return read_world(read_json(path), path.stem, path.name, path.parent)
+        path = path.with_suffix(".yaml")
+    import yaml  # takes longer to load than the engine
+
+    from nao_sim_bridge.base.yaml_values import load_yaml
+
     try:
         content = load_yaml(read_bounded(path, LARGEST_FILE).decode("utf-8"))
     except (OSError, ValueError, yaml.YAMLError) as error:

@@ -9,13 +9,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Tuple, Union
+from typing import TYPE_CHECKING, Tuple, Union
 
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.rotations import Quaternion, Vector3, from_roll_pitch_yaw
 from nao_sim_bridge.model.shapes import Shape
-from nao_sim_bridge.world.pictures import WorldPicture
 from nao_sim_bridge.world.places import RobotPlace
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.world.pictures import WorldPicture
 
 FLOOR = "floor"
 """A name that no object may have."""

@@ -6,16 +6,32 @@ Prints JSON: `ours` and `reference`, s of each run.
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 from nao_benchmarks.printing import print_times
 from nao_benchmarks.stats import Sample, interleave
 
 from nao_sim_bridge import NaoSim
+from nao_sim_bridge.base.memory_file import memory_file
+from nao_sim_bridge.model.model_reader import load_model
+from nao_sim_bridge.model.urdf.physics import physics_urdf
 
 IMPORTS = ("import nao_sim_bridge", "import pybullet, numpy")
+TIMED = """
+import pybullet, numpy, nao_sim_bridge, time
+began = time.process_time()
+{}
+print(time.process_time() - began)
+"""
+FIRST = "simulation = nao_sim_bridge.NaoSim()"
+LOADED = """
+flags = pybullet.URDF_USE_INERTIA_FROM_FILE | pybullet.URDF_USE_SELF_COLLISION
+pybullet.loadURDF("{}", flags=flags, physicsClientId=pybullet.connect(pybullet.DIRECT))
+"""
 STEPS_OF_TWO = 4000
 TICKS = 3
 """In a step of an environment."""
@@ -41,16 +57,40 @@ def imports(rounds: int) -> list[Sample]:
     return interleave([lambda: starts(IMPORTS[0]), lambda: starts(IMPORTS[1])], rounds, warm_up=2)
 
 
+def first(rounds: int) -> list[Sample]:
+    """The first simulation of an interpreter, with what it imports, against its robot in a bare engine; CPU time."""
+
+    def timed(program: str) -> float:
+        command = [sys.executable, "-c", TIMED.format(program)]
+        told = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, pass_fds=[robot], env=compiled)
+        return float(told.stdout.split()[-1])
+
+    compiled = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
+    with memory_file(physics_urdf(load_model()).encode()) as path:
+        robot = int(Path(path).name)
+        times = [(timed(FIRST), timed(LOADED.format(path))) for _ in range(1 + rounds)][1:]
+    return [Sample(one) for one in zip(*times)]
+
+
 def resets(rounds: int) -> list[Sample]:
     """A reset with a new seed, against 40 steps of the engine."""
-    with NaoSim() as nao:
+    return _resets(rounds, "empty")
+
+
+def resets_with_things(rounds: int) -> list[Sample]:
+    """The same in a world with things that can roll away, which is built anew."""
+    return _resets(rounds, "lab")
+
+
+def _resets(rounds: int, world: str) -> list[Sample]:
+    with NaoSim(world=world) as nao:
         nao.reset(0)
         seeds = iter(range(1, 10 * rounds + 1000))
 
         def reset() -> None:
             nao.reset(next(seeds))
 
-        return interleave([reset, bare_steps(nao, 40)], rounds, warm_up=10)
+        return interleave([reset, lambda: bare_steps(nao, 40)()], rounds, warm_up=10)
 
 
 def driven(rounds: int) -> list[Sample]:
@@ -85,7 +125,7 @@ def steps(_: int) -> list[Sample]:
     return [Sample((lasted,)), Sample((lasted,))]
 
 
-WHAT = {one.__name__: one for one in (imports, resets, driven, two_processes, steps)}
+WHAT = {one.__name__: one for one in (imports, first, resets, resets_with_things, driven, two_processes, steps)}
 
 
 def measure(what: str, rounds: int) -> dict[str, list[float]]:

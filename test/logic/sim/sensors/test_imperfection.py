@@ -75,4 +75,4 @@ def test_late_readings_arrive_whole_and_in_order():
     arrived = [delay.arrive(felt) for felt in sent]
     assert arrived[3:] == sent[:7] and arrived[:3] == [sent[0]] * 3, "nothing older than the first is there"
     late = Imperfection(None, Delay(1))
-    assert [late.of(TRUTH), late.of(TRUTH._replace(contacts=()))] == [TRUTH, TRUTH]
+    assert [late.of(*TRUTH), late.of(*TRUTH._replace(contacts=()))] == [TRUTH, TRUTH]

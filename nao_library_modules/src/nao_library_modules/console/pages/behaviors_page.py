@@ -108,7 +108,7 @@ class BehaviorsView:
             self._record_button = ui.button("Record", icon="fiber_manual_record", on_click=self._record)
             self._record_button.props("dense no-caps outline")
         self._list_state = ui.label("asking ...").classes("text-sm opacity-80").props("role=status")
-        with ui.scroll_area().classes("w-full").style("height: calc(100vh - 20rem); min-height: 12rem"):
+        with ui.scroll_area().classes("w-full h-56 lg:h-[calc(100vh-20rem)]"):
             self._names = ui.list().props("dense").classes("w-full")
 
     def _build_editor(self) -> None:
@@ -165,7 +165,11 @@ class BehaviorsView:
 
     async def _load_list(self) -> None:
         robot = self._page.robot
-        infos = await run.io_bound(self._stored.infos) or []
+        try:
+            infos = await run.io_bound(self._stored.infos) or []
+        except NaoError as error:
+            self._list_state.text = str(error)
+            return
         self._infos = {info.name: info for info in infos}
         self._described = await run.io_bound(_described, robot) or {}
         self._show_list()
@@ -216,9 +220,8 @@ class BehaviorsView:
         if self._goal is None:
             self._view = RunView()
         self._parameters.clear()
-        await self._refresh()
+        await self._refresh(whole=True)
         await self._show_parameters()
-        self._canvas.zoom(0)
 
     # --- edits --------------------------------------------------------------------------------------------------------
 
@@ -308,8 +311,8 @@ class BehaviorsView:
             await self._refresh(text_too=False)
             await self._show_parameters()
 
-    async def _refresh(self, text_too: bool = True) -> None:
-        """Show the document as it is now."""
+    async def _refresh(self, text_too: bool = True, whole: bool = False) -> None:
+        """Show the document as it is now. `whole`: zoom such that all of it is seen."""
         document = self._document
         if document is None:
             return
@@ -325,7 +328,7 @@ class BehaviorsView:
         )
         if text_too and self._text.value != document.text:
             self._text.value = document.text
-        self._canvas.show(self._tracks, self._selected)
+        self._canvas.show(self._tracks, self._selected, whole)
         self._show_step()
         self._show_problems([*document.problems, *self._problems])
 
@@ -365,7 +368,11 @@ class BehaviorsView:
         if document is None:
             ui.notify("open a behaviour first")
             return False
-        info = await run.io_bound(self._stored.check, document.text, document.file, self._texts())
+        try:
+            info = await run.io_bound(self._stored.check, document.text, document.file, self._texts())
+        except NaoError as error:
+            ui.notify(f"not checked: {error}", type="negative", multi_line=True)
+            return False
         if info is None:
             return False
         self._problems = problems_in(info)
@@ -454,6 +461,8 @@ class BehaviorsView:
     def _told(self, message: Any) -> None:
         """Feedback of a behaviour, whoever runs it. Called from a thread of the subscriber."""
         goal = message.status.goal_id.id
+        if not message.feedback.path:
+            return  # a function that runs no behaviour, or has not begun it
         if goal != self._view_goal:
             self._view_goal, self._view = goal, RunView()
         feedback = message.feedback

@@ -57,7 +57,7 @@ class FunctionsView:
                 self._servers = ui.select([ALL], value=ALL, label="Server", on_change=lambda: self._list())
                 self._servers.classes("w-full")
                 self._count = ui.label("asking the servers ...").classes("text-sm opacity-80").props("role=status")
-                with ui.scroll_area().classes("w-full").style("height: calc(100vh - 21rem)"):
+                with ui.scroll_area().classes("w-full h-64 md:h-[calc(100vh-21rem)]"):
                     self._names = ui.list().props("dense").classes("w-full")
             with ui.column().classes("grow gap-4 min-w-80"):
                 self._form = ui.card().classes("w-full gap-3")
@@ -104,7 +104,9 @@ class FunctionsView:
                     ui.item_label(function.name).classes("font-medium")
                     ui.item_label(f"{server} · {function.help}").props("caption")
         more = len(found) - MOST_SHOWN
-        self._count.text = f"{len(found)} functions" + (f", the first {MOST_SHOWN} of them here" if more > 0 else "")
+        self._count.text = f"{len(found)} function{'s' * (len(found) != 1)}" + (
+            f", the first {MOST_SHOWN} of them here" if more > 0 else ""
+        )
         if not found and self._described:
             names = [function.name for told in self._described.values() for function in told.functions]
             near = closest(words, names)

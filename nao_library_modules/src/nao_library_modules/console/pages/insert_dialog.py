@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from nicegui import ui
@@ -37,7 +37,7 @@ class InsertDialog:
         described: Mapping[str, Any],
         behaviors: list[str],
         places: list[str],
-        put: Callable[[Any, str], Any],
+        put: Callable[[Any, str], Awaitable[None]],
     ) -> None:
         self._described = described
         self._behaviors = behaviors
@@ -82,14 +82,14 @@ class InsertDialog:
             for function in found:
                 self._inputs = FieldInputs(form_of(function))
 
-    def _done(self) -> None:
+    async def _done(self) -> None:
         try:
             step = self._step()
         except ValueError as error:
             ui.notify(str(error), type="negative")
             return
         self._dialog.close()
-        self._put(step, self._place.value)
+        await self._put(step, self._place.value)
 
     def _step(self) -> Any:
         if self._kind.value in KINDS:

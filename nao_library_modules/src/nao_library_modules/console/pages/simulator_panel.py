@@ -99,7 +99,7 @@ class SimulatorPanel:
             name = ui.input("Name", value="thing1").props("dense outlined")
             content = ui.input("Content").props("dense outlined")
             content.bind_visibility_from(kind, "value", backward=lambda value: value in CONTENTS)
-            kind.on_value_change(lambda event: content.props(f'hint="{CONTENTS.get(event.value, "")}"'))
+            kind.on_value_change(lambda event: content.set_value(CONTENTS.get(event.value, "")))
             x, y, z = _number("x in m", 0.6), _number("y in m", 0.0), _number("z in m", 0.05)
 
         async def place() -> None:

@@ -36,8 +36,9 @@ class TimelineCanvas:
         for name in ("shift", "stretch", "move", "key"):
             self._element.on(f"tl{name}", lambda event, name=name: edited(name, event.args), js_handler=emit)
 
-    def show(self, tracks: Tracks, selected: str) -> None:
-        self._call("show", tracks.to_json(), selected)
+    def show(self, tracks: Tracks, selected: str, whole: bool = False) -> None:
+        """Draw tracks. `whole`: zoom such that all of them are seen."""
+        self._call("show", tracks.to_json(), selected, whole)
         servers = sorted({box.server for box in tracks.boxes if box.server}, key=str.lower)
         if servers != self._shown:
             self._shown = servers

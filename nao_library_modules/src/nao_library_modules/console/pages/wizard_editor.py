@@ -41,7 +41,7 @@ class WizardEditor:
                 ui.button("Load again", icon="refresh", on_click=self._load).props("no-caps outline")
                 ui.button("Close", icon="close", on_click=self._dialog.close).props("no-caps flat")
             self._told = ui.label().props("role=status")
-            self._list = ui.column().classes("w-full gap-0 max-h-40 overflow-auto no-wrap")
+            self._list = ui.column().classes("w-full gap-0 max-h-40 shrink-0 overflow-auto no-wrap")
             self._place = ui.column().classes("w-full flex-grow min-h-0")
             ui.label("Tab indents; Escape and then Tab leave the text.").classes("text-caption")
 

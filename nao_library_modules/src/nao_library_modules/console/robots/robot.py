@@ -109,7 +109,7 @@ class RobotClient:
     def has_service(self, name: str) -> bool:
         return bool(self._master.service_address(self.namespace + name))
 
-    def call(self, name: str, kind: type, **fields: Any) -> Any:
+    def call(self, name: str, kind: type, /, **fields: Any) -> Any:
         """Call a service of this robot, or one by its full name. Raises NotThere, ServiceRefused."""
         full = name if name.startswith("/") else self.namespace + name
         try:

@@ -17,6 +17,7 @@ from ...behaviors.language.reader import read
 from ...behaviors.language.servers import FunctionTables, NotDescribed
 from ...behaviors.language.store import BehaviorStore
 from ...functions.server_types import ServerType
+from ..robots.errors import NotThere
 
 SERVICE = "NaoBehavior/list"
 FOLDER = "~/.ros/nao_behaviors"
@@ -38,7 +39,7 @@ class StoredBehaviors:
     """What there is; where no server for behaviours runs, that of this computer. Any thread may ask.
 
     Args:
-        ask: Calls the service of the robot with fields of its request; raises NaoError if it cannot.
+        ask: Calls the service of the robot with fields of its request; raises NotThere if there is none.
         describe: Has a server of the robot describe itself; raises NaoError if it does not.
 
     `tables`: functions of the servers, for drawing.
@@ -55,7 +56,7 @@ class StoredBehaviors:
         self._texts.clear()
         try:
             return list(self._ask().behaviors)
-        except NaoError:
+        except NotThere:
             from ...behaviors.run.running import info_message
 
             store = self._offline()
@@ -65,7 +66,7 @@ class StoredBehaviors:
         """The YAML of one, and whether it comes with the library. Raises NoSuchBehavior if there is none."""
         try:
             found = self._ask(name=name).behaviors
-        except NaoError:
+        except NotThere:
             store = self._offline()
             return store.text(name), store.is_shipped(name) and not store.of_user(name)
         if not found:
@@ -82,7 +83,7 @@ class StoredBehaviors:
         """A BehaviorInfo of what a text would do, and of what is wrong with it, as `nao check` tells it."""
         try:
             return self._ask(text=text, file=file, parameters=list(given), validate=True).behaviors[0]
-        except NaoError:
+        except NotThere:
             from ...behaviors.run.running import info_message
 
             store = self._offline()

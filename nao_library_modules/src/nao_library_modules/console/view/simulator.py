@@ -13,8 +13,8 @@ from ...cli.stack import SIMULATOR
 
 KINDS = ("ball", "box", "cylinder", "landmark", "qr", "face", "person")
 """Things that the page places."""
-CONTENTS = {"landmark": "number, such as 64", "qr": "text of the code", "face": "name", "person": "name"}
-"""Kind -> what its content is."""
+CONTENTS = {"landmark": "64", "qr": "hello", "face": "anna", "person": "anna"}
+"""Kind -> an example of what stands in its content: number of a landmark, text of a code, name of a head."""
 MOUTH = 1.5
 """m over the floor, where a person's voice comes from."""
 LONGEST_TEXT = 500
@@ -111,7 +111,7 @@ class Simulator:
 
         self._call(name, Empty)
 
-    def _call(self, name: str, kind: type, **fields: Any) -> Any:
+    def _call(self, name: str, kind: type, /, **fields: Any) -> Any:
         """Call a service of this robot, or the one that all robots of a world share."""
         own = f"{SIMULATOR}/{name}"
         answer = self._robot.call(own if self._robot.has_service(own) else f"/{own}", kind, **fields)

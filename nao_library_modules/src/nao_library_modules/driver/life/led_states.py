@@ -41,7 +41,17 @@ class LedReader:
         leds = self._robot.proxy(LEDS)
         names = leds.call_async("listLEDs").result(timeout=LIMIT)
         calls = [leds.call_async("listLED", name) for name in names]
-        return {name: tuple(call.result(timeout=LIMIT)) for name, call in zip(names, calls)}
+        return joined({name: tuple(call.result(timeout=LIMIT)) for name, call in zip(names, calls)})
+
+
+def joined(lights: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+    """Lights as one sees them: ChestLedsRed, ChestLedsGreen and ChestLedsBlue are one, ChestLeds."""
+    found: dict[str, tuple[str, ...]] = {}
+    for name, devices in lights.items():
+        part = next((part for part in COLOUR_PARTS if name.endswith(part)), "")
+        whole = name[: len(name) - len(part)]
+        found[whole] = (*found.get(whole, ()), *devices)
+    return found
 
 
 def shown(lights: Mapping[str, tuple[str, ...]], values: Mapping[str, Any]) -> dict[str, Colour]:

@@ -184,6 +184,9 @@ class Imperfection:
         self._noise = noise
         self._delay = delay
 
-    def of(self, felt: Felt) -> Felt:
-        """What the robot's computer sees at a tick."""
+    def of(
+        self, joints: JointReadings, imu: Imu, contacts: Tuple[Contact, ...], link_poses: Mapping[int, Pose]
+    ) -> Felt:
+        """What the robot's computer sees at a tick, of what is true in it; see `Felt`."""
+        felt = Felt(joints, imu, contacts, link_poses)
         return self._delay.arrive(self._noise.spoil(felt) if self._noise is not None else felt)

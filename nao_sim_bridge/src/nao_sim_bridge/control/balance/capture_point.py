@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Sequence, Tuple
 
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.control.balance.stance import Stance, StanceReader
+from nao_sim_bridge.control.balance.stance import Stance, stance_reader
 from nao_sim_bridge.model.robot_model import RobotModel
 
 Vector2 = Tuple[float, float]
@@ -50,7 +50,7 @@ class BodyTracker:
     """
 
     def __init__(self, model: RobotModel, gravity: float, smoothing: float) -> None:
-        self.reader = StanceReader(model)
+        self.reader = stance_reader(model)
         self._sole_height = model.sole_height
         self._gravity = gravity
         self._smoothing = smoothing

@@ -12,7 +12,7 @@ from typing import Sequence
 
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Quaternion, from_roll_pitch_yaw, plus, rotate
-from nao_sim_bridge.control.balance.stance import StanceReader
+from nao_sim_bridge.control.balance.stance import stance_reader
 from nao_sim_bridge.model.robot_model import RobotModel
 
 LEFT, RIGHT = 0, 1
@@ -32,7 +32,7 @@ class Odometry:
     """
 
     def __init__(self, model: RobotModel, positions: Sequence[float], tilt: Sequence[float]) -> None:
-        self._reader = StanceReader(model)
+        self._reader = stance_reader(model)
         level = from_roll_pitch_yaw(tilt[0], tilt[1], 0.0)
         ahead = [rotate(level, self._reader.toe_direction(side, positions)) for side in (LEFT, RIGHT)]
         heading = math.atan2(ahead[LEFT][1] + ahead[RIGHT][1], ahead[LEFT][0] + ahead[RIGHT][0])

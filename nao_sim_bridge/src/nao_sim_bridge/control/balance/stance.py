@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Iterable, NamedTuple, Sequence, Tuple
 
 from nao_sim_bridge.base.rotations import Vector3, cross, from_roll_pitch_yaw, rotate, vector3
@@ -139,6 +140,12 @@ class StanceReader:
             tuple(o + x * a + y * b + z * c for o, a, b, c in zip(ankle, ahead, aside, up))  # type: ignore[misc]
             for x, y, z in self._soles[side]
         ]
+
+
+@lru_cache(maxsize=None)
+def stance_reader(model: RobotModel) -> StanceReader:
+    """The reader of all robots of a model, worked out once."""
+    return StanceReader(model)
 
 
 def _limb(model: RobotModel, tip: str) -> list[Joint]:

@@ -15,16 +15,18 @@ Only the simulation thread calls anything here.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import AbstractSet, Callable, Container, Iterable, Mapping, Protocol, Sequence, Union
+from typing import TYPE_CHECKING, AbstractSet, Callable, Container, Iterable, Mapping, Protocol, Sequence, Union
 
 from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.tasks import Task, TaskIds
 from nao_sim_bridge.body.joint_commands import JointCommands
-from nao_sim_bridge.control.joints.bezier import BezierCurve
 from nao_sim_bridge.control.joints.curves import ROUNDING, Ramp, SmoothCurve
 from nao_sim_bridge.control.joints.wishes import Notices
 
-Curve = Union[Ramp, SmoothCurve, BezierCurve]
+if TYPE_CHECKING:
+    from nao_sim_bridge.control.joints.bezier import BezierCurve
+
+Curve = Union[Ramp, SmoothCurve, "BezierCurve"]
 CurveBuilder = Callable[[Sequence[float]], Mapping[int, Curve]]
 
 # A command is "there" when it is this close; float rounding only, commands are exact.

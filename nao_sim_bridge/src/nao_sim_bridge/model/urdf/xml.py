@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from html import escape
 
 import numpy as np
 
 from nao_sim_bridge.model.shapes import Shape
 
+ESCAPED = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#x27;"})
+"""Letters that stand for something else in XML; the module html takes long to load."""
 NO_ROTATION = (0.0, 0.0, 0.0)
 MESH_URL = "package://nao_sim_bridge/urdf/meshes"
 
@@ -29,7 +30,8 @@ def origin(xyz: Sequence[float], rpy: Sequence[float] = NO_ROTATION) -> str:
 
 def inertial(mass: float, com: Sequence[float], inertia: np.ndarray) -> list[str]:
     """Mass (kg), centre of mass (m) and (3, 3) inertia about it (kg m2)."""
-    entries = zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), inertia[np.triu_indices(3)])
+    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = inertia
+    entries = zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), (ixx, ixy, ixz, iyy, iyz, izz))
     tensor = " ".join(f'{name}="{number(value)}"' for name, value in entries)
     return [
         "    <inertial>",
@@ -143,4 +145,4 @@ def robot(name: str, comment: str, lines: Iterable[str]) -> str:
 
 
 def _quoted(text: str) -> str:
-    return f'"{escape(text)}"'
+    return f'"{text.translate(ESCAPED)}"'

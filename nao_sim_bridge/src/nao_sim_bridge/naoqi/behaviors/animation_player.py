@@ -9,8 +9,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.steps import Behavior
 from nao_sim_bridge.control.balance.posture_recognition import CROUCHING, ON_CHAIR, SITTING, STANDING, recognise
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.speech.animations import POSTURE_PATTERN
@@ -24,11 +23,10 @@ ANIMATIONS = "animations/"
 class ALAnimationPlayer:
     """ALAnimationPlayer as the simulated robot offers it: an animation is a behaviour whose name says its posture."""
 
-    def __init__(self, running: RunningBehaviors, simulation: Simulation, runner: SimulationRunner) -> None:
+    def __init__(self, running: RunningBehaviors, runner: RobotRunner) -> None:
         self._running = running
-        self._simulation = simulation
         self._runner = runner
-        self._chance = random.Random(simulation.scene.seed)
+        self._chance = random.Random(runner.simulation.scene.seed)
         self._tags: dict[str, list[str]] = {}
         self._paths: list[str] = [ANIMATIONS]
 
@@ -72,7 +70,7 @@ class ALAnimationPlayer:
         ]
 
     def _posture(self) -> str:
-        family = recognise(self._simulation.model, self._runner.snapshot).family
+        family = recognise(self._runner.simulation.model, self._runner.snapshot).family
         return FOLDERS.get(family, FOLDERS[STANDING])
 
     def _play(self, behavior: Behavior, call: str) -> Task:

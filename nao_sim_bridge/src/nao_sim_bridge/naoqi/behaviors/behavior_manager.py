@@ -11,7 +11,7 @@ from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.packages import MANIFEST, read_package, renamed
 from nao_sim_bridge.behaviors.steps import Behavior
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RUN, RunningBehaviors
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
@@ -26,9 +26,7 @@ class ALBehaviorManager:
     Behaviours that are installed, and the list of default behaviours, are kept as long as the simulator runs.
     """
 
-    def __init__(
-        self, running: RunningBehaviors, runner: SimulationRunner, memory: MemoryStore, files: ClientFiles
-    ) -> None:
+    def __init__(self, running: RunningBehaviors, runner: RobotRunner, memory: MemoryStore, files: ClientFiles) -> None:
         self._running = running
         self._installed = running.installed
         self._runner = runner

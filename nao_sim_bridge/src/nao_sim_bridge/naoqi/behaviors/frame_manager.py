@@ -14,7 +14,7 @@ from nao_sim_bridge.behaviors.packages import read_package
 from nao_sim_bridge.behaviors.reader import checked_name
 from nao_sim_bridge.behaviors.steps import Behavior, Step, length_of
 from nao_sim_bridge.behaviors.xar import xar_step
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 
 NAME = "ALFrameManager"
@@ -36,7 +36,7 @@ class ALFrameManager:
     The behaviours that it makes are run under their ids.
     """
 
-    def __init__(self, running: RunningBehaviors, runner: SimulationRunner, files: ClientFiles) -> None:
+    def __init__(self, running: RunningBehaviors, runner: RobotRunner, files: ClientFiles) -> None:
         self._running = running
         self._runner = runner
         self._files = files

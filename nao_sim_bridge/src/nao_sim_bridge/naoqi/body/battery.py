@@ -6,7 +6,7 @@ from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.body.sensors.battery import BatteryReading
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 NAME = "ALBattery"
@@ -38,7 +38,7 @@ BEGINNINGS: Mapping[str, tuple[Callable[[BatteryReading], bool], Any]] = {
 class ALBattery:
     """ALBattery as the simulated robot offers it; called after every tick, in the simulation thread, for its events."""
 
-    def __init__(self, runner: SimulationRunner, memory: MemoryStore) -> None:
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
         self._runner = runner
         self._enabled = True
         self._memory = memory

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.body import (
     battery,
     body_temperature,
@@ -25,16 +24,16 @@ from nao_sim_bridge.naoqi.memory.store import MemoryStore
 class BodyModules:
     """Modules that tell how the robot is, and what raises their events."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
+        self._simulation = simulation = runner.simulation
         self._memory = memory
         self._touch = touch.ALTouch(simulation.model, memory)
-        self._sonar = sonar.ALSonar(simulation, runner, memory)
+        self._sonar = sonar.ALSonar(runner, memory)
         gestures, stiffness = tactile_gesture.ALTactileGesture(memory), sensors.ALSensors(runner, memory)
         power = battery.ALBattery(runner, memory)
-        temperature = body_temperature.ALBodyTemperature(simulation, runner, memory)
+        temperature = body_temperature.ALBodyTemperature(runner, memory)
         failures = diagnosis.ALDiagnosis(simulation, memory)
-        pose = posture.ALRobotPose(runner, simulation.model)
+        pose = posture.ALRobotPose(runner)
         self._watchers = [
             posture.PostureEvents(simulation.model, memory),
             motion_events.FallEvents(simulation, memory),
@@ -62,7 +61,7 @@ class BodyModules:
             diagnosis.NAME: [failures],
             robot_model.NAME: [robot_model.ALRobotModel(simulation.model.version)],
             posture.POSE: [pose],
-            dcm.NAME: [dcm.DCM(simulation, runner, memory)],
+            dcm.NAME: [dcm.DCM(runner, memory)],
         }
 
     def begin(self) -> None:

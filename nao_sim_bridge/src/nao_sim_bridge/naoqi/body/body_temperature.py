@@ -6,8 +6,7 @@ from typing import Any
 
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.temperatures import CRITICAL, HEAD, NOTHING_HOT, Hot, hot_devices
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.body.diagnosis import severity_value
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
@@ -23,11 +22,11 @@ HEAD_STEP = 1.0
 class ALBodyTemperature:
     """ALBodyTemperature as the simulated robot offers it; called after every tick, in the simulation thread."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
         self._runner = runner
         self._enabled = True
-        self._model = simulation.model
-        self._limits = simulation.settings.head
+        self._model = runner.simulation.model
+        self._limits = runner.simulation.settings.head
         self._memory = memory
         self._temperatures: Any = None
         self._hot = NOTHING_HOT

@@ -10,8 +10,7 @@ from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.timed_commands import MERGE, Point
 from nao_sim_bridge.core.device_commands import DeviceCommands, index_of
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import number, vector, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.live_keys import key_prefix
@@ -30,11 +29,10 @@ class DCM:
     Commands go past ALMotion: a task of it that moves one of the joints ends.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
         self._runner = runner
         self._prefix = key_prefix()
-        self._commands = DeviceCommands(lambda: simulation.robot, self._milliseconds)
+        self._commands = DeviceCommands(lambda: runner.simulation.robot, self._milliseconds)
         self._aliases: dict[str, Sequence[str]] = {}
         self._memory = memory
         self._saved: dict[tuple[str, str], Any] = {}
@@ -103,11 +101,11 @@ class DCM:
     def _device(self, name: str) -> str:
         """A device without the prefix; there is none of another name."""
         short = name[len(self._prefix) :] if name.startswith(self._prefix) else name
-        index_of(self._simulation.robot, short)
+        index_of(self._runner.simulation.robot, short)
         return short
 
     def _milliseconds(self) -> int:
-        return round(1000.0 * self._simulation.time)
+        return round(1000.0 * self._runner.simulation.time)
 
 
 def timed_points(values: Any, field: str) -> list[Point]:

@@ -9,8 +9,7 @@ from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body import led_animations
 from nao_sim_bridge.body.leds import LedKeyframe, uniform
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.leds_layout import LedLayout
 from nao_sim_bridge.naoqi.binding.arguments import known, number, numbers
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -72,10 +71,10 @@ class LedNames:
 class ALLeds:
     """Part of ALLeds: lights at once, and over time."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner) -> None:
+        self._simulation = runner.simulation
         self._runner = runner
-        self._layout = simulation.led_layout
+        self._layout = runner.simulation.led_layout
         self.names = LedNames(self._layout)
 
     def on(self, name: str) -> Task:
@@ -165,7 +164,7 @@ def _color(color: Sequence[Any]) -> led_animations.Color:
     return led_animations.color_of_int(value)
 
 
-def parts(simulation: Simulation, runner: SimulationRunner) -> list[Any]:
+def parts(runner: RobotRunner) -> list[Any]:
     """The objects that together have the methods of ALLeds."""
-    lights = ALLeds(simulation, runner)
+    lights = ALLeds(runner)
     return [lights, lights.names]

@@ -92,5 +92,5 @@ class PushEvents(_MotionEvents):
     def _stands_still(self) -> bool:
         robot = self._simulation.robot
         falling = robot.stability.falls.state is FallState.FALLING
-        moves = robot.getting_up or robot.locomotion.active or robot.motion.tasks() or any(robot.joints.velocities)
+        moves = robot.getting_up or robot.walking or robot.motion.tasks() or any(robot.joints.velocities)
         return robot.stability.on_feet and not (falling or moves)

@@ -11,8 +11,7 @@ from nao_sim_bridge.control.balance import posture_recognition as families
 from nao_sim_bridge.control.balance.posture_recognition import PostureWatch, recognise
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import load_moves
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.postures import load_postures
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.naoqi.binding.arguments import speed_share
@@ -45,8 +44,8 @@ POSE_PERIOD = 0.5
 class ALRobotPosture:
     """ALRobotPosture as the simulated robot offers it. Only NAOqi methods live here."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
+        self._simulation = runner.simulation
         self._runner = runner
         self._memory = memory
         self._tries = DEFAULT_TRIES
@@ -125,9 +124,9 @@ class PostureEvents:
 class ALRobotPose:
     """The module that ALRobotPosture has replaced: coarse poses and since when; called after every tick."""
 
-    def __init__(self, runner: SimulationRunner, model: RobotModel) -> None:
+    def __init__(self, runner: RobotRunner) -> None:
         self._runner = runner
-        self._watch = PostureWatch(model)
+        self._watch = PostureWatch(runner.simulation.model)
         # Pose, and the simulated time in s since which the robot is in it; replaced as a whole.
         self._state = (UNKNOWN, 0.0)
         self._next = 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
@@ -18,7 +18,7 @@ LIMP_BELOW, STIFF_ABOVE = 0.05, 0.95
 class ALSensors:
     """ALSensors as the simulated robot offers it; raises `BodyStiffnessChanged`, called after every tick."""
 
-    def __init__(self, runner: SimulationRunner, memory: MemoryStore) -> None:
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
         self._runner = runner
         self._memory = memory
         self._stiffnesses: Any = None

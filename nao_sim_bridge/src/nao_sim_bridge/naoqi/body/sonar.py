@@ -12,8 +12,7 @@ from nao_sim_bridge.base.errors import ConfigError, SimulationStopped
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.sensors.sonar import NO_ECHO
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.memory.extractor import Extractor, Subscription
 from nao_sim_bridge.naoqi.memory.live_keys import FILE, key_prefix, key_tables
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -47,8 +46,8 @@ class ALSonar:
     ALMemory keep what was measured last.
     """
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
+        self._simulation = runner.simulation
         self._runner = runner
         self._memory = memory
         self._subscribed = False
@@ -89,7 +88,7 @@ class ALSonar:
         return self._echoes[side]
 
     def __call__(self, snapshot: Snapshot) -> None:
-        if not (self._subscribed or self._simulation.robot.locomotion.active):
+        if not (self._subscribed or self._simulation.robot.walking):
             self.firing = False
             return
         if not self.firing:
@@ -110,7 +109,7 @@ class ALSonar:
 
     def _unsubscribe(self) -> None:
         self._subscribed = False
-        self.firing = self.firing and self._simulation.robot.locomotion.active
+        self.firing = self.firing and self._simulation.robot.walking
 
     def _shoot(self) -> None:
         """Do not wait for the next shot but fire."""

@@ -15,7 +15,7 @@ from nao_sim_bridge.base.errors import SimulationError, SimulationStopped
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.whole_file import FileTrouble, WholeFile
 from nao_sim_bridge.cameras.stream import CameraClosed
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 log = logging.getLogger("nao_sim.films")
@@ -45,7 +45,7 @@ class FilmSettings:
 class VideoRecorder:
     """One recording at a time; its streams have the `name`."""
 
-    def __init__(self, cameras: Any, runner: SimulationRunner, name: str) -> None:
+    def __init__(self, cameras: Any, runner: RobotRunner, name: str) -> None:
         self._cameras = cameras
         self._runner = runner
         self._name = name

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.installed import InstalledBehaviors
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import number, whole_number
 from nao_sim_bridge.naoqi.life.life import ALIVE, STACK, STOP, Life
 from nao_sim_bridge.naoqi.life.stimuli import Stimuli
@@ -18,7 +18,7 @@ class ALAutonomousLife:
     No activity is launched by conditions: those that are installed have none.
     """
 
-    def __init__(self, life: Life, installed: InstalledBehaviors, stimuli: Stimuli, runner: SimulationRunner) -> None:
+    def __init__(self, life: Life, installed: InstalledBehaviors, stimuli: Stimuli, runner: RobotRunner) -> None:
         self._life = life
         self._installed = installed
         self._stimuli = stimuli

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.base.errors import MoveRefused
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.frames import ROBOT
 from nao_sim_bridge.naoqi.binding.arguments import known, number
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
@@ -63,22 +63,15 @@ class Awareness:
         tracking: What moves: one of `TRACKINGS`.
     """
 
-    def __init__(
-        self,
-        simulation: Any,
-        runner: SimulationRunner,
-        memory: MemoryStore,
-        calls: ModuleCalls,
-        busy: Callable[[], bool],
-    ) -> None:
+    def __init__(self, runner: RobotRunner, memory: MemoryStore, calls: ModuleCalls, busy: Callable[[], bool]) -> None:
         self.enabled = self.paused = False
         self.engagement, self.tracking = UNENGAGED, HEAD
         self.stimuli = Stimuli(runner, memory, calls, self._react)
         self.settings = Settings()
-        self._simulation = simulation
+        self._simulation = runner.simulation
         self._memory = memory
         self._busy = busy
-        self._follower = Follower(simulation)
+        self._follower = Follower(runner.simulation)
         self.human = NOBODY  # the number of the face that is followed
         self._engaged = NOBODY
         self._since = self._seen = self._until = self._last = 0.0
@@ -86,8 +79,8 @@ class Awareness:
         self._triggered = 0
         for event in (STIMULUS, TRACKED, LOST):
             memory.declare_event(event, NAME)
-        simulation.after_tick.append(self._tick)
-        simulation.after_reset.append(self._after_reset)
+        runner.simulation.after_tick.append(self._tick)
+        runner.simulation.after_reset.append(self._after_reset)
 
     @property
     def running(self) -> bool:

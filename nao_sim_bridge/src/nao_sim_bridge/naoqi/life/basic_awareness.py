@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Callable
 
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import known, one_of, vector
 from nao_sim_bridge.naoqi.life.awareness import (
     ENGAGEMENTS,
@@ -22,7 +22,7 @@ from nao_sim_bridge.naoqi.life.stimuli import check
 class ALBasicAwareness:
     """ALBasicAwareness as the simulated robot offers it; a NAO has no tablet, and nothing that sees motion but eyes."""
 
-    def __init__(self, awareness: Awareness, runner: SimulationRunner) -> None:
+    def __init__(self, awareness: Awareness, runner: RobotRunner) -> None:
         self._awareness = awareness
         self._runner = runner
 

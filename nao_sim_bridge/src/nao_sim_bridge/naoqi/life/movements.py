@@ -14,7 +14,7 @@ from nao_sim_bridge.base.errors import BadValue, SimulationStopped
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.leds import LedKeyframe
 from nao_sim_bridge.control.joints.idle import Mode
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.speech import body_language, speaker
 from nao_sim_bridge.speech.animations import Animation, AnimationLibrary, KeyFrames
@@ -82,9 +82,8 @@ class SpeakingMovement:
 class ListeningMovement:
     """Nods, if enabled, when somebody speaks to the robot, which speech recognition tells while it runs."""
 
-    def __init__(self, simulation: Any, runner: SimulationRunner, memory: MemoryStore, animator: Animator) -> None:
+    def __init__(self, runner: RobotRunner, memory: MemoryStore, animator: Animator) -> None:
         self.enabled = True
-        self._simulation = simulation
         self._runner = runner
         self._animator = animator
         self._on = False
@@ -101,7 +100,7 @@ class ListeningMovement:
             self._runner.execute(self._nod, "listening")
 
     def _nod(self) -> None:
-        robot, now = self._simulation.robot, self._simulation.time
+        robot, now = self._runner.simulation.robot, self._runner.simulation.time
         head = [robot.model.joint_index[name] for name in HEAD]
         if now < self._next or robot.motion.busy(head) or not self._animator.can(NOD):
             return
@@ -139,7 +138,7 @@ class Blinking:
 class ALAutonomousMoves:
     """ALAutonomousMoves as the simulated robot offers it."""
 
-    def __init__(self, background: BackgroundMovement, listening: ListeningMovement, runner: SimulationRunner) -> None:
+    def __init__(self, background: BackgroundMovement, listening: ListeningMovement, runner: RobotRunner) -> None:
         self._background = background
         self._listening = listening
         self._runner = runner

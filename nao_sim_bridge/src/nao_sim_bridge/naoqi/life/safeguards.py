@@ -7,7 +7,7 @@ from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.naoqi.life.life import ALIVE, DISABLED, SOLITARY, Life
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -27,7 +27,7 @@ CRITICAL = 2
 class Safeguards:
     """Part of ALAutonomousLife: watches over a life."""
 
-    def __init__(self, life: Life, runner: SimulationRunner, memory: MemoryStore, rest: Callable[[], Task]) -> None:
+    def __init__(self, life: Life, runner: RobotRunner, memory: MemoryStore, rest: Callable[[], Task]) -> None:
         self._enabled = dict.fromkeys(SAFEGUARDS, True)
         self._life = life
         self._runner = runner

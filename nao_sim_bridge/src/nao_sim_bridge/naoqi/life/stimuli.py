@@ -9,7 +9,7 @@ from contextlib import suppress
 from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import SimulationStopped
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -53,7 +53,7 @@ class Stimuli:
 
     def __init__(
         self,
-        runner: SimulationRunner,
+        runner: RobotRunner,
         memory: MemoryStore,
         calls: ModuleCalls,
         react: Callable[[str, Sequence[Sighting]], None],

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
@@ -42,8 +41,7 @@ class LifeModules:
 
     def __init__(
         self,
-        simulation: Simulation,
-        runner: SimulationRunner,
+        runner: RobotRunner,
         memory: MemoryStore,
         broker: Any,
         speech: SpeechModules,
@@ -51,13 +49,14 @@ class LifeModules:
         running: RunningBehaviors,
         zone: TimeZone,
     ) -> None:
+        simulation = runner.simulation
         self._calls = ModuleCalls(broker, released=lambda: simulation.wake())
         simulation.holds.append(self._calls.holds)
-        wake = Wake(simulation, runner, memory)
-        self._tracking = Tracking(simulation, runner, memory, self._calls)
-        self._awareness = Awareness(simulation, runner, memory, self._calls, lambda: bool(self._tracking.active))
+        wake = Wake(runner, memory)
+        self._tracking = Tracking(runner, memory, self._calls)
+        self._awareness = Awareness(runner, memory, self._calls, lambda: bool(self._tracking.active))
         background = BackgroundMovement(simulation)
-        listening = ListeningMovement(simulation, runner, memory, speech.animator)
+        listening = ListeningMovement(runner, memory, speech.animator)
         speaking = SpeakingMovement(speech.speaker, speech.animator, speech.library, simulation.scene.seed)
         self._life = Life(
             simulation,
@@ -87,7 +86,7 @@ class LifeModules:
             ],
             movements.NAME: [ALAutonomousMoves(background, listening, runner)],
             awareness.NAME: [ALBasicAwareness(self._awareness, runner)],
-            tracking.NAME: [ALTracker(self._tracking, runner), Looking(self._tracking, simulation, runner)],
+            tracking.NAME: [ALTracker(self._tracking, runner), Looking(self._tracking, runner)],
         }
 
     def close(self) -> None:

@@ -15,7 +15,7 @@ from nao_sim_bridge.base.readings import FootForces
 from nao_sim_bridge.body.sensors.battery import BatteryReading
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.temperatures import heat_status
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.leds_layout import LedLayout
 from nao_sim_bridge.model.robot_model import RobotModel
 
@@ -61,7 +61,7 @@ def key_prefix() -> str:
     return key_tables()["_meta"]["prefix"]
 
 
-def live_keys(runner: SimulationRunner, model: RobotModel, leds: LedLayout, led_values: Callable[[], tuple]) -> dict:
+def live_keys(runner: RobotRunner, model: RobotModel, leds: LedLayout, led_values: Callable[[], tuple]) -> dict:
     """Key -> function without arguments that reads its present value.
 
     A ConfigError when the file names a key that nothing can read.

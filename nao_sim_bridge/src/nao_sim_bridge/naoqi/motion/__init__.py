@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.cartesian import Cartesian, Mass
 from nao_sim_bridge.naoqi.motion.joints import Body, Joints, TaskList
@@ -15,11 +14,11 @@ from nao_sim_bridge.naoqi.motion.walking import Walking
 from nao_sim_bridge.naoqi.motion.whole_body import WholeBody
 
 
-def parts(simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> list[Any]:
+def parts(runner: RobotRunner, memory: MemoryStore) -> list[Any]:
     """Objects that together have the methods of ALMotion."""
     return [
-        *(part(simulation, runner) for part in (Body, Joints, TaskList, Cartesian, Mass, WholeBody)),
-        Wake(simulation, runner, memory),
-        Walking(simulation, runner, memory),
-        *(part(simulation, runner) for part in (Collisions, Idling, Switches)),
+        *(part(runner) for part in (Body, Joints, TaskList, Cartesian, Mass, WholeBody)),
+        Wake(runner, memory),
+        Walking(runner, memory),
+        *(part(runner) for part in (Collisions, Idling, Switches)),
     ]

@@ -36,10 +36,10 @@ class Body(MotionPart):
         return [[j.lower, j.upper, j.max_velocity, j.max_torque] for j in joints]
 
     def getMotionCycleTime(self) -> int:
-        return round(1000.0 * self._simulation.settings.tick_s)
+        return round(1000.0 * self._runner.simulation.settings.tick_s)
 
     def getRobotConfig(self) -> list:
-        version = {"V6": "VERSION_60", "V5": "VERSION_50"}[self._simulation.scene.version]
+        version = {"V6": "VERSION_60", "V5": "VERSION_50"}[self._runner.simulation.scene.version]
         values = {
             "Model Type": "naoH25",
             "Head Version": version,

@@ -9,8 +9,7 @@ import numpy as np
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.robot import SimulatedRobot
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.frames import Placement, commanded, space_in_torso
 from nao_sim_bridge.naoqi.motion.arguments import joint_indices, space_of
 from nao_sim_bridge.tracking.geometry import placement
@@ -19,15 +18,14 @@ from nao_sim_bridge.tracking.geometry import placement
 class MotionPart:
     """A part of ALMotion; its joints are touched in the simulation thread only."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner) -> None:
         self._runner = runner
-        self._model = simulation.model
+        self._model = runner.simulation.model
 
     @property
     def _robot(self) -> SimulatedRobot:
         """The robot of now: a reset makes a new one."""
-        return self._simulation.robot
+        return self._runner.simulation.robot
 
     def _indices(self, names: Any) -> list[int]:
         return joint_indices(names, self._model)

@@ -6,8 +6,7 @@ from typing import Callable
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core import sequences
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.part import MotionPart
@@ -24,8 +23,8 @@ def set_awake(memory: MemoryStore, awake: bool) -> None:
 class Wake(MotionPart):
     """Waking up, resting, and the events about it."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
-        super().__init__(simulation, runner)
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
+        super().__init__(runner)
         self._memory = memory
         memory.declare_event(AWAKE, "ALMotion")
         for event in ("wakeUpStarted", "wakeUpFinished", "restStarted", "restFinished"):

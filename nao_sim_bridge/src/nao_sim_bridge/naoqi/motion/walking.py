@@ -7,8 +7,7 @@ from typing import Any, Callable, Iterable, Sequence
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import known, number, vector
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.arguments import require_rising
@@ -49,8 +48,8 @@ class MoveFailures:
 class Walking(MotionPart):
     """Moves. Those at a velocity return at once; those to a place return when the robot stands there, or elsewhere."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore) -> None:
-        super().__init__(simulation, runner)
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
+        super().__init__(runner)
         self._failures = MoveFailures(memory)
 
     def moveInit(self) -> Task:
@@ -83,7 +82,7 @@ class Walking(MotionPart):
         return self._walk("waitUntilMoveIsFinished", lambda locomotion: locomotion.until_finished())
 
     def moveIsActive(self) -> bool:
-        return self._robot.locomotion.active
+        return self._robot.walking
 
     # --- configuration --------------------------------------------------------------------------------------------
 

@@ -8,8 +8,7 @@ import numpy as np
 
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.tasks import Task, worked_out
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.sound.microphone_clients import MicrophoneClients
@@ -71,20 +70,18 @@ class ALAudioDevice:
 
     def __init__(
         self,
-        simulation: Simulation,
-        runner: SimulationRunner,
+        runner: RobotRunner,
         sounds: SoundFiles,
         clients: MicrophoneClients,
         energy: MicrophoneEnergy,
         recorder: Recorder,
     ) -> None:
-        self._simulation = simulation
         self._runner = runner
         self._sounds = sounds
         self._clients = clients
         self._energy = energy
         self._recorder = recorder
-        self._buffers = OutputBuffers(simulation)
+        self._buffers = OutputBuffers(runner.simulation)
         self._input_size = INPUT_SIZES[0]
         self._input_closed = False
 
@@ -154,7 +151,8 @@ class ALAudioDevice:
         sound = self._sounds.read(name) if name else None
         if sound is not None and sound.channels == 2:  # of two channels nobody knows which microphones they are for
             sound = sound.mono()
-        return self._do(lambda: setattr(self._simulation.sound.microphones, "replaced_by", sound), "setFileAsInput")
+        microphones = self._runner.simulation.sound.microphones
+        return self._do(lambda: setattr(microphones, "replaced_by", sound), "setFileAsInput")
 
     def startMicrophonesRecording(self, name: str) -> Task:
         kind = kind_of(name)
@@ -205,7 +203,7 @@ class ALAudioDevice:
 
     @property
     def _speakers(self) -> Any:
-        return self._simulation.sound.loudspeakers
+        return self._runner.simulation.sound.loudspeakers
 
     def _do(self, action: Callable[[], Any], name: str) -> Task:
         return self._runner.execute(action, name)

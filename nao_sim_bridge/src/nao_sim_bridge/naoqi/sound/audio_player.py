@@ -7,8 +7,7 @@ from typing import Any, Callable
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.samples import Sound
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.background import Background, Wanted
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -28,8 +27,7 @@ class ALAudioPlayer:
 
     def __init__(
         self,
-        simulation: Simulation,
-        runner: SimulationRunner,
+        runner: RobotRunner,
         sounds: SoundFiles,
         background: Background,
         memory: MemoryStore,
@@ -43,7 +41,7 @@ class ALAudioPlayer:
         folders = (sounds.files.folder / OWN_SETS, *sounds.files.shipped)
         self._sets = SoundSets(sounds, lambda name, size: self._player.check_room(name, size), *folders)
         self._player = Player(
-            simulation,
+            runner.simulation,
             lambda onset, end: memory.insert(TIMES, [onset, end]),
             lambda: sounds.reader.sizes.loaded_sounds.bytes,
             self._sets.kept,

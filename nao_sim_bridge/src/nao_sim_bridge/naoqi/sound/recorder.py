@@ -12,7 +12,7 @@ from nao_sim_bridge.base.errors import BadValue, SimulationStopped
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task, worked_out
 from nao_sim_bridge.base.whole_file import FileTrouble
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, MicrophoneFormat, flags_to_channel, microphone_format
 from nao_sim_bridge.sound.files import OggFile, WavFile
@@ -46,8 +46,7 @@ class FilesInUse:
 class Recorder:
     """One recording at a time; all recorders share the files that are `in_use`."""
 
-    def __init__(self, simulation: Any, runner: SimulationRunner, files: ClientFiles, in_use: FilesInUse) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner, files: ClientFiles, in_use: FilesInUse) -> None:
         self._runner = runner
         self._files = files
         self._in_use = in_use
@@ -71,7 +70,8 @@ class Recorder:
                 self._in_use.give_back(path)
                 raise
         log.info("recording to %s", path)
-        return self._runner.execute(lambda: recording.begin(self._simulation.sound.ears), "startMicrophonesRecording")
+        ears = self._runner.simulation.sound.ears
+        return self._runner.execute(lambda: recording.begin(ears), "startMicrophonesRecording")
 
     def stop(self) -> Task:
         """End at the present moment of simulated time; the task ends when the file is complete."""
@@ -89,7 +89,7 @@ class Recorder:
                 self._in_use.give_back(recording.path)
 
         def mark() -> None:
-            recording.until = self._simulation.sound.time
+            recording.until = self._runner.simulation.sound.time
 
         def marked(_: Task | None) -> None:  # what was heard last has still to be worked out
             worked_out(ended, end, "end of a recording")

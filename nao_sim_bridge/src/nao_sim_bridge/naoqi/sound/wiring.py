@@ -7,8 +7,7 @@ from typing import Any, Callable
 
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.sound.audio_device import ALAudioDevice, MicrophoneEnergy
@@ -32,22 +31,17 @@ class AudioModules:
     """ALAudioPlayer, ALAudioDevice and ALAudioRecorder of one robot; the broker finds modules of clients."""
 
     def __init__(
-        self,
-        simulation: Simulation,
-        runner: SimulationRunner,
-        sounds: SoundFiles,
-        broker: Any,
-        memory: MemoryStore,
-        allow_private_streams: bool,
+        self, runner: RobotRunner, sounds: SoundFiles, broker: Any, memory: MemoryStore, allow_private_streams: bool
     ) -> None:
+        simulation = runner.simulation
         background = Background(released=lambda: simulation.wake())
         ears, settings = simulation.sound.ears, simulation.sound.settings
         self.clients = MicrophoneClients(ears, broker.service, released=lambda: simulation.wake())
         in_use = FilesInUse()
-        self.recorders = [Recorder(simulation, runner, sounds.files, in_use) for _ in range(2)]
+        self.recorders = [Recorder(runner, sounds.files, in_use) for _ in range(2)]
         self._energy = MicrophoneEnergy(ears, {side: settings.energy_channels(side) for side in settings.energies})
-        player = ALAudioPlayer(simulation, runner, sounds, background, memory, allow_private_streams)
-        device = ALAudioDevice(simulation, runner, sounds, self.clients, self._energy, self.recorders[0])
+        player = ALAudioPlayer(runner, sounds, background, memory, allow_private_streams)
+        device = ALAudioDevice(runner, sounds, self.clients, self._energy, self.recorders[0])
         self.modules: dict[str, list[Any]] = {
             "ALAudioPlayer": player.parts(),
             "ALAudioDevice": [device, self._energy],
@@ -68,26 +62,19 @@ class SpeechModules:
     """ALTextToSpeech and ALAnimatedSpeech of one robot; the broker finds modules that a text calls."""
 
     def __init__(
-        self,
-        simulation: Simulation,
-        runner: SimulationRunner,
-        memory: MemoryStore,
-        files: ClientFiles,
-        broker: Any,
-        studio: Studio,
+        self, runner: RobotRunner, memory: MemoryStore, files: ClientFiles, broker: Any, studio: Studio
     ) -> None:
         self._broker = broker
         self._closed = False
         self.studio = studio
-        self.speaker = Speaker(simulation, studio)
-        self.animator = Animator(simulation)
+        self.speaker = Speaker(runner.simulation, studio)
+        self.animator = Animator(runner.simulation)
         self.library = load_animations()
         settings = VoiceSettings(studio.engines, files)
-        events = SpeechEvents(memory, lambda: simulation.sound.time)
+        events = SpeechEvents(memory, lambda: runner.simulation.sound.time)
         self.speaker.listeners.append(events)
         self._text_to_speech = ALTextToSpeech(self.speaker, studio, settings, events, runner, files)
         self._animated_speech = ALAnimatedSpeech(
-            simulation,
             runner,
             memory,
             self.speaker,

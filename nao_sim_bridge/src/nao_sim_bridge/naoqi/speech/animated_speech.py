@@ -8,8 +8,7 @@ from typing import Any, Mapping
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import one_of
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller
@@ -29,8 +28,7 @@ class ALAnimatedSpeech:
 
     def __init__(
         self,
-        simulation: Simulation,
-        runner: SimulationRunner,
+        runner: RobotRunner,
         memory: MemoryStore,
         speaker: Speaker,
         studio: Studio,
@@ -40,7 +38,6 @@ class ALAnimatedSpeech:
         animator: Animator,
         library: AnimationLibrary,
     ) -> None:
-        self._simulation = simulation
         self._runner = runner
         self._memory = memory
         self._speaker = speaker
@@ -50,7 +47,7 @@ class ALAnimatedSpeech:
         self._call = call
         self._animator = animator
         self._library = library
-        self._chance = random.Random(simulation.scene.seed)
+        self._chance = random.Random(runner.simulation.scene.seed)
         self._mode = CONTEXTUAL
         memory.declare_event(END, "ALAnimatedSpeech")
 
@@ -65,7 +62,7 @@ class ALAnimatedSpeech:
         talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, call)
 
         def start() -> Task:
-            task = talk.start(self._simulation, self._speaker, self._animator)
+            task = talk.start(self._runner.simulation, self._speaker, self._animator)
             task.add_done_callback(lambda done: self._memory.raise_event(END, done.task_id))
             return task
 

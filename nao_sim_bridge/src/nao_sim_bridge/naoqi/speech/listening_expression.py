@@ -7,8 +7,7 @@ import threading
 
 from nao_sim_bridge.base.samples import sine
 from nao_sim_bridge.body.led_animations import colored
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 
 log = logging.getLogger("nao_sim.recognition")
 
@@ -26,8 +25,8 @@ BLUE = (0.0, 0.0, 1.0)
 class ListeningExpression:
     """Bips and lights, those of a key of `MODES`. Any thread."""
 
-    def __init__(self, simulation: Simulation, runner: SimulationRunner) -> None:
-        self._simulation = simulation
+    def __init__(self, runner: RobotRunner) -> None:
+        self._simulation = runner.simulation
         self._runner = runner
         self._lock = threading.Lock()
         self.audio = True

@@ -7,7 +7,7 @@ import threading
 from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.samples import frame_at
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.hearing.listening import Hypothesis, Listening, Recognised
 from nao_sim_bridge.hearing.recogniser import Recogniser, SpareProcess
 from nao_sim_bridge.hearing.settings import load_recognition
@@ -48,16 +48,15 @@ class RecognitionEngine(Switch):
 
     def __init__(
         self,
-        simulation: Simulation,
-        execute: Callable[[Callable[[], None], str], Any],
+        runner: RobotRunner,
         memory: MemoryStore,
         on_listen: Callable[[bool], float],
         accepts: Callable[[Hypothesis], bool],
         spare: SpareProcess | None = None,
     ) -> None:
         super().__init__()
-        self._simulation = simulation
-        self._execute = execute
+        self._runner = runner
+        self._simulation = simulation = runner.simulation
         self._memory = memory
         self._on_listen = on_listen
         self._accepts = accepts
@@ -143,7 +142,7 @@ class RecognitionEngine(Switch):
             self._tell_hearing(True)
             return
         self._opening = alarm = Alarm(frame_at(begin), lambda: self._opened(alarm))
-        self._execute(lambda: self._simulation.sound.timeline.add(alarm), "begin of listening")
+        self._runner.execute(lambda: self._simulation.sound.timeline.add(alarm), "begin of listening")
 
     def _opened(self, alarm: Alarm) -> None:
         with self._status_lock:

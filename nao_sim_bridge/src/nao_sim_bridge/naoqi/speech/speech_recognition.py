@@ -8,8 +8,7 @@ from typing import Any, Callable, Mapping, Sequence
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.hearing.grammars.contexts import Context, Contexts
 from nao_sim_bridge.hearing.grammars.grammar import Grammar, vocabulary
 from nao_sim_bridge.hearing.listening import Hypothesis
@@ -33,18 +32,11 @@ class ALSpeechRecognition:
     """ALSpeechRecognition as the simulated robot offers it, with only NAOqi methods. `spare`: see `Recogniser`."""
 
     def __init__(
-        self,
-        simulation: Simulation,
-        runner: SimulationRunner,
-        memory: MemoryStore,
-        files: ClientFiles,
-        spare: SpareProcess | None = None,
+        self, runner: RobotRunner, memory: MemoryStore, files: ClientFiles, spare: SpareProcess | None = None
     ) -> None:
         self._contexts = Contexts()
-        self._expression = ListeningExpression(simulation, runner)
-        self._engine = engine = RecognitionEngine(
-            simulation, runner.execute, memory, self._expression.show, self._accepts, spare
-        )
+        self._expression = ListeningExpression(runner)
+        self._engine = engine = RecognitionEngine(runner, memory, self._expression.show, self._accepts, spare)
         self._extractor = Extractor(NAME, memory, engine.start, engine.stop, EVENTS, KEYS)
         self._files = files
         self._languages = load_recognition().languages

@@ -10,7 +10,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.base.whole_file import write_whole
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.speech.speech_events import SpeechEvents
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
 from nao_sim_bridge.sound.files import write_sound
@@ -33,7 +33,7 @@ class ALTextToSpeech:
         studio: Studio,
         settings: VoiceSettings,
         events: SpeechEvents,
-        runner: SimulationRunner,
+        runner: RobotRunner,
         files: ClientFiles,
     ) -> None:
         self._speaker = speaker

@@ -10,8 +10,7 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.joints.curves import Ramp
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.frames import TORSO
 from nao_sim_bridge.naoqi.binding.arguments import numbers, one_of, speed_share, vector
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -26,9 +25,9 @@ FARTHEST = 1000.0
 class Looking:
     """Looks and points at places, and knows places of landmarks. Only NAOqi methods are public."""
 
-    def __init__(self, tracking: Tracking, simulation: Simulation, runner: SimulationRunner) -> None:
+    def __init__(self, tracking: Tracking, runner: RobotRunner) -> None:
         self._tracking = tracking
-        self._simulation = simulation
+        self._simulation = runner.simulation
         self._runner = runner
         self._marks: dict[int, list[float]] = {}
 

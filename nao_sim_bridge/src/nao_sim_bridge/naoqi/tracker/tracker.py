@@ -6,7 +6,7 @@ from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core.runner import SimulationRunner
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.frames import TORSO
 from nao_sim_bridge.naoqi.binding.arguments import known, number, one_of, whole_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -29,7 +29,7 @@ class ALTracker:
     places are known, see `Looking`.
     """
 
-    def __init__(self, tracking: Tracking, runner: SimulationRunner) -> None:
+    def __init__(self, tracking: Tracking, runner: RobotRunner) -> None:
         self._tracking = tracking
         self._follower = tracking.follower
         self._runner = runner

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.base.errors import SimulationError, SimulationStopped
-from nao_sim_bridge.core.runner import SimulationRunner
-from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.frames import ROBOT, WORLD
 from nao_sim_bridge.naoqi.binding.arguments import numbers
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
@@ -51,14 +50,12 @@ class Tracking:
         sightings: What was seen last.
     """
 
-    def __init__(
-        self, simulation: Simulation, runner: SimulationRunner, memory: MemoryStore, calls: ModuleCalls
-    ) -> None:
-        self.follower = Follower(simulation)
+    def __init__(self, runner: RobotRunner, memory: MemoryStore, calls: ModuleCalls) -> None:
+        self.follower = Follower(runner.simulation)
         self.timeout, self.max_distance = DEFAULT_TIMEOUT, DEFAULT_DISTANCE
         self.searches = False
         self.periods = {name: target.period for name, target in TARGETS.items()}
-        self._simulation = simulation
+        self._simulation = runner.simulation
         self._runner = runner
         self._memory = memory
         self._calls = calls
@@ -68,8 +65,8 @@ class Tracking:
         for event in (CHANGED, DETECTED, LOST, REACHED):
             memory.declare_event(event, NAME)
         self.follower.approach.reached.append(lambda: self._tell(REACHED))
-        simulation.after_tick.append(self._tick)
-        simulation.after_reset.append(self._after_reset)
+        runner.simulation.after_tick.append(self._tick)
+        runner.simulation.after_reset.append(self._after_reset)
 
     # --- any thread -----------------------------------------------------------------------------------------------
 

@@ -17,8 +17,8 @@ from nao_sim_bridge.model.kinematics import matrix_quaternion
 from nao_sim_bridge.model.meshes import Mesh, merged, tessellate
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.shapes import Shape
-from nao_sim_bridge.world.builder import visual_shape
 from nao_sim_bridge.world.render_state import RobotLook, frames_in_world
+from nao_sim_bridge.world.visible import visual_shape
 
 HEAD = ("HeadYaw", "HeadPitch")
 """Links that are in the way of the cameras in the head."""

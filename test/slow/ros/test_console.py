@@ -1,0 +1,306 @@
+"""The console in a real browser, beside the running stack: what a person clicks is what the robot does."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+
+import pytest
+import rospy
+from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
+from geometry_msgs.msg import Point
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
+
+from nao_library_actions.msg import (
+    NaoAudioInActionFeedback,
+    NaoAudioOutActionGoal,
+    NaoAudioOutActionResult,
+    NaoBehaviorActionGoal,
+    NaoBehaviorActionResult,
+)
+from nao_library_msgs.srv import PersonSays
+from nao_sim_bridge.testing import wait_until
+
+PAGES = {
+    "/": "What it does",
+    "/wizard": "Conversation",
+    "/study": "Begin trial",
+    "/behaviors": "Search behaviours",
+    "/functions": "Search functions",
+}
+SUCCEEDED, PREEMPTED = 3, 2
+MOUTH = Point(1.0, 0.2, 0.6)
+
+
+class Heard:
+    """Messages of a topic since this began to listen, in their order."""
+
+    def __init__(self, topic, kind):
+        self.messages = []
+        self._subscriber = rospy.Subscriber(topic, kind, self.messages.append)
+        wait_until(lambda: self._subscriber.get_num_connections(), LIMIT, topic)
+
+    def wait(self, fits=lambda message: True, what="a message"):
+        """Wait for one that fits."""
+        wait_until(lambda: any(map(fits, self.messages)), LIMIT, lambda: f"{what} among {self.messages}")
+        return next(filter(fits, self.messages))
+
+    def close(self):
+        self._subscriber.unregister()
+
+
+@pytest.fixture(scope="module")
+def program(stack, tmp_path_factory):
+    stack.ensure()
+    made = ConsoleProgram(tmp_path_factory.mktemp("console"))
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def browser(program):
+    made = ConsoleBrowser(program)
+    made.enter()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def heard():
+    """Topics that a case listens to: (topic, type) -> Heard."""
+    made = []
+
+    def listen(topic, kind):
+        made.append(Heard(topic, kind))
+        return made[-1]
+
+    yield listen
+    for each in made:
+        each.close()
+
+
+@pytest.fixture(autouse=True)
+def standing_still(stack, browser):
+    """Whatever a case has left going ends."""
+    yield
+    browser.script("fetch('/console/stop?robot=/', {method: 'POST'})")
+    browser.driver.get("about:blank")
+
+
+def texts(message):
+    """What the functions of a goal are for: their names and texts."""
+    return [(function.function, function.str_param) for function in message.goal.functions]
+
+
+def test_without_its_token_nobody_gets_in(program):
+    stranger = ConsoleBrowser(program)
+    try:
+        for path in ("/", "/wizard", "/study", "/console/static/frame.js"):
+            stranger.driver.get(program.base + path)
+            assert "it has a token in it" in stranger.text()
+    finally:
+        stranger.close()
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_a_page_is_there_and_complains_of_nothing(browser, path):
+    browser.complaints()
+    browser.open(path)
+    browser.until(lambda: browser.all("body", PAGES[path]) or browser.all(f"[aria-label='{PAGES[path]}']"), PAGES[path])
+    assert browser.complaints() == []
+
+
+def test_the_robot_is_drawn_and_moves(browser):
+    browser.open("/")
+    browser.reads("connected", "At rest")
+    browser.until(lambda: browser.all("canvas"), "the robot in 3D")
+    browser.until(lambda: browser.script("return document.querySelectorAll('nao-camera').length") == 2, "two cameras")
+
+
+def test_a_text_that_is_typed_is_said(browser, heard):
+    goals, results = (
+        heard("nao_audio_out/goal", NaoAudioOutActionGoal),
+        heard("nao_audio_out/result", NaoAudioOutActionResult),
+    )
+    browser.open("/wizard")
+    browser.type("input[aria-label='participant']", "Kim")
+    browser.type("input[aria-label='Say']", "Good morning {participant}")
+    browser.keys(Keys.ENTER)
+    goal = goals.wait(what="what is said")
+    assert texts(goal) == [("animatedSay", "Good morning Kim")]
+    results.wait(lambda each: each.status.goal_id.id == goal.goal_id.id and each.status.status == SUCCEEDED)
+
+
+def test_a_key_presses_its_button_but_not_in_a_field(browser, heard):
+    goals = heard("nao_audio_out/goal", NaoAudioOutActionGoal)
+    browser.open("/wizard")
+    browser.one("nao-wizard-buttons button")
+    browser.type("input[aria-label='Say']", "3")
+    browser.script("document.activeElement.blur()")
+    browser.keys("2")
+    assert texts(goals.wait()) == [("say", "Yes.")]
+
+
+def test_it_walks_while_a_key_is_held_and_no_longer(stack, browser):
+    start = stack.robot
+    browser.open("/wizard")
+    browser.one("nao-wizard-buttons button")
+    stack.robot.module("ALRobotPosture").goToPosture("StandInit", 0.8)
+    x = start.true_pose().position.x
+    browser.script("document.activeElement.blur()")
+    ActionChains(browser.driver).key_down("w").perform()
+    wait_until(lambda: start.true_pose().position.x > x + 0.03, LIMIT, "a walk ahead")
+    ActionChains(browser.driver).key_up("w").perform()
+    wait_until(lambda: not stack.robot.module("ALMotion").moveIsActive(), LIMIT, "the end of the walk")
+
+
+def test_escape_ends_everything_on_every_page(browser, heard):
+    goals, results = (
+        heard("NaoBehavior/goal", NaoBehaviorActionGoal),
+        heard("NaoBehavior/result", NaoBehaviorActionResult),
+    )
+    browser.open("/wizard")
+    browser.one("nao-wizard-buttons button")
+    browser.script("document.activeElement.blur()")
+    browser.keys("i")
+    goal = goals.wait()
+    assert texts(goal) == [("runBehavior", "introduce_yourself")]
+    browser.open("/functions")
+    browser.keys(Keys.ESCAPE)
+    end = results.wait(lambda each: each.status.goal_id.id == goal.goal_id.id)
+    assert end.status.status == PREEMPTED
+
+
+def test_an_observer_sees_and_moves_nothing(program, heard):
+    goals = heard("nao_audio_out/goal", NaoAudioOutActionGoal)
+    other = ConsoleBrowser(program)
+    try:
+        other.enter(program.observer)
+        other.open("/wizard")
+        other.type("input[aria-label='Say']", "Not said")
+        other.keys(Keys.ENTER)
+        other.reads("observers look on")
+        answer = other.driver.execute_async_script(
+            "const done = arguments[0]; fetch('/console/stop', {method: 'POST'}).then((each) => done(each.status))"
+        )
+        assert answer == 403 and goals.messages == []
+    finally:
+        other.close()
+
+
+# --- studies ----------------------------------------------------------------------------------------------------------
+
+
+class Participant:
+    """Touches the robot's head, and answers when it listens."""
+
+    def __init__(self, stack):
+        self._robot = stack.robot
+        self._listening = Heard("nao_audio_in/feedback", NaoAudioInActionFeedback)
+        self._say = rospy.ServiceProxy("nao_sim/person_says", PersonSays)
+
+    def touch(self):
+        self._robot.press(["FrontTactilTouched"])
+        self._robot.press([])
+
+    def answer(self, word):
+        self._listening.wait(what="the robot listens")
+        self._say(text=word, position=MOUTH)
+
+    def close(self):
+        self._listening.close()
+
+
+@pytest.fixture
+def participant(stack):
+    made = Participant(stack)
+    yield made
+    made.close()
+
+
+def begin_trial(browser, protocol, pseudonym):
+    browser.open("/study")
+    browser.until(
+        lambda: browser.script("return document.querySelector('input[aria-label=Protocol]')"), "the protocols"
+    )
+    browser.click(".q-select")
+    browser.click(".q-menu .q-item", protocol)
+    browser.type("input[aria-label='Participant (pseudonym)']", pseudonym)
+    browser.click("button", "Begin trial")
+
+
+def events_of(program, trial):
+    lines = (program.folder / "studies" / trial / "events.jsonl").read_text().splitlines()
+    return [json.loads(line) for line in lines]
+
+
+def finish_trial(browser, participant):
+    """The ten steps from the touch on."""
+    browser.reads("touch")
+    participant.touch()
+    participant.answer("yes")
+    browser.click("button", "pleased")
+    browser.reads("is finished")
+
+
+def test_a_protocol_of_ten_steps_runs_with_a_touch_a_word_and_a_choice(program, browser, participant):
+    begin_trial(browser, "ten_steps", "P01")
+    finish_trial(browser, participant)
+    events = events_of(program, "ten_steps/P01-1")
+    kinds = {event["kind"] for event in events}
+    assert {"touched", "heard", "sent", "ended"} <= kinds
+    stamps = [event["stamp"] for event in events]
+    assert all(math.isfinite(stamp) for stamp in stamps)
+    with (program.folder / "studies/ten_steps/P01-1/events.csv").open(newline="") as table:
+        assert len(list(csv.DictReader(table))) == len(events)
+
+
+def test_a_trial_outlives_the_network_of_its_page(program, browser, participant):
+    begin_trial(browser, "ten_steps", "P02")
+    browser.reads("touch")
+    browser.online(False)
+    participant.touch()
+    participant.answer("yes")
+    wait_until(lambda: any(e["kind"] == "heard" for e in events_of(program, "ten_steps/P02-1")), LIMIT, "the word")
+    browser.online(True)
+    browser.open("/study")
+    browser.click("button", "pleased")
+    browser.reads("is finished")
+
+
+def test_a_trial_is_taken_up_again_after_the_console_was_killed(program, browser, participant):
+    begin_trial(browser, "ten_steps", "P03")
+    browser.reads("touch")
+    before = events_of(program, "ten_steps/P03-1")
+    program.kill()
+    program.start()
+    browser.enter()
+    browser.open("/study")
+    browser.click("button", "Take up again")
+    finish_trial(browser, participant)
+    after = events_of(program, "ten_steps/P03-1")
+    assert after[: len(before)] == before and len(after) > len(before)
+
+
+# --- behaviours and functions -----------------------------------------------------------------------------------------
+
+
+def test_a_behaviour_is_edited_and_run(stack, browser, heard):
+    results = heard("NaoBehavior/result", NaoBehaviorActionResult)
+    browser.open("/behaviors")
+    browser.click(".q-item", "nod")
+    browser.reads("NaoMotion")
+    browser.click("button", "Check")
+    browser.reads("It can be run")
+    browser.click("button", "Run")
+    end = results.wait()
+    assert end.status.status == SUCCEEDED
+
+
+def test_a_function_is_sent_from_its_form(stack, browser):
+    browser.open("/functions")
+    browser.type("input[aria-label='Search functions']", "setColor")
+    browser.click(".q-item", "setColor")
+    browser.reads("NaoLights.setColor")
