@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import signal
 from pathlib import Path
+from urllib.parse import urlencode
 
 from ros_stack import start_program
 from selenium import webdriver
@@ -80,9 +81,9 @@ class ConsoleBrowser:
         self.driver.get(url or self.program.url)
         return self
 
-    def open(self, path, robot="/"):
-        """Open a page, and wait until it is connected."""
-        self.driver.get(f"{self.program.base}{path}?robot={robot}")
+    def open(self, path, robot="/", **more):
+        """Open a page, and wait until it is connected. `more`: of its address."""
+        self.driver.get(f"{self.program.base}{path}?{urlencode({'robot': robot, **more})}")
         self.until(
             lambda: self.all(".nao-stop") and self.script("return window.socket && window.socket.connected"), path
         )

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-import json
-import math
-
 import pytest
 import rospy
 from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
-from geometry_msgs.msg import Point
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
 from nao_library_actions.msg import (
-    NaoAudioInActionFeedback,
     NaoAudioOutActionGoal,
     NaoAudioOutActionResult,
     NaoBehaviorActionGoal,
     NaoBehaviorActionResult,
 )
-from nao_library_msgs.srv import PersonSays
 from nao_sim_bridge.testing import wait_until
 
 PAGES = {
@@ -31,7 +24,6 @@ PAGES = {
     "/functions": "Search functions",
 }
 SUCCEEDED, PREEMPTED = 3, 2
-MOUTH = Point(1.0, 0.2, 0.6)
 
 
 class Heard:
@@ -188,100 +180,6 @@ def test_an_observer_sees_and_moves_nothing(program, heard):
         assert answer == 403 and goals.messages == []
     finally:
         other.close()
-
-
-# --- studies ----------------------------------------------------------------------------------------------------------
-
-
-class Participant:
-    """Touches the robot's head, and answers when it listens."""
-
-    def __init__(self, stack):
-        self._robot = stack.robot
-        self._listening = Heard("nao_audio_in/feedback", NaoAudioInActionFeedback)
-        self._say = rospy.ServiceProxy("nao_sim/person_says", PersonSays)
-
-    def touch(self):
-        self._robot.press(["FrontTactilTouched"])
-        self._robot.press([])
-
-    def answer(self, word):
-        self._listening.wait(what="the robot listens")
-        self._say(text=word, position=MOUTH)
-
-    def close(self):
-        self._listening.close()
-
-
-@pytest.fixture
-def participant(stack):
-    made = Participant(stack)
-    yield made
-    made.close()
-
-
-def begin_trial(browser, protocol, pseudonym):
-    browser.open("/study")
-    browser.until(
-        lambda: browser.script("return document.querySelector('input[aria-label=Protocol]')"), "the protocols"
-    )
-    browser.click(".q-select")
-    browser.click(".q-menu .q-item", protocol)
-    browser.type("input[aria-label='Participant (pseudonym)']", pseudonym)
-    browser.click("button", "Begin trial")
-
-
-def events_of(program, trial):
-    lines = (program.folder / "studies" / trial / "events.jsonl").read_text().splitlines()
-    return [json.loads(line) for line in lines]
-
-
-def finish_trial(browser, participant):
-    """The ten steps from the touch on."""
-    browser.reads("touch")
-    participant.touch()
-    participant.answer("yes")
-    browser.click("button", "pleased")
-    browser.reads("is finished")
-
-
-def test_a_protocol_of_ten_steps_runs_with_a_touch_a_word_and_a_choice(program, browser, participant):
-    begin_trial(browser, "ten_steps", "P01")
-    finish_trial(browser, participant)
-    events = events_of(program, "ten_steps/P01-1")
-    kinds = {event["kind"] for event in events}
-    assert {"touched", "heard", "sent", "ended"} <= kinds
-    stamps = [event["stamp"] for event in events]
-    assert all(math.isfinite(stamp) for stamp in stamps)
-    with (program.folder / "studies/ten_steps/P01-1/events.csv").open(newline="") as table:
-        assert len(list(csv.DictReader(table))) == len(events)
-
-
-def test_a_trial_outlives_the_network_of_its_page(program, browser, participant):
-    begin_trial(browser, "ten_steps", "P02")
-    browser.reads("touch")
-    browser.online(False)
-    participant.touch()
-    participant.answer("yes")
-    wait_until(lambda: any(e["kind"] == "heard" for e in events_of(program, "ten_steps/P02-1")), LIMIT, "the word")
-    browser.online(True)
-    browser.open("/study")
-    browser.click("button", "pleased")
-    browser.reads("is finished")
-
-
-def test_a_trial_is_taken_up_again_after_the_console_was_killed(program, browser, participant):
-    begin_trial(browser, "ten_steps", "P03")
-    browser.reads("touch")
-    before = events_of(program, "ten_steps/P03-1")
-    program.kill()
-    program.start()
-    browser.enter()
-    browser.open("/study")
-    browser.click("button", "Take up again")
-    finish_trial(browser, participant)
-    after = events_of(program, "ten_steps/P03-1")
-    assert after[: len(before)] == before and len(after) > len(before)
 
 
 # --- behaviours and functions -----------------------------------------------------------------------------------------

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """A trial in a browser: a touch, a word and a choice; its console is killed, and the network lost."""
 
 import shutil
@@ -42,7 +41,7 @@ class ConsoleStudy(RobotTestCase):
         wait_until(lambda: getattr(self.files.trial(TRIAL).state().current, "path", "") == path, 60.0, f"step {path}")
 
     def begin(self):
-        self.browser.open("/study", "/&protocol=ten_steps&participant=P01")
+        self.browser.open("/study", protocol="ten_steps", participant="P01")
         self.browser.reads("One trial of ten steps")
         for recording in ("Rosbag", "Video", "Sound"):
             self.browser.click(".q-checkbox", recording)
