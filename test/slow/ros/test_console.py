@@ -104,11 +104,25 @@ def test_a_page_is_there_and_complains_of_nothing(browser, path):
     assert browser.complaints() == []
 
 
-def test_the_robot_is_drawn_and_moves(browser):
+YAW = """
+const view = document.querySelector("nao-robot-view"), joint = view && view.joints && view.joints.get("HeadYaw");
+return joint ? 2 * Math.atan2(joint.moved.quaternion.z, joint.moved.quaternion.w) : null;
+"""
+PICTURES = """
+return [...document.querySelectorAll("nao-camera")].map((each) => {
+  const picture = each.shadowRoot.querySelector("canvas");
+  return Math.max(...picture.getContext("2d").getImageData(0, 0, picture.width, picture.height).data.slice(0, 3));
+});
+"""
+
+
+def test_the_robot_is_drawn_as_it_stands_and_what_it_sees(stack, browser):
     browser.open("/")
     browser.reads("connected", "At rest")
-    browser.until(lambda: browser.all("canvas"), "the robot in 3D")
-    browser.until(lambda: browser.script("return document.querySelectorAll('nao-camera').length") == 2, "two cameras")
+    stack.robot.module("ALMotion").setStiffnesses("Head", 1.0)
+    stack.robot.module("ALMotion").angleInterpolation("HeadYaw", 0.7, 0.5, True)
+    browser.until(lambda: abs((browser.script(YAW) or 0.0) - 0.7) < 0.03, "the head of the drawn robot")
+    browser.until(lambda: len(browser.script(PICTURES)) == 2 and all(browser.script(PICTURES)), "two pictures")
 
 
 def test_a_text_that_is_typed_is_said(browser, heard):
@@ -197,8 +211,15 @@ def test_a_behaviour_is_edited_and_run(stack, browser, heard):
     assert end.status.status == SUCCEEDED
 
 
-def test_a_function_is_sent_from_its_form(stack, browser):
+def test_a_function_is_sent_from_its_form_and_copied(stack, browser):
     browser.open("/functions")
-    browser.type("input[aria-label='Search functions']", "setColor")
-    browser.click(".q-item", "setColor")
-    browser.reads("NaoLights.setColor")
+    browser.type("input[aria-label='Search functions']", "rest")
+    browser.click(".q-item", "rest")
+    browser.reads("NaoMotion.rest")
+    browser.click("button", "Send")
+    browser.reads("NaoMotion: rest", "succeeded")
+    browser.click("button", "Command")
+    browser.until(lambda: browser.script("return document.querySelector('.q-dialog textarea').value"), "the copy")
+    assert (
+        browser.script("return document.querySelector('.q-dialog textarea').value").strip() == "nao call NaoMotion rest"
+    )

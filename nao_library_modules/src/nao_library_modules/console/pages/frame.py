@@ -110,7 +110,9 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
         _navigation(console, request.url.path, robot)
         ui.space()
         _people(console, page)
-        ui.button(icon="contrast", on_click=lambda: _turn(session, dark)).props('flat round aria-label="Light or dark"')
+        ui.button(icon="contrast", on_click=lambda: _turn(session, dark)).props(
+            'flat round color=white aria-label="Light or dark"'
+        )
         ui.button("Stop", icon="pan_tool", on_click=lambda: _stop(page)).classes("nao-stop").props(
             'color=negative aria-keyshortcuts="Escape" title="Ends everything that the robot does (Escape)"'
         )
