@@ -6,6 +6,7 @@ import asyncio
 import json
 import math
 import struct
+import threading
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,6 +14,7 @@ import pytest
 
 from nao_library_modules.console.robots.events import EventStream
 from nao_library_modules.console.view import wire
+from nao_library_modules.console.view.background import Subscriptions, in_background
 from nao_library_modules.console.view.body_status import BodyStatus, read_status
 from nao_library_modules.console.view.broadcast import MOST_QUEUED, Broadcast, FrameInbox
 from nao_library_modules.console.view.live_view import watched_traces
@@ -248,3 +250,25 @@ def test_what_senses_tell_can_be_added_to_the_events():
     for perception in (heard(["a"], [1.0]), touched("chest", True), clicked(1), said("a"), felt("b", ground=True)):
         added = events.add(perception.kind, perception.text, stamp=2.0, **perception.values)
         assert added.stamp == 2.0 and added.data == perception.values
+
+
+# --- what waits for the ROS master ------------------------------------------------------------------------------------
+
+
+def test_what_waits_is_not_waited_for_and_ends_when_it_has_begun():
+    goes_on, ended = threading.Event(), threading.Event()
+    subscriptions = Subscriptions("test")
+    subscriptions.begin(lambda: goes_on.wait(10) and ended.set)
+    subscriptions.end()
+    assert not ended.is_set()
+    goes_on.set()
+    assert ended.wait(10)
+
+
+def test_a_task_in_the_background_returns_or_raises():
+    async def both():
+        with pytest.raises(ZeroDivisionError):
+            await in_background(lambda: 1 / 0)
+        return await in_background(max, 1, 2)
+
+    assert asyncio.run(both()) == 2

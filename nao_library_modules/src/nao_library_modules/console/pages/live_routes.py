@@ -14,6 +14,7 @@ from naoqi.errors import NaoError
 
 from ...base.suggestion import did_you_mean
 from ..access.guard import session_of
+from ..view.background import in_background
 from ..view.broadcast import FrameInbox
 from ..view.camera_feed import NAMES
 from ..view.live_view import watched_traces
@@ -40,7 +41,7 @@ def build(console: Any) -> None:
     @console.app.get("/console/model")
     async def model(robot: str = "") -> JSONResponse:
         try:
-            found = await _in_thread(model_of, console, robot)
+            found = await in_background(model_of, console, robot)
         except NaoError as error:
             raise HTTPException(404, str(error)) from None
         meshes.update(found.meshes)
@@ -83,7 +84,7 @@ def build(console: Any) -> None:
         if feed is None:
             await _end(socket, NOT_FOUND, f"there is no camera {camera[:20]!r}{did_you_mean(camera, NAMES)}")
             return
-        inbox = feed.attach()
+        inbox = await feed.attach()
 
         async def read() -> None:
             while True:
@@ -92,7 +93,7 @@ def build(console: Any) -> None:
         try:
             await _serve(console, socket, inbox, read)
         finally:
-            feed.detach(inbox)
+            await feed.detach(inbox)
 
 
 def model_of(console: Any, name: str) -> RobotModel:
@@ -101,7 +102,10 @@ def model_of(console: Any, name: str) -> RobotModel:
 
     robot = console.robots.robot(name)
     for full in dict.fromkeys((robot.namespace + DESCRIPTION, f"/{DESCRIPTION}")):
-        text = rospy.get_param(full, None)
+        try:
+            text = rospy.get_param(full, None)
+        except OSError as error:
+            raise NaoError(f"the ROS master does not answer: {error}") from error
         if text is not None:
             return read_model(str(text))
     raise NaoError(f"there is no parameter {robot.namespace}{DESCRIPTION}: does the driver run?")
@@ -111,7 +115,7 @@ async def _accepted(console: Any, socket: WebSocket, name: str) -> Any:
     """The robot that a WebSocket is about; None if there is none, which the browser was told."""
     await socket.accept()
     try:
-        return await _in_thread(console.robots.robot, name)
+        return await in_background(console.robots.robot, name)
     except NaoError as error:
         await _end(socket, NOT_FOUND, str(error))
         return None
@@ -148,7 +152,3 @@ async def _serve(console: Any, socket: WebSocket, inbox: FrameInbox, read: Calla
 
 async def _end(socket: WebSocket, code: int, reason: str) -> None:
     await socket.close(code, reason.encode()[:LONGEST_REASON].decode(errors="ignore"))
-
-
-async def _in_thread(task: Callable[..., Any], *arguments: Any) -> Any:
-    return await asyncio.get_running_loop().run_in_executor(None, task, *arguments)

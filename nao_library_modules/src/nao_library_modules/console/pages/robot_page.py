@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 import time
 from collections import deque
@@ -15,6 +14,7 @@ from naoqi.errors import NaoError
 
 from ..robots.events import ConsoleEvent
 from ..robots.runs import Run
+from ..view.background import in_background
 from ..view.body_status import ERROR, OK, BodyStatus
 from ..view.camera_feed import NAMES
 from ..view.traces import MOST
@@ -167,7 +167,7 @@ class RunPanel:
 
     async def _cancel(self, run: Run) -> None:
         if self._page.operate():
-            await asyncio.get_running_loop().run_in_executor(None, run.cancel)
+            await in_background(run.cancel)
             self._page.robot.events.add("cancelled", f"{run.server}: {run.label}", self._page.visitor.name, goal=run.id)
 
 
@@ -229,9 +229,7 @@ class PlotPanel:
     async def _find_joints(self) -> None:
         """Offer the joints of the robot's description, once there is one."""
         try:
-            model = await asyncio.get_running_loop().run_in_executor(
-                None, live_routes.model_of, self._page.console, self._page.robot.name
-            )
+            model = await in_background(live_routes.model_of, self._page.console, self._page.robot.name)
         except NaoError:
             return
         self._timer.cancel()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from collections.abc import Callable
 from functools import partial
@@ -13,6 +12,7 @@ from nicegui import ui
 from naoqi.errors import NaoError
 
 from ...nao.touch_names import SENSORS
+from ..view.background import in_background
 from ..view.simulator import CONTENTS, KINDS
 from ..view.views import RobotViews
 from .frame import PageContext
@@ -46,7 +46,7 @@ class SimulatorPanel:
         page.every(PERIOD, self._look)
 
     async def _look(self) -> None:
-        there = await _in_thread(lambda: self._simulator.there)
+        there = await in_background(lambda: self._simulator.there)
         if there and not self._built:
             self._built = True
             with self._holder:
@@ -135,14 +135,10 @@ class SimulatorPanel:
             return
         self._page.robot.events.add("simulator", note, self._page.visitor.name)
         try:
-            await _in_thread(action)
+            await in_background(action)
         except NaoError as error:
             self._page.notify(str(error), "negative")
 
 
 def _number(label: str, value: float) -> Any:
     return ui.number(label, value=value, step=0.1, format="%.2f").props("dense outlined").classes("nao-number")
-
-
-async def _in_thread(task: Callable[[], Any]) -> Any:
-    return await asyncio.get_running_loop().run_in_executor(None, task)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
+from .background import Subscriptions
 from .body_status import BodyStatus, read_status
 
 
@@ -27,7 +29,7 @@ class BodyWatch:
         self._robot = robot
         self._lock = threading.Lock()
         self._users = 0
-        self._ends: list[Callable[[], None]] = []
+        self._subscriptions = Subscriptions(f"body of {robot.name}")
         self._clear()
 
     def acquire(self) -> Callable[[], None]:
@@ -39,10 +41,11 @@ class BodyWatch:
         with self._lock:
             self._users += 1
             if self._users == 1:
-                self._ends = [
-                    self._robot.topic("/diagnostics", DiagnosticArray, self._on_diagnostics, queue_size=20),
-                    self._robot.topic("connection", ConnectionState, self._on_connection),
-                ]
+                topic = self._robot.topic
+                self._subscriptions.begin(
+                    partial(topic, "/diagnostics", DiagnosticArray, self._on_diagnostics, queue_size=20),
+                    partial(topic, "connection", ConnectionState, self._on_connection),
+                )
         given = threading.Lock()  # a lock that is taken once
         return lambda: self._release() if given.acquire(blocking=False) else None
 
@@ -51,10 +54,8 @@ class BodyWatch:
             self._users -= 1
             if self._users:
                 return
-            ends, self._ends = self._ends, []
-        for end in ends:
-            end()
-        self._clear()
+            self._subscriptions.end()
+            self._clear()
 
     def _clear(self) -> None:
         self.status = BodyStatus()

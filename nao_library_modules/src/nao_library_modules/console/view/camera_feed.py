@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ...nao.camera_facts import CAMERAS
+from .background import in_background
 from .broadcast import Broadcast, FrameInbox
 from .wire import picture_frame
 
@@ -25,25 +26,29 @@ class CameraFeed:
         self._robot = robot
         self._camera = camera
         self._pages = Broadcast()
+        self._changing = asyncio.Lock()  # one page comes or goes at a time
         self._end: Callable[[], None] | None = None
 
-    def attach(self) -> FrameInbox:
-        inbox = self._pages.attach()
-        if self._end is None:
-            from sensor_msgs.msg import CompressedImage
+    async def attach(self) -> FrameInbox:
+        """One more page looks."""
+        async with self._changing:
+            if self._end is None:
+                self._end = await in_background(self._subscribe, asyncio.get_running_loop())
+            return self._pages.attach()
 
-            loop = asyncio.get_running_loop()
+    async def detach(self, inbox: FrameInbox) -> None:
+        """A page has gone."""
+        async with self._changing:
+            self._pages.detach(inbox)
+            if not len(self._pages) and self._end is not None:
+                end, self._end = self._end, None
+                await in_background(end)
 
-            def show(told: Any) -> None:  # in a thread of ROS
-                frame = picture_frame(told.header.stamp.to_sec(), told.data, told.format.lower().endswith("png"))
-                loop.call_soon_threadsafe(self._pages.put, PICTURE, frame)
+    def _subscribe(self, loop: asyncio.AbstractEventLoop) -> Callable[[], None]:
+        from sensor_msgs.msg import CompressedImage
 
-            topic = f"nao_robot/camera/{self._camera}/image_raw/compressed"
-            self._end = self._robot.topic(topic, CompressedImage, show)
-        return inbox
+        def show(told: Any) -> None:  # in a thread of ROS
+            frame = picture_frame(told.header.stamp.to_sec(), told.data, told.format.lower().endswith("png"))
+            loop.call_soon_threadsafe(self._pages.put, PICTURE, frame)
 
-    def detach(self, inbox: FrameInbox) -> None:
-        self._pages.detach(inbox)
-        if not len(self._pages) and self._end is not None:
-            self._end()
-            self._end = None
+        return self._robot.topic(f"nao_robot/camera/{self._camera}/image_raw/compressed", CompressedImage, show)

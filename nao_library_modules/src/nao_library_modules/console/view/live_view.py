@@ -9,6 +9,7 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ...base.places import yaw_of_quaternion
+from .background import in_background
 from .broadcast import Broadcast, FrameInbox
 from .memory_topics import MemoryTopics
 from .senses import Senses
@@ -57,7 +58,7 @@ class LiveView:
         """One more page looks."""
         async with self._changing:
             if self._task is None:
-                self._ends = await asyncio.get_running_loop().run_in_executor(None, self._subscribe)
+                self._ends = await in_background(self._subscribe)
                 self._task = asyncio.create_task(self._run())
             inbox = self._pages.attach()
             self._watched[inbox] = []
@@ -74,7 +75,7 @@ class LiveView:
             self._task.cancel()
             self._task = None
             ends, self._ends = self._ends, []
-            await asyncio.get_running_loop().run_in_executor(None, _end_all, ends)
+            await in_background(_end_all, ends)
             self._joints = self._odometry = self._lights = self._shapes = self._base = None
             self._names, self._pose, self._pressed = ([], []), b"", frozenset()
 
@@ -87,8 +88,7 @@ class LiveView:
             before = self._watched[inbox]
             if before == wanted:
                 return
-            loop = asyncio.get_running_loop()
-            found = await loop.run_in_executor(None, self._change_traces, before, wanted)
+            found = await in_background(self._change_traces, before, wanted)
             self._watched[inbox] = wanted
         problems = {name: trace.problem for name, trace in found.items() if trace.problem}
         inbox.forget()  # indices mean other traces now

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import logging
 import threading
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from naoqi.errors import NaoError
-
+from .background import Subscriptions
 from .memory_topics import TEXT, MemoryTopics
 from .sense_texts import BUMPER, CHEST, HAND, HEAD, Perception, Sightings, clicked, felt, heard, said, touched
 
-log = logging.getLogger(__name__)
-
 SENTENCE, POSTURE, FALLEN = "ALTextToSpeech/CurrentSentence", "PostureChanged", "robotHasFallen"
-MOST_PRESSED = 32
 
 
 class Senses:
@@ -37,8 +32,7 @@ class Senses:
         self._memory = memory
         self._lock = threading.Lock()
         self._users = 0
-        self._ends: list[Callable[[], None]] = []
-        self._begin: threading.Thread | None = None
+        self._subscriptions = Subscriptions(f"senses of {robot.name}")
         self._sightings = Sightings()
         self._stands: bool | None = None
         self.posture = ""
@@ -49,8 +43,7 @@ class Senses:
         with self._lock:
             self._users += 1
             if self._users == 1:
-                self._ends = self._subscribe()
-                self._watch_memory(self._ends)
+                self._subscriptions.begin(*self._starts())
         given = threading.Lock()  # a lock that is taken once
         return lambda: self._release() if given.acquire(blocking=False) else None
 
@@ -59,12 +52,11 @@ class Senses:
             self._users -= 1
             if self._users:
                 return
-            ends, self._ends = self._ends, []
             self.posture, self.pressed, self._stands = "", frozenset(), None
-        # In a thread of its own: services of the memory are called, and a page that closes does not wait.
-        threading.Thread(target=_end_all, args=(ends,), name="senses end", daemon=True).start()
+            self._subscriptions.end()
 
-    def _subscribe(self) -> list[Callable[[], None]]:
+    def _starts(self) -> list[Callable[[], Callable[[], None]]]:
+        """What begins each subscription; those of the memory come last, as it may take a while to answer."""
         from std_msgs.msg import Bool
 
         from nao_library_msgs import msg
@@ -80,27 +72,11 @@ class Senses:
             ("nao_vision/landmark_detected", msg.LandmarkDetected, self._on_landmarks),
             ("nao_vision/movement_detected", msg.MovementDetected, partial(self._see, "movement", "")),
         )
-        return [self._robot.topic(name, kind, callback, queue_size=50) for name, kind, callback in topics]
-
-    def _watch_memory(self, ends: list[Callable[[], None]]) -> None:
-        """In a thread of its own: the robot's memory may take a while to answer."""
         keys = ((SENTENCE, self._on_sentence), (POSTURE, self._on_posture), (FALLEN, self._on_fall))
-
-        def watch() -> None:
-            for key, callback in keys:
-                try:
-                    end = self._memory.watch(key, TEXT, callback)
-                except NaoError as error:
-                    log.info("%s of the robot %s is not followed: %s", key, self._robot.name, error)
-                    continue
-                with self._lock:
-                    late = ends is not self._ends
-                    if not late:
-                        ends.append(end)
-                if late:  # nobody wants it any more
-                    end()
-
-        threading.Thread(target=watch, name="senses begin", daemon=True).start()
+        return [
+            *(partial(self._robot.topic, name, kind, callback, queue_size=50) for name, kind, callback in topics),
+            *(partial(self._memory.watch, key, TEXT, callback) for key, callback in keys),
+        ]
 
     def _tell(self, perception: Perception | None, stamp: float | None = None) -> None:
         if perception is not None:
@@ -151,8 +127,3 @@ class Senses:
     def _on_fall(self, told: Any) -> None:
         if told.data.lower() in ("true", "1", "1.0"):
             self._tell(felt("has fallen", fallen=True), told.header.stamp.to_sec())
-
-
-def _end_all(ends: list[Callable[[], None]]) -> None:
-    for end in ends:
-        end()
