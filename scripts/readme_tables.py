@@ -331,6 +331,7 @@ def all_tables() -> dict[str, str]:
     return {
         "client": client(),
         "launch nao_sim": launch_arguments(LAUNCH_FILES / "nao_sim.launch"),
+        "launch console": launch_arguments(LAUNCH_FILES / "console.launch"),
         "launch nao": launch_arguments(LAUNCH_FILES / "nao.launch"),
         "servers": servers_table(servers),
         **{f"functions {server.name}": functions_table(server.functions) for server in servers},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 from pathlib import Path
@@ -25,15 +26,16 @@ LIMIT = 60.0
 
 
 class ConsoleProgram:
-    """`nao console`, started for a test.
+    """`nao console`, started for a test. `master`: URI of its ROS master; that of the tests by default.
 
     Attributes:
         url: Address with the token of an operator. observer: with that of an observer. base: without, no slash.
     """
 
-    def __init__(self, folder, *options):
+    def __init__(self, folder, *options, master=""):
         self.folder = folder
         self._options = options
+        self._environment = {**os.environ, **({"ROS_MASTER_URI": master} if master else {})}
         self.port = free_port()
         self.base = f"http://127.0.0.1:{self.port}"
         self._starts = 0
@@ -45,7 +47,7 @@ class ConsoleProgram:
         with self.log.open("wb") as output:
             self.process = start_program(
                 PROGRAM, "console", "--port", str(self.port), "--studies", str(self.folder / "studies"),
-                *self._options, stdout=output, stderr=output,
+                *self._options, stdout=output, stderr=output, env=self._environment,
             )  # fmt: skip
         wait_until(self._answers, LIMIT, "the console's pages")
         self.url, self.observer = re.findall(r"http://\S+token=\S+", self.log.read_text())[:2]

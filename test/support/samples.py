@@ -28,6 +28,8 @@ MARKS = {
 REASONS = ("a drawing", "installs and builds", "a real robot", "a window", "several robots", "measures for minutes")
 KINDS = {"python": "python", "yaml": "yaml", "json": "json", "xml": "xml"}
 KINDS.update(dict.fromkeys(("bash", "sh", "console", ""), "shell"))
+WHOLE = {"do", "groups", "phases"}
+"""Keys of files that go on with none before them: behaviours, buttons of the console, protocols."""
 COMMENT = r"<!--[^\n]*?-->"
 TOKEN = re.compile(
     r"""^\ *<!--\ sample:\ (?P<mark>[^\n]+?)\ -->$
@@ -95,7 +97,7 @@ class Sample:
         if isinstance(content, list):
             key = "do" if "do" in whole else "objects"
             return {**whole, key: content if key == "do" else whole[key] + content}
-        return content if "do" in content else {**whole, **content}
+        return content if WHOLE & set(content) else {**whole, **content}
 
     @property
     def commands(self) -> list[tuple[str, list[str]]]:

@@ -18,6 +18,7 @@ from launch_lines import launch_lines, missing, without_launch_lines
 from programs import Program, at_port, shell
 from samples import PAGES, ROOT, samples
 
+from nao_library_modules.console.wizard.reader import read_layout
 from nao_library_modules.processes.own_stack import free_port
 from nao_sim_bridge.testing import wait_until
 from nao_sim_bridge.world.reader import load_world
@@ -179,11 +180,15 @@ def shows(shown, output):
 
 
 def runs_data(sample, folder):
-    """A behaviour can be run, a world can be read, topics of the memory appear; other files are used."""
+    """A behaviour or protocol can be run, a world or buttons read, topics of the memory appear; others are used."""
     content = json.loads(sample.text) if sample.kind == "json" else sample.document
     file = folder.put("sample.yaml", yaml.safe_dump(content, sort_keys=False))
     if "do" in content:
         ends(["nao", "check", str(file)], sample, folder)
+    elif "phases" in content:
+        ends(["nao", "study", "check", str(file)], sample, folder)
+    elif "groups" in content:
+        assert read_layout(sample.text, file.name).groups
     elif "nao_memory" in content:
         ends(["rosparam", "load", str(file), "/sample"], sample, folder)
         node = ["rosrun", "nao_library_modules", "nao_memory", f"_pport:={folder.robot.port}"]
