@@ -21,6 +21,8 @@ def test_each_page_is_of_one_robot(tmp_path):
         sessions = [qi.Session(), qi.Session()]
         for number, session in enumerate(sessions):
             session.connect(f"tcp://127.0.0.1:{stack.nao_port + number}")
+        for session in sessions:
+            session.waitForService("ALMemory")
         said = [session.service("ALMemory").subscriber(TEXT).signal for session in sessions]
         heard = [[], []]
         for signal, texts in zip(said, heard):
