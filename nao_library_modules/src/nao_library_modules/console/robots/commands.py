@@ -12,9 +12,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Callable
 
 from ...base.errors import BadGoal
 from ...base.suggestion import did_you_mean, of_those

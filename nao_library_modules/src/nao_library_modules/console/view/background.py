@@ -8,8 +8,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import threading
-from collections.abc import Callable
-from typing import Any
+from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
