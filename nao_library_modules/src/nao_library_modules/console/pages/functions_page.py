@@ -94,7 +94,7 @@ class FunctionsView:
     def _list(self) -> None:
         found = self._found()
         words = str(self._search.value or "").lower()
-        found.sort(key=lambda pair: (not pair[1].name.lower().startswith(words), pair[1].shared) if words else False)
+        found.sort(key=lambda pair: (not pair[1].name.lower().startswith(words), pair[1].shared))
         self._names.clear()
         with self._names:
             for server, function in found[:MOST_SHOWN]:
