@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Callable, Iterable, Protocol, Sequence
 
 from nao_sim_bridge.base.errors import NotFinite
+from nao_sim_bridge.base.renderers import require_renderer
 from nao_sim_bridge.base.settings import Settings, load_settings
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.body.physics_world import PhysicsWorld
@@ -15,7 +16,6 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.hands import Hands
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.things import Things
-from nao_sim_bridge.render import require_engine
 from nao_sim_bridge.world.places import ORIGIN, RobotPlace
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ class SharedWorld:
         self.wake: Callable[[], None] = lambda: None
         self._air: Air | None = None
         if isinstance(renderer, str):
-            require_engine(renderer)
+            require_renderer(renderer)
         self._renderer = renderer
         self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
 

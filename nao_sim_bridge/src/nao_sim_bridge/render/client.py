@@ -11,7 +11,7 @@ import numpy as np
 
 from nao_sim_bridge.base.child_process import ChildProcess
 from nao_sim_bridge.base.errors import SimulationError
-from nao_sim_bridge.render import require_engine
+from nao_sim_bridge.base.renderers import require_renderer
 from nao_sim_bridge.world.render_state import Camera, RenderState, StateSender
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Renderer:
     """
 
     def __init__(self, world_name: str = "empty", version: str = "V6", engine: str = "auto") -> None:
-        require_engine(engine)
+        require_renderer(engine)
         self._world_name = world_name
         self._version = version
         self._asked = engine

@@ -10,10 +10,10 @@ from typing import Callable, Sequence
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.limits import kind, world_kind
 from nao_sim_bridge.base.record_dir import DEFAULT_RECORD_DIR
+from nao_sim_bridge.base.renderers import RENDERERS
 from nao_sim_bridge.core.simulation import Scene
 from nao_sim_bridge.model.postures import load_postures
 from nao_sim_bridge.model.robot_model import VERSIONS
-from nao_sim_bridge.render import ENGINES
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.world.places import MOST_ROBOTS, RobotPlace, parse_places
 from nao_sim_bridge.world.reader import world_names
@@ -74,7 +74,7 @@ def parser(prog: str) -> argparse.ArgumentParser:
     )
     options.add_argument(
         "--renderer",
-        choices=ENGINES,
+        choices=RENDERERS,
         default="auto",
         help="what draws what the cameras see: opengl, builtin (slower), or auto: OpenGL where it can be had",
     )

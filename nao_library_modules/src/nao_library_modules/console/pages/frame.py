@@ -18,6 +18,7 @@ from ...base.paths import config_file
 from ..access.guard import session_of
 from ..access.sessions import Session
 from ..robots.robot import RobotClient
+from ..view.background import Subscriptions
 
 STATIC = "/console/static"
 PATHS = {"/": "Robot", "/wizard": "Wizard", "/study": "Study", "/behaviors": "Behaviours", "/functions": "Functions"}
@@ -103,7 +104,9 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
     ui.page_title(f"{title}, {robot.name}: NAO console")
     ui.add_head_html(f'<link rel="stylesheet" href="{STATIC}/console.css">')
     page.static("frame.js")
-    page.on_leave(console.robots.watch(robot))
+    following = Subscriptions(f"goals of {robot.name}")
+    following.begin(lambda: console.robots.watch(robot))
+    page.on_leave(following.end)
     page.on_leave(console.controls.enter(session, robot.namespace))
     dark = ui.dark_mode(session.dark)
     with ui.header().classes("nao-header items-center").props(f'data-robot="{robot.name}"'):

@@ -60,6 +60,8 @@ class RobotClient:
         self.events = EventStream(namespace, self.now)
         self._master = master
         self._lock = threading.RLock()
+        # These two may be held while the master is waited for; the other one never is, for a stop needs it.
+        self._following, self._connecting = threading.RLock(), threading.Lock()
         self._clients: dict[str, actionlib.ActionClient] = {}
         self._types: dict[str, ServerType] = {}
         self._described: dict[str, tuple[str, Any]] = {}
@@ -170,7 +172,7 @@ class RobotClient:
 
     def watch(self) -> Callable[[], None]:
         """Follow goals of other programs, and be ready to stop at once, until what comes back is called."""
-        with self._lock:
+        with self._following:
             self._watchers += 1
         self.refresh()
         turns = iter([self._unwatch])
@@ -178,23 +180,26 @@ class RobotClient:
 
     def refresh(self) -> None:
         """Take notice of servers that have come or gone; called while somebody watches."""
-        with self._lock:
+        with self._following:
             if not self._watchers:
                 return
             self._foreign.follow(self._master.servers(self.namespace))
             for topic in self._master.cancel_topics(self.namespace):
                 if topic not in self._cancels:
-                    self._cancels[topic] = rospy.Publisher(topic, GoalID, queue_size=2, tcp_nodelay=True)
+                    publisher = rospy.Publisher(topic, GoalID, queue_size=2, tcp_nodelay=True)
+                    with self._lock:
+                        self._cancels[topic] = publisher
 
     def _unwatch(self) -> None:
-        with self._lock:
+        with self._following:
             self._watchers -= 1
             if self._watchers:
                 return
             self._foreign.follow(())
-            for publisher in self._cancels.values():
+            with self._lock:
+                left, self._cancels = self._cancels, {}
+            for publisher in left.values():
                 publisher.unregister()
-            self._cancels.clear()
 
     # --- stop and walk --------------------------------------------------------------------------------------------
 
@@ -257,12 +262,13 @@ class RobotClient:
                 self.call(STOP_WALK, Empty)
         except NaoError as error:
             log.warning("the robot %s was not told to stop walking: %s", self.name, error)
-        with self._lock:
-            missing = [topic for topic in self._master.cancel_topics(self.namespace) if topic not in ready]
-        for topic in missing:
+        for topic in self._master.cancel_topics(self.namespace):
+            if topic in ready:
+                continue
             publisher = rospy.Publisher(topic, GoalID, queue_size=1)
             if _within(SERVER_LIMIT, lambda p=publisher: p.get_num_connections() > 0):
                 publisher.publish(GoalID())
+            publisher.unregister()
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
@@ -285,7 +291,7 @@ class RobotClient:
             log.info("%s is not there yet: %s", server, error)
 
     def _client(self, server: str, action: type) -> Any:
-        with self._lock:
+        with self._connecting:
             if server not in self._clients:
                 self._clients[server] = actionlib.ActionClient(self.namespace + server, action)
             client = self._clients[server]
@@ -295,7 +301,7 @@ class RobotClient:
 
     def _owner_line(self, server: str) -> OwnerLine | None:
         """The line to the watch of this robot's owners: should the console die, its goals end."""
-        with self._lock:
+        with self._connecting:
             if self._owners is None:
                 try:
                     self._owners = OwnerLine(self.state_of(server).robot)

@@ -30,9 +30,14 @@ class Robots:
 
     def robot(self, name: str = "") -> RobotClient:
         """A robot by its name; empty: the first. Raises NotThere if it has never been seen."""
+        if name:
+            with self._lock:  # without the master: a stop needs no more
+                known = self._robots.get(_namespace(name))
+            if known is not None:
+                return known
         names = self.names()
         wanted = name.strip("/") or ("/" if name or "/" in names or not names else names[0])
-        namespace = f"/{wanted.strip('/')}/" if wanted.strip("/") else "/"
+        namespace = _namespace(wanted)
         with self._lock:
             if namespace in self._robots:
                 return self._robots[namespace]
@@ -66,3 +71,7 @@ class Robots:
                 watched = set(self._watchers.values())
             for refresh in watched:
                 refresh()
+
+
+def _namespace(name: str) -> str:
+    return f"/{name.strip('/')}/" if name.strip("/") else "/"
