@@ -10,11 +10,14 @@ from console_browser import ConsoleBrowser, ConsoleProgram
 from geometry_msgs.msg import Point
 
 from nao_library_actions.msg import NaoAudioInAction
+from nao_library_modules.base.paths import config_file
 from nao_library_modules.console.study.files import StudyFiles
 from nao_library_msgs.srv import PersonSays
 from nao_sim_bridge.testing import RobotTestCase, wait_until
 
-TRIAL = "ten_steps/P01-1"
+STUDY = "patient_steps"
+"""The ten steps that come along, with more time for a computer that is busy."""
+TRIAL = f"{STUDY}/P01-1"
 
 
 @pytest.mark.timeout(400)
@@ -25,6 +28,11 @@ class ConsoleStudy(RobotTestCase):
         super().setUp()
         self.folder = Path(tempfile.mkdtemp(prefix="console_study"))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        protocols = self.folder / "studies" / "protocols"
+        protocols.mkdir(parents=True)
+        text = config_file("console/protocols/ten_steps.yaml").read_text()
+        text = text.replace("name: ten_steps", f"name: {STUDY}").replace("timeout: 30", "timeout: 300")
+        (protocols / f"{STUDY}.yaml").write_text(text)
         self.program = ConsoleProgram(self.folder)
         self.addCleanup(self.program.close)
         self.browser = self.browse()
@@ -41,7 +49,7 @@ class ConsoleStudy(RobotTestCase):
         wait_until(lambda: getattr(self.files.trial(TRIAL).state().current, "path", "") == path, 60.0, f"step {path}")
 
     def begin(self):
-        self.browser.open("/study", protocol="ten_steps", participant="P01")
+        self.browser.open("/study", protocol=STUDY, participant="P01")
         self.browser.reads("One trial of ten steps")
         for recording in ("Rosbag", "Video", "Sound"):
             self.browser.click(".q-checkbox", recording)
