@@ -34,13 +34,35 @@ def test_protocols_that_come_along_fit_the_servers(run, tmp_path, name):
     assert told.exit_code == 0, told.output
 
 
-def test_a_function_that_there_is_not_is_told_with_its_line(run, tmp_path):
+@pytest.mark.parametrize(
+    "step, told",
+    [
+        ("call: NaoLights.setColour", "did you mean 'setColor'"),
+        ("call: NaoLight.setColor", "did you mean 'NaoLights'"),
+        ("run: wave", "there is no behavior 'wave'"),
+        ("{run: hello, with: {txt: Hi}}", "there is no parameter 'txt'"),
+        ("{run: hello, with: {colour: '{participant}'}}", "there is no parameter 'colour'"),
+        ("posture: Stnd", "did you mean 'Stand'"),
+        ("{call: NaoLights.setColor, with: {lights: [FaceLeds], str_param: '{n}'}}", "unknown colour 'gren'"),
+    ],
+)
+def test_what_the_robot_would_refuse_is_told_with_its_line(run, tmp_path, step, told):
     file = tmp_path / "mine.yaml"
-    file.write_text("phases:\n  - steps:\n      - call: NaoLights.setColour\n")
-    told = run("check", file)
-    assert told.exit_code == 1
-    assert "line 3" in told.output
-    assert "did you mean 'setColor'" in told.output
+    file.write_text(f"values: {{n: gren}}\nphases:\n  - steps:\n      - {step}\n")
+    answer = run("check", file)
+    assert answer.exit_code == 1
+    assert "line 4" in answer.output
+    assert told in answer.output
+
+
+def test_what_only_the_trial_has_is_not_looked_at(run, tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text(
+        "phases:\n  - steps:\n      - {wizard: Colour, choices: [red, blue], label: colour}\n"
+        "      - {run: hello, with: {text: 'Hi {participant}', color: '{colour}'}}\n"
+        "      - {call: NaoLights.setColor, with: {lights: [FaceLeds], str_param: '{colour}'}}\n"
+    )
+    assert run("check", file).exit_code == 0
 
 
 def test_a_protocol_that_there_is_not_is_told_with_those_that_are_close(run, tmp_path):

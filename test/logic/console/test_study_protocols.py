@@ -15,6 +15,7 @@ from nao_library_modules.console.study.order import balanced_rows, order_of
 from nao_library_modules.console.study.reader import read_protocol, read_protocol_file
 
 SHIPPED = sorted(config_file("console/protocols").glob("*.yaml"))
+TOUCH = "- {wait: touch, sensors: [head], label: head}"
 HEAD = "name: x\nphases:\n  - steps:\n"
 
 
@@ -36,12 +37,25 @@ def test_protocols_that_come_along_can_be_run(path):
         ("- wait: 1\n    - {wait: touch, label: trial}", 5, "is no label"),
         ("- {repeat: 0, steps: [{wait: 1}]}", 4, "1..1000"),
         ("- wait: [", 5, "no YAML"),
+        (f"{TOUCH}\n    - {{when: head == frnt, then: [{{wait: 1}}]}}", 5, "head is never 'frnt'"),
+        (f"{TOUCH}\n    - choose: head\n      cases:\n        chest: [{{wait: 1}}]", 7, "head is never 'chest'"),
+        (
+            "- {wizard: Well, choices: [good], label: mood}\n    - {when: mood != god, then: [{wait: 1}]}",
+            5,
+            "mean 'good'",
+        ),
+        ("- {say: Hi, label: hi}\n    - {when: hi == yes, then: [{wait: 1}]}", 5, "there are done, none"),
     ],
 )
 def test_a_mistake_is_told_with_its_line(step, line, told):
     with pytest.raises(ConsoleFileError) as error:
         read_protocol(f"{HEAD}    {step}\n", "x.yaml")
     assert [(line, True)] == [(each.line, told in each.text) for each in error.value.problems]
+
+
+def test_answers_of_several_sensors_at_once_can_be_asked_for():
+    step = "{choose: head, cases: {'rear head, front head': [{wait: 1}], none: [{wait: 1}]}}"
+    assert read_protocol(f"{HEAD}    {TOUCH}\n    - {step}\n", "x").name == "x"
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 8])

@@ -15,12 +15,13 @@ from naoqi.errors import NaoError
 
 from ...base.suggestion import of_those
 from ...base.whole_file import FileTrouble, write_whole
-from ..errors import CommandFailed, CommandInterrupted
+from ..errors import CommandFailed, CommandInterrupted, StackMissing
 from ..files import overwrite_option, wanted_file
 from ..output import say_json, say_lines, table
 from ..settings import CliSettings, NaoCommand, NaoGroup, settings_of
 
 if TYPE_CHECKING:
+    from ...console.study.checking import ProtocolCheck
     from ...console.study.files import StudyFiles
     from ...console.study.protocol import StudyProtocol, WantedRecordings
     from ...console.study.runner import TrialRunner
@@ -71,22 +72,17 @@ def list_studies(context: click.Context, folder: Path) -> None:
 @folder_option
 @click.pass_context
 def check(context: click.Context, protocol: str, folder: Path) -> None:
-    """Whether a protocol can be run, also where no servers run: each mistake is told with its line."""
-    from ...behaviors.language.errors import Problem
-    from ...console.study.course import all_steps
+    """Whether a protocol can be run: each mistake is told with its line.
+
+    Servers and stored behaviours are those that run. Where none does, the code tells what this package's servers can
+    do, and the behaviours are those of the usual folder.
+    """
     from ...console.study.order import order_of
-    from ...console.study.protocol import CommandStep
 
     read = _protocol(_files(folder), protocol)
-    describe = _describe_offline()
-    problems = [
-        str(Problem(f"step {path}", problem, step.line))
-        for path, step in all_steps(read)
-        if isinstance(step, CommandStep)
-        for problem in _command_problems(step.command, describe)
-    ]
+    problems = _checks(settings_of(context)).problems(read)
     if problems:
-        raise CommandFailed("\n".join([f"protocol {read.name} cannot be run:", *problems]))
+        raise CommandFailed("\n".join([f"protocol {read.name} cannot be run:", *map(str, problems)]))
     order = order_of(read, 1)
     if settings_of(context).json:
         say_json({"name": read.name, "order": order})
@@ -231,26 +227,27 @@ def _told(act: Callable[[], Any]) -> Any:
         raise CommandFailed(str(error)) from None
 
 
-def _describe_offline() -> Callable[[str], Any]:
-    """What the code alone knows of servers; NaoError for others."""
-    from nao_library_msgs.srv import DescribeFunctionsRequest
+def _checks(settings: CliSettings) -> ProtocolCheck:
+    from nao_library_msgs.srv import ListBehaviorsRequest
 
-    from ...functions.describe_offline import offline_servers
+    from ...console.robots.errors import NotThere
+    from ...console.study.checking import ProtocolCheck
 
-    servers = {server.name: server for server in offline_servers()}
+    stack = settings.stack
 
-    def describe(name: str) -> Any:
-        if name not in servers:
-            raise NaoError(f"there is no server {name!r}{of_those(name, servers)}")
-        return servers[name].service.answer(DescribeFunctionsRequest())
+    def running() -> list[str]:
+        try:
+            return stack.servers()
+        except click.ClickException:
+            return []
 
-    return describe
+    def ask(**fields: Any) -> Any:
+        try:
+            return stack.list_behaviors(ListBehaviorsRequest(**fields), patient=True)
+        except StackMissing as error:
+            raise NotThere(error.message) from None
 
-
-def _command_problems(command: Any, describe: Callable[[str], Any]) -> list[str]:
-    from ...console.robots.commands import command_problems
-
-    return command_problems(command, describe)
+    return ProtocolCheck(stack.describe, running, ask)
 
 
 def _studies(settings: CliSettings, files: StudyFiles) -> tuple[Studies, Any]:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from ...nao.touch_names import names_of, sensors_of
 from ..robots.commands import RobotCommand
 from .conditions import StudyCondition
 
@@ -18,8 +19,8 @@ LIVE = ("touches", "words", "faces", "seconds")
 time, s."""
 GIVEN = ("participant", "number", "trial", "trials")
 """Values that every trial has: pseudonym and number of the participant, which trial of how many it is for him."""
-NOTHING = "none"
-"""Answer of a step that timed out or was skipped."""
+NOTHING, DONE = "none", "done"
+"""Answers of a step that timed out or was skipped, and of one that was done and asks nothing."""
 FIRST, LAST = "first", "last"
 BAG_TOPICS = ("joint_states", "/tf", "/rosout")
 """Of a rosbag that a protocol does not name topics for."""
@@ -37,6 +38,11 @@ class ProtocolStep:
     def text(self) -> str:
         """What it does, for people; may have `{name}` in it."""
         return self.kind
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """What its answer can be; empty: anything."""
+        return (DONE, NOTHING)
 
     def inner(self) -> Iterator[tuple[str, tuple[ProtocolStep, ...]]]:
         """Steps inside of a group, each list with the part of the path that leads to it."""
@@ -70,6 +76,10 @@ class ChoiceStep(ProtocolStep):
     def text(self) -> str:
         return self.question
 
+    @property
+    def answers(self) -> tuple[str, ...]:
+        return (*self.choices, NOTHING)
+
 
 @dataclass(frozen=True)
 class SenseStep(ProtocolStep):
@@ -87,6 +97,12 @@ class SenseStep(ProtocolStep):
     @property
     def text(self) -> str:
         return f"wait for a {self.sense}" + (f": {', '.join(self.names)}" if self.names else "")
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        if self.sense == "touch":
+            return (*names_of(sensors_of(self.names)), NOTHING)
+        return (*self.names, NOTHING) if self.names else ()
 
 
 @dataclass(frozen=True)

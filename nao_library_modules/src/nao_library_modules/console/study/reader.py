@@ -90,6 +90,7 @@ class _Reader(FileReader):
         super().__init__(text, name)
         self._names: set[str] = set()
         self._labels: dict[str, int] = {}
+        self._compared: list[tuple[StudyCondition, str, int]] = []  # with where they stand, and their line
 
     def protocol(self, text: str) -> StudyProtocol:
         top = self.content
@@ -125,6 +126,7 @@ class _Reader(FileReader):
             text,
         )
         self._check_texts(protocol)
+        self._check_answers(protocol)
         self.finish()
         return protocol
 
@@ -275,6 +277,7 @@ class _Reader(FileReader):
                 sensors_of(words)
             except BadGoal as error:
                 self.note(where, str(error), at)
+                words = ()
         elif what == "word" and not words:
             self.note(where, "wait: word needs words, those that the robot is to listen for: [yes, no]", at)
         confidence = value.get("confidence", 0.0)
@@ -298,8 +301,11 @@ class _Reader(FileReader):
             self._fail(where, "cases are a mapping: {ANSWER: [STEP, ...], ...}", line_in(value, "cases") or line)
         branches = []
         for i, (answer, steps) in enumerate(cases.items(), 1):
-            read = self._steps(steps, f"{path}.b{i}", line_in(cases, answer))
-            branches.append(((StudyCondition(str(name), "==", _word(answer)),), read))
+            at = line_in(cases, answer)
+            read = self._steps(steps, f"{path}.b{i}", at)
+            condition = StudyCondition(str(name), "==", _word(answer))
+            self._compared.append((condition, where, at))
+            branches.append(((condition,), read))
         if "else" in value:
             read = self._steps(value["else"], f"{path}.b{len(cases) + 1}", line_in(value, "else"))
             branches.append(((), read))
@@ -325,6 +331,7 @@ class _Reader(FileReader):
             for name in condition.names():
                 if name not in known:
                     self.note(where, f"there is no value {name!r}{of_those(name, sorted(known))}", line)
+            self._compared.append((condition, where, line))
             read.append(condition)
         return tuple(read)
 
@@ -365,6 +372,17 @@ class _Reader(FileReader):
             for text in texts:
                 for problem in unknown_names(text, sorted(self._names)):
                     self.note(f"step {path}", problem, step.line)
+
+    def _check_answers(self, protocol: StudyProtocol) -> None:
+        """Note conditions that wait for an answer that a step cannot have, or a level that a factor does not have."""
+        words: dict[str, tuple[str, ...]] = {factor.name: tuple(factor.levels) for factor in protocol.factors}
+        words.update((step.label, step.answers) for _, step in all_steps(protocol) if step.label)
+        for condition, where, line in self._compared:
+            known = words.get(condition.left, ())
+            # Several sensors that are touched at once are one answer.
+            for word in condition.right.split(", ") if known and condition.operation in ("==", "!=") else ():
+                if word not in known:
+                    self.note(where, f"{condition.left} is never {word!r}{of_those(word, known)}", line)
 
     def _values(self, top: dict[str, Any], key: str) -> dict[str, Any]:
         values = self._mapping(top, key)

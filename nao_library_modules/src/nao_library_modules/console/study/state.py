@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from .protocol import NOTHING
+from .protocol import DONE, NOTHING
 
 TRIAL = "trial"
 """Kind of the events that a trial itself adds; their `data` has what as one of those below."""
@@ -16,7 +16,7 @@ BEGAN, TAKEN_UP, STEP_BEGAN, STEP_ENDED, PAUSED, CONTINUED, HELD, ENDED = (
 RECORDING_BEGAN, RECORDING_ENDED = "recording began", "recording ended"
 RUNNING, INTERRUPTED, FINISHED, ABORTED = "running", "interrupted", "finished", "aborted"
 STATES = (RUNNING, PAUSED, HELD, INTERRUPTED, FINISHED, ABORTED)
-DONE, TIMEOUT, SKIPPED, FAILED, REPEATED, STOPPED = "done", "timeout", "skipped", "failed", "repeated", "stopped"
+TIMEOUT, SKIPPED, FAILED, REPEATED, STOPPED = "timeout", "skipped", "failed", "repeated", "stopped"
 ON = (DONE, TIMEOUT, SKIPPED, FAILED)
 """Ends of a step behind which the next one comes; a failed one where the protocol says so, or the wizard goes on."""
 

@@ -6,7 +6,7 @@ The trial runs in the console; a page shows what there is of it, whenever it is 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from nicegui import run, ui
@@ -15,6 +15,7 @@ from starlette.requests import Request
 from naoqi.errors import NaoError
 
 from ...files.yaml_file import ConsoleFileError
+from ...study.checking import checked_for
 from ...study.course import all_steps
 from ...study.errors import StudyError
 from ...study.order import order_of
@@ -177,7 +178,7 @@ class _StudyPage:
             self.protocol = read_protocol(text, name)
         except (NaoError, OSError) as error:
             self.protocol = None
-            self._tell_problems(error)
+            self._tell_problems(error.problems if isinstance(error, ConsoleFileError) else [error])
         else:
             record = self.protocol.record
             self._bag.value, self._video.value, self._sound.value = bool(record.bag), bool(record.video), record.sound
@@ -229,19 +230,22 @@ class _StudyPage:
             ui.notify(str(error), type="negative", multi_line=True)
         await self._refresh()
 
-    def _check(self) -> bool:
+    async def _check(self) -> bool:
+        """Whether the text can be run, also by the robot of the page."""
         try:
-            read_protocol(self._text.value, self._name.value)
-        except ConsoleFileError as error:
-            self._tell_problems(error)
+            protocol = read_protocol(self._text.value, self._name.value)
+            problems = await run.io_bound(checked_for, self.robot, protocol)
+        except NaoError as error:
+            problems = [*error.problems] if isinstance(error, ConsoleFileError) else [error]
+        self._tell_problems(problems)
+        if problems:
             ui.notify("The protocol cannot be run", type="negative")
             return False
-        self._problems.clear()
         ui.notify("Nothing wrong was found", type="positive")
         return True
 
     async def _save(self) -> None:
-        if not self.page.operate() or not self._check():
+        if not self.page.operate() or not await self._check():
             return
         try:
             name = self._name.value
@@ -254,10 +258,10 @@ class _StudyPage:
         self._choice.value = name
         await self._read()
 
-    def _tell_problems(self, error: Exception) -> None:
+    def _tell_problems(self, problems: Iterable[Any]) -> None:
         self._problems.clear()
         with self._problems:
-            for problem in error.problems if isinstance(error, ConsoleFileError) else [error]:
+            for problem in problems:
                 ui.label(str(problem))
 
     # A trial that runs
