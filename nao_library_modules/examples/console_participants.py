@@ -6,6 +6,7 @@
 
 Trials are those of `nao study run` and of the page "Study" of `nao console`, which shows them as well. Participants who
 have done all their trials are left out, so that a study that was interrupted goes on. Equal seeds, equal participants.
+A trial that is held because a step failed is aborted, and ends the program with status 1, without a table.
 
 Needs a running simulation, for example `roslaunch nao_library nao_sim.launch`.
 """
@@ -30,7 +31,7 @@ from nao_library_modules.console.study.errors import StudyError
 from nao_library_modules.console.study.files import StudyFiles
 from nao_library_modules.console.study.protocol import ChoiceStep, SenseStep
 from nao_library_modules.console.study.reader import read_protocol_file
-from nao_library_modules.console.study.state import FINISHED
+from nao_library_modules.console.study.state import FAILED, FINISHED, HELD
 from nao_library_modules.console.study.table import summaries_of, table_of
 from nao_library_modules.nao.touch_names import sensors_of
 from nao_library_modules.whole_file import require_new, write_whole
@@ -59,18 +60,18 @@ class SimulatedParticipant:
             service.wait_for_service(30.0)
 
     def play(self, runner: Any, changes: queue.SimpleQueue[Any]) -> str:
-        """Take part in a trial until it is over; how it ended."""
+        """Take part in a trial until it is over; how it ended. A step that fails and is held aborts it."""
         done = None
         while not runner.wait(0):
             changes.get()
-            outcome = runner.outcome
-            place = (outcome.path, outcome.attempt) if outcome is not None else None
+            outcome, held = runner.outcome, runner.state.status == HELD
+            place = (outcome.path, outcome.attempt, held) if outcome is not None else None
             if place is None or place == done:
                 continue
             done = place
-            if outcome.ended is not None:  # it failed, and waits for somebody who is not there
-                print(f"{runner.id}: step {outcome.path} failed: {outcome.error}")
-                runner.abort()
+            if held:  # there is nobody who could decide how it goes on
+                say(f"{runner.id} is held: step {outcome.path} ({outcome.text}) failed: {outcome.error}")
+                runner.abort("participants")
             else:
                 self._do(runner)
         return str(runner.state.status)
@@ -97,6 +98,11 @@ class SimulatedParticipant:
             self._listens.set()
 
 
+def say(text: str) -> None:
+    """Tell it on the standard error, at once."""
+    print(text, file=sys.stderr, flush=True)
+
+
 def main() -> int:
     """Run the study; the exit status tells whether all trials were finished."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -113,8 +119,8 @@ def main() -> int:
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
     try:
         return run(options)
-    except (NaoError, OSError, rospy.ROSException) as error:
-        print(error)
+    except (NaoError, OSError, rospy.ROSException, rospy.ServiceException) as error:
+        say(f"Error: {error}")
         return 1
     except KeyboardInterrupt:
         return 130
@@ -127,11 +133,10 @@ def run(options: argparse.Namespace) -> int:
     path = files.protocols().get(options.protocol, Path(options.protocol))
     protocol = read_protocol_file(path)
     studies, robot = studies_alone(files)
-    good = True
     for number in range(1, options.participants + 1):
         pseudonym = f"P{number:02d}"
         participant = SimulatedParticipant(random.Random(f"{options.seed}:{pseudonym}"))
-        while good:
+        while True:
             try:
                 studies.position_of(protocol, pseudonym)
             except StudyError:  # all are done
@@ -140,19 +145,28 @@ def run(options: argparse.Namespace) -> int:
             runner = studies.begin(protocol, pseudonym, robot, "participants", listener=changes.put)
             try:
                 ended = participant.play(runner, changes)
-            except KeyboardInterrupt:
+            except BaseException:  # whatever it is: the trial is not left open
                 runner.abort()
                 runner.wait(10.0)
                 raise
             print(f"{runner.id} {ended}: {runner.state.about['condition']}", flush=True)
-            good = ended == FINISHED
+            if ended != FINISHED:
+                return fail(runner)
     table = table_of(files, protocol.name)
     write_whole(output, table.csv())
     for each in summaries_of(table):
         mean = "" if each.mean is None else f", mean reaction {each.mean:.2f} s"
         print(f"{each.label} ({each.condition}): {each.count} times{mean}, {dict(each.answers)}")
     print(f"written: {output}, {len(table.rows)} rows")
-    return 0 if good else 1
+    return 0
+
+
+def fail(runner: Any) -> int:
+    """Tell why a trial was not finished; the exit status."""
+    failed = [each for each in runner.state.outcomes if each.outcome == FAILED]
+    why = f": step {failed[-1].path} failed: {failed[-1].error}" if failed else ""
+    say(f"Error: trial {runner.id} is {runner.state.status}{why}; once that is mended, the same command goes on")
+    return 1
 
 
 if __name__ == "__main__":
