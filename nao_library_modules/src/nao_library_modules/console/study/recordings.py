@@ -5,10 +5,6 @@ All of them go on when the console is killed, and a trial that is taken up again
 
 from __future__ import annotations
 
-import os
-import signal
-import subprocess
-import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -18,15 +14,12 @@ from naoqi.errors import NaoError
 from ...base.whole_file import FileTrouble, move_whole
 from ..robots.commands import call
 from . import state as told
+from .bag import ACTIVE, BagRecorder, end_bag, is_bag
 from .protocol import WantedRecordings
 
 BAG, VIDEO, SOUND = "bag", "video", "sound"
-LONGEST_BAG = "4h"
-"""Of a bag whose console does not come back."""
 LIMIT = 30.0
-"""s of this computer that a server, or rosbag, has for the begin or the end of a recording."""
-PART = 0.05
-"""s between looks at a process that is no child of this one."""
+"""s of this computer that a server has for the begin or the end of a recording."""
 
 
 class TrialRecordings:
@@ -37,13 +30,13 @@ class TrialRecordings:
 
     def __init__(self, folder: Path, wanted: WantedRecordings) -> None:
         self._folder, self._wanted = folder, wanted
-        self._bag: subprocess.Popen[bytes] | None = None
+        self._bag: BagRecorder | None = None
 
     def begin(self, runner: Any) -> None:
         """Begin what is wanted and does not run yet. What cannot be recorded is a deviation of the trial."""
         running = dict(runner.state.recordings)
         bag = running.get(BAG)
-        if bag is not None and not _is_bag(bag):
+        if bag is not None and not is_bag(self._folder / str(bag["file"]), bag):
             self._tell_end(runner, BAG, file=bag["file"], error="the process was gone")
             bag = None
         for kind, wanted, begin in (
@@ -55,7 +48,7 @@ class TrialRecordings:
                 try:
                     begin(runner)
                 except (NaoError, OSError) as error:
-                    runner.deviation(f"there is no {kind}: {error}")
+                    runner.deviation(f"the {kind}: {error}")
 
     def end(self, runner: Any) -> None:
         """End what runs, and fetch the files."""
@@ -71,28 +64,18 @@ class TrialRecordings:
         file = _free(self._folder / "trial.bag")
         space = runner.robot.namespace.rstrip("/")
         topics = [topic if topic.startswith("/") else f"{space}/{topic}" for topic in self._wanted.bag]
-        command = ["rosbag", "record", "--lz4", f"--duration={LONGEST_BAG}", "-O", str(file), *topics]
-        with (self._folder / "rosbag.log").open("ab") as output:
-            self._bag = subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=output,
-                start_new_session=True,  # neither Ctrl-C nor the end of the console ends it
-            )
+        self._bag = BagRecorder(file, topics, self._folder / "rosbag.log")
         self._tell_begin(runner, BAG, file=file.name, pid=self._bag.pid, topics=topics)
+        self._bag.wait_until_it_records()
 
     def _end_bag(self, runner: Any, about: Mapping[str, Any]) -> None:
-        pid = int(about["pid"])
-        if _is_bag(about):
-            os.killpg(pid, signal.SIGINT)
-        if self._bag is not None and self._bag.pid == pid:
-            self._bag.wait(LIMIT)
-        else:
-            _wait_for_end(pid)
         file = self._folder / str(about["file"])
-        problem = {} if file.exists() else {"error": "rosbag left no whole file: see rosbag.log"}
-        self._tell_end(runner, BAG, file=file.name, **problem)
+        try:
+            end_bag(file, about, self._bag)
+        except NaoError as error:
+            self._tell_end(runner, BAG, file=file.name, error=str(error))
+        else:
+            self._tell_end(runner, BAG, file=file.name)
 
     def _begin_video(self, runner: Any) -> None:
         fields = {"id": self._name(runner), "camera": self._wanted.video, "file_type": "mp4"}
@@ -161,26 +144,10 @@ class TrialRecordings:
         runner.tell(told.RECORDING_ENDED, text, recording=kind, **about)
 
 
-def _is_bag(about: Mapping[str, Any]) -> bool:
-    """Whether the process of a bag runs: processes of other programs may have had its number since."""
-    try:
-        command = Path(f"/proc/{int(about['pid'])}/cmdline").read_bytes()
-    except (OSError, ValueError):
-        return False
-    return str(about["file"]).encode() in command and b"record" in command
-
-
-def _wait_for_end(pid: int) -> None:
-    """Wait for the end of a process that is no child of this one, which nothing tells: look at it now and then."""
-    limit = time.monotonic() + LIMIT
-    while Path(f"/proc/{pid}").exists() and time.monotonic() < limit:
-        time.sleep(PART)
-
-
 def _free(path: Path) -> Path:
     """A name that no recording has had in this trial."""
     number, name = 2, path
-    while name.exists() or name.with_suffix(".bag.active").exists():
+    while name.exists() or name.with_name(name.name + ACTIVE).exists():
         name = path.with_name(f"{path.stem}-{number}{path.suffix}")
         number += 1
     return name
