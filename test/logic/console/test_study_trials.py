@@ -9,16 +9,19 @@ import subprocess
 import sys
 import textwrap
 import threading
+from dataclasses import asdict
 from pathlib import Path
 
 import played_study
 import pytest
 from played_study import LIMIT, PlayedRobot, Trial
 
+from nao_library_modules.console.study import recordings
 from nao_library_modules.console.study import studies as module
 from nao_library_modules.console.study.errors import StudyError
 from nao_library_modules.console.study.log import EVENTS, TABLE, TrialLog, guarded, read_events
 from nao_library_modules.console.study.state import TrialState
+from nao_library_modules.console.study.studies import Studies
 from nao_library_modules.console.study.table import summaries_of, table_of
 
 
@@ -163,6 +166,38 @@ def test_a_trial_whose_program_was_killed_is_taken_up_at_the_step_that_had_not_e
     assert state.status == "finished"
     assert state.values["head_seconds"] == pytest.approx(0.25)
     assert [each.outcome for each in state.outcomes] == ["done", "done", "stopped", "done", "done"]
+
+
+def test_a_trial_that_a_program_runs_is_not_interrupted_and_cannot_be_given_up(trial):
+    folder = trial.begin().at("2.1").files.trial("two_by_two/P01-1")
+    others = Studies(trial.files)
+    assert [(each.runs(), state.status) for each, state in others.open_trials()] == [(True, "running")]
+    with pytest.raises(StudyError, match="another program"):
+        others.abort(folder.id)
+    trial.runner.abort()
+    trial.end()
+    assert not folder.runs()
+
+
+def test_a_trial_that_was_left_is_given_up_with_its_recording(trial, monkeypatch):
+    ended = []
+    monkeypatch.setattr(recordings, "end_bag", lambda file, about, own: ended.append((file.name, about["pid"], own)))
+    trial.begin().at("2.1")
+    events = trial.robot.events.last()
+    trial.runner.abort()
+    trial.end()
+    folder = trial.files.new_trial("two_by_two", "P02")
+    log = TrialLog(folder.path)
+    for event in events:
+        log.add(asdict(event))
+    log.add({"kind": "trial", "data": {"what": "recording began", "recording": "bag", "file": "trial.bag", "pid": 7}})
+    log.close()
+    assert folder.state().status == "interrupted"
+    trial.studies.abort(folder.id, by="ann")
+    assert ended == [("trial.bag", 7, None)]
+    assert (folder.state().status, folder.state().recordings) == ("aborted", {})
+    with pytest.raises(StudyError, match="is aborted"):
+        trial.studies.abort(folder.id)
 
 
 def test_a_line_that_was_cut_short_is_left_out_and_written_over(tmp_path):

@@ -22,9 +22,10 @@ from ..settings import CliSettings, NaoCommand, NaoGroup, settings_of
 
 if TYPE_CHECKING:
     from ...console.study.checking import ProtocolCheck
-    from ...console.study.files import StudyFiles
+    from ...console.study.files import StudyFiles, TrialFolder
     from ...console.study.protocol import StudyProtocol, WantedRecordings
     from ...console.study.runner import TrialRunner
+    from ...console.study.state import TrialState
     from ...console.study.studies import Studies
 
 FOLDER = "~/.ros/nao_studies"
@@ -64,7 +65,7 @@ def list_studies(context: click.Context, folder: Path) -> None:
     say_lines(table([("protocol", name, path) for name, path in protocols.items()]))
     say_lines(table([("study", name, f"{len(found)} trials") for name, found in trials.items()]))
     opened = [(trial, state) for found in trials.values() for trial, state in found if not state.over]
-    say_lines(table([("open", trial.id, state.status or "empty") for trial, state in opened]))
+    say_lines(table([("open", trial.id, _status(trial, state)) for trial, state in opened]))
 
 
 @study_command.command("check", cls=NaoCommand)
@@ -148,6 +149,32 @@ def take_up(context: click.Context, trial: str, choose: tuple[str, ...], folder:
         say_json({"trials": [trial]})
 
 
+@study_command.command("abort", cls=NaoCommand)
+@click.argument("trial", metavar="STUDY/PSEUDONYM-N")
+@folder_option
+@click.pass_context
+def abort(context: click.Context, trial: str, folder: Path) -> None:
+    """Give up a trial whose program was gone, and end the recordings that it has left. What was logged stays."""
+    from ...console.study.recordings import BAG
+    from ...console.study.studies import Studies
+
+    settings = settings_of(context)
+    files = _files(folder)
+    recorded = _told(lambda: files.trial(trial).state().recordings)
+    robot = None
+    if any(kind != BAG for kind in recorded):  # which the servers record
+        try:
+            _, robot = _studies(settings, files)
+        except click.ClickException as error:
+            click.echo(f"the {' and '.join(recorded)} may go on: {error.message}", err=True)
+    state = _told(lambda: Studies(files).abort(trial, robot, "nao"))
+    if settings.json:
+        say_json({"trial": trial, "state": state.status, "files": state.files})
+        return
+    click.echo(f"trial {trial} is {state.status}")
+    say_lines(f"{file['recording']}: {file.get('error') or file.get('file')}" for file in state.files)
+
+
 @study_command.command("table", cls=NaoCommand)
 @click.argument("study", metavar="STUDY|DIR")
 @click.option("--csv", "file", default="", type=click.Path(), metavar="FILE.csv", help="A row a trial and step.")
@@ -199,6 +226,11 @@ def study_table(context: click.Context, study: str, file: str, overwrite: bool, 
     say_lines(table(lines))
     if target is not None:
         click.echo(f"written: {target}, {len(found.rows)} rows")
+
+
+def _status(trial: TrialFolder, state: TrialState) -> str:
+    """Of a trial that is not over, for people."""
+    return f"{state.status or 'empty'}, runs in another program" if trial.runs() else state.status or "empty"
 
 
 def _files(folder: Path) -> StudyFiles:

@@ -15,7 +15,7 @@ from ...base.suggestion import of_those
 from ...base.whole_file import write_whole
 from ...behaviors.language.yaml_text import dump, load
 from .errors import StudyError
-from .log import read_events
+from .log import is_written, read_events
 from .protocol import StudyProtocol
 from .reader import NAME, NAME_FORM, read_protocol, read_protocol_file
 from .state import TrialState
@@ -44,7 +44,11 @@ class TrialFolder:
 
     def state(self) -> TrialState:
         """How far it is, from its events. Raises StudyError if they cannot be read."""
-        return TrialState.of(read_events(self.path))
+        return TrialState.of(read_events(self.path), self.runs())
+
+    def runs(self) -> bool:
+        """Whether a program runs it at this moment, this one or another."""
+        return is_written(self.path)
 
     def protocol(self) -> StudyProtocol:
         """The protocol as it was when the trial began."""

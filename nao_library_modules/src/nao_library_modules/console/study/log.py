@@ -101,6 +101,21 @@ class TrialLog:
             self.trouble = f"{self._path} cannot be put on the disk: {error.strerror or error}"
 
 
+def is_written(folder: Path) -> bool:
+    """Whether a program has the log of a trial open for writing."""
+    try:
+        file = os.open(folder / EVENTS, os.O_RDONLY | os.O_CLOEXEC)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError:
+        return True
+    finally:
+        os.close(file)
+    return False
+
+
 def read_events(folder: Path) -> list[dict[str, Any]]:
     """Events of a trial. A line that was cut short at the end is left out, as is one that is damaged."""
     path = folder / EVENTS

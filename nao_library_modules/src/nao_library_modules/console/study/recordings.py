@@ -111,6 +111,8 @@ class TrialRecordings:
 
     @staticmethod
     def _send(runner: Any, server: str, function: str, **fields: Any) -> Any:
+        if runner.robot is None:
+            raise NaoError("there is no robot")
         run = runner.robot.send(call(server, function, **fields))
         if not run.wait(LIMIT):
             run.cancel()

@@ -56,12 +56,12 @@ class TrialState:
     deviations: int = 0
 
     @staticmethod
-    def of(events: Iterable[Mapping[str, Any]]) -> TrialState:
-        """Of a log; a trial whose log has no end is `INTERRUPTED` unless it was paused or held."""
+    def of(events: Iterable[Mapping[str, Any]], runs: bool = False) -> TrialState:
+        """Of a log. Without an end a trial is `INTERRUPTED`, unless it was paused or held, or a program `runs` it."""
         state = TrialState()
         for event in events:
             state.apply(event)
-        if state.status == RUNNING:
+        if state.status == RUNNING and not runs:
             state.status = INTERRUPTED
         return state
 

@@ -15,13 +15,14 @@ from ...base.paths import config_file
 from .conditions import filled
 from .errors import StudyError
 from .files import PROTOCOL, StudyFiles, TrialFolder
-from .log import TrialLog, write_events_table
+from .left import LeftTrial
+from .log import TrialLog, read_events, write_events_table
 from .order import order_of
 from .protocol import StudyProtocol, WantedRecordings
 from .reader import hash_of
 from .recordings import TrialRecordings
 from .runner import TrialRunner
-from .state import FINISHED, TrialState
+from .state import ABORTED, ENDED, FINISHED, TrialState
 
 LONGEST_SETTING = 500
 """Characters of a parameter that is kept with a trial; descriptions of robots are longer."""
@@ -47,7 +48,7 @@ class Studies:
             return self._runners.get(namespace)
 
     def open_trials(self) -> list[tuple[TrialFolder, TrialState]]:
-        """Trials that were begun, are not over, and run nowhere in this program."""
+        """Trials that were begun, are not over, and are not run by this program; another one may run them."""
         with self._lock:
             here = {runner.id for runner in self._runners.values() if not runner.state.over}
         found = []
@@ -157,6 +158,26 @@ class Studies:
             record = dict(state.about.get("record", {}))
             wanted = replace(WantedRecordings(**record), bag=tuple(record.get("bag", ())))
             return self._start(trial.protocol(), trial, robot, by, state.about, wanted, listener)
+
+    def abort(self, trial_id: str, robot: Any = None, by: str = "") -> TrialState:
+        """Give up a trial whose program was gone, and end the recordings that it has left; how it is then.
+
+        `robot`: the `RobotClient`, which ends a video and sound; None: there is none. Raises StudyError if the trial is
+        over, or a program runs it.
+        """
+        trial = self.files.trial(trial_id)
+        trial_log = TrialLog(trial.path)  # nobody takes it up meanwhile
+        try:
+            left = LeftTrial(trial_id, trial_log, read_events(trial.path), robot)
+            if left.state.over or not left.state.status:
+                raise StudyError(f"trial {trial_id} is {left.state.status or 'empty'}: it cannot be aborted")
+            TrialRecordings(trial.path, WantedRecordings()).end(left)
+            left.tell(ENDED, f"trial {trial_id} is {ABORTED}", by, outcome=ABORTED)
+        finally:
+            trial_log.close()
+        write_events_table(trial.path)
+        self._tell()
+        return left.state
 
     def on_change(self, listener: Callable[[], None]) -> Callable[[], None]:
         """Have a function called when a trial begins or is over; returns what ends that."""

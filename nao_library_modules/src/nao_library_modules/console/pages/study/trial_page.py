@@ -137,12 +137,21 @@ class _StudyPage:
                 ui.label("Trials that have not ended").classes("text-h6")
                 for folder, state in opened:
                     with ui.row().classes("items-center"):
+                        if folder.runs():
+                            ui.label(f"{folder.id}: {state.status}, runs in another program")
+                            continue
                         ui.label(f"{folder.id}: {state.status}, last step {state.path or 'none'}")
                         if state.recordings:
                             ui.badge(f"records {', '.join(state.recordings)}").props("color=negative")
                         ui.button(
                             "Take up again", icon="restart_alt", on_click=lambda _, each=folder.id: self._take_up(each)
                         ).props("no-caps")
+                        ui.button(
+                            "Abort",
+                            icon="cancel",
+                            color="negative",
+                            on_click=lambda _, each=folder.id: self._give_up(each),
+                        ).props("no-caps outline")
         with ui.card().classes("w-full"):
             ui.label("New trial").classes("text-h6")
             names = list(await run.io_bound(self.studies.files.protocols))
@@ -222,6 +231,12 @@ class _StudyPage:
     async def _take_up(self, trial: str) -> None:
         if self.page.operate():
             await self._try(lambda: self.studies.take_up(trial, self.robot, self.page.visitor.name))
+
+    async def _give_up(self, trial: str) -> None:
+        if self.page.operate() and await _sure(trial):
+            await self._try(lambda: self.studies.abort(trial, self.robot, self.page.visitor.name))
+            self._shown = None
+            await self._refresh()
 
     async def _try(self, begin: Any) -> None:
         try:
@@ -331,7 +346,7 @@ class _StudyPage:
         outcome = runner.outcome
         self._status.text = state.status
         self._status.props(f"color={STATUS_COLOURS.get(state.status, 'grey')}")
-        self._now.text = runner.title or (f"paused behind step {state.path}" if state.path else "...")
+        self._now.text = runner.title or (f"paused behind step {state.path}" if state.path else "it begins")
         self._error.text = runner.log.trouble or (outcome.error if outcome is not None and state.status == HELD else "")
         self._pause.text = "Go on" if state.status in (PAUSED, HELD) else "Pause"
         if tuple(state.recordings) != self._recordings:
@@ -399,12 +414,7 @@ class _StudyPage:
         runner = self.runner
         if runner is None or not self.page.operate():
             return
-        with ui.dialog() as dialog, ui.card():
-            ui.label(f"Abort trial {runner.id}? What was logged stays.")
-            with ui.row():
-                ui.button("Abort", color="negative", on_click=lambda: dialog.submit(True)).props("no-caps")
-                ui.button("Go on", on_click=lambda: dialog.submit(False)).props("no-caps outline")
-        if await dialog:
+        if await _sure(runner.id):
             runner.abort(self.page.visitor.name)
 
     def _choose(self, choice: str) -> None:
@@ -440,6 +450,16 @@ class _StudyPage:
             (runner.next if key == "n" else runner.repeat)(by)
         elif key.isdigit() and isinstance(step, ChoiceStep) and 0 < int(key) <= len(step.choices):
             self._choose(step.choices[int(key) - 1])
+
+
+async def _sure(trial: str) -> bool:
+    """Ask whether a trial is to be aborted."""
+    with ui.dialog() as dialog, ui.card():
+        ui.label(f"Abort trial {trial}? What was logged stays.")
+        with ui.row():
+            ui.button("Abort the trial", color="negative", on_click=lambda: dialog.submit(True)).props("no-caps")
+            ui.button("Do not abort", on_click=lambda: dialog.submit(False)).props("no-caps outline")
+    return bool(await dialog)
 
 
 def _any_round(path: str) -> str:
