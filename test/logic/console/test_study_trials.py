@@ -14,7 +14,7 @@ from pathlib import Path
 
 import played_study
 import pytest
-from played_study import LIMIT, PlayedRobot, Trial
+from played_study import LIMIT, PROTOCOL, PlayedRobot, Trial
 
 from nao_library_modules.console.study import recordings
 from nao_library_modules.console.study import studies as module
@@ -42,6 +42,28 @@ def test_a_trial_does_its_steps_and_measures_the_reaction(trial):
     assert [each.path for each in state.outcomes] == ["1.1", "2.1", "2.2", "2.3.b1.1", "2.4"]
     assert (state.outcomes[1].answer, state.outcomes[1].seconds) == ("front head", pytest.approx(0.7))
     assert trial.robot.runs[-1].command.chain[0][1]["str_param"] in ("Thanks, P01", "Right")
+
+
+def test_a_value_of_the_protocol_can_be_another_one_in_a_trial(tmp_path):
+    trial = Trial(
+        tmp_path, text=PROTOCOL.replace("say: Hello", 'say: "Hello {spoken_name}"') + "values: {spoken_name: you}"
+    )
+    for given, said in (({}, "Hello you"), ({"spoken_name": "Ann"}, "Hello Ann")):
+        trial.runner = trial.studies.begin(trial.protocol, "P01", trial.robot, listener=trial.tell, values=given)
+        trial.at("2.1").runner.abort()
+        assert trial.end().outcomes[0].text.endswith(said)
+    assert "spoken_name: Ann" in (tmp_path / "two_by_two/P01-2/trial.yaml").read_text()
+    assert trial.files.newest_protocol() == ""
+    with pytest.raises(StudyError, match="did you mean 'spoken_name'"):
+        trial.studies.begin(trial.protocol, "P01", trial.robot, values={"spokenname": "Ann"})
+
+
+def test_the_protocol_of_the_newest_trial_is_known(trial):
+    (trial.files.folder / "protocols").mkdir()
+    (trial.files.folder / "protocols/other.yaml").write_text(PROTOCOL)
+    trial.begin().runner.abort()
+    trial.end()
+    assert trial.files.newest_protocol() == "other"
 
 
 def test_next_ends_a_step_without_answer_and_a_late_answer_counts_no_more(trial):

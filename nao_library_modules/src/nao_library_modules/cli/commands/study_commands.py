@@ -102,6 +102,9 @@ def check(context: click.Context, protocol: str, folder: Path) -> None:
 )
 @click.option("--all", "every", is_flag=True, help="All trials that the participant still has.")
 @click.option("--choose", multiple=True, metavar="LABEL=CHOICE", help="Of a step of the wizard; the others are asked.")
+@click.option(
+    "--value", "given", multiple=True, metavar="NAME=TEXT", help="Of the protocol's values: another one in this trial."
+)
 @click.option("--record", metavar="bag,video,sound", help="What is recorded.  [default: as the protocol has it]")
 @folder_option
 @click.pass_context
@@ -112,6 +115,7 @@ def run(
     position: int | None,
     every: bool,
     choose: tuple[str, ...],
+    given: tuple[str, ...],
     record: str | None,
     folder: Path,
 ) -> None:
@@ -123,11 +127,14 @@ def run(
     files = _files(folder)
     read = _protocol(files, protocol)
     wanted = _recordings(read, record)
-    choices = _choices(choose)
+    choices, values = _assigned(choose, "LABEL=CHOICE"), _assigned(given, "NAME=TEXT")
+    for name in values:
+        if name not in read.values:
+            raise click.UsageError(f"{read.name} has no value {name!r}{of_those(name, read.values)}")
     studies, robot = _studies(settings, files)
     ids: list[str] = []
     while not ids or (every and not position and not _done(studies, read, participant)):
-        more = {"position": position or 0, "record": wanted}
+        more = {"position": position or 0, "record": wanted, "values": values}
         begin = partial(studies.begin, read, participant, robot, "nao", **more)
         ids.append(_play(settings, begin, choices))
     if settings.json:
@@ -142,7 +149,7 @@ def run(
 def take_up(context: click.Context, trial: str, choose: tuple[str, ...], folder: Path) -> None:
     """Go on with a trial whose program was gone, behind the last step that had ended."""
     settings = settings_of(context)
-    choices = _choices(choose)
+    choices = _assigned(choose, "LABEL=CHOICE")
     studies, robot = _studies(settings, _files(folder))
     _play(settings, partial(studies.take_up, trial, robot, "nao"), choices)
     if settings.json:
@@ -306,14 +313,15 @@ def _recordings(protocol: StudyProtocol, text: str | None) -> WantedRecordings |
     return WantedRecordings(bag if "bag" in words else (), video if "video" in words else "", "sound" in words)
 
 
-def _choices(texts: Sequence[str]) -> dict[str, str]:
-    choices = {}
+def _assigned(texts: Sequence[str], form: str) -> dict[str, str]:
+    """What words as NAME=TEXT say. `form`: what they are to be, for the error."""
+    found = {}
     for text in texts:
-        label, equals, choice = text.partition("=")
-        if not equals or not label:
-            raise click.UsageError(f"{text!r} is no choice: LABEL=CHOICE")
-        choices[label] = choice
-    return choices
+        name, equals, value = text.partition("=")
+        if not equals or not name:
+            raise click.UsageError(f"{text!r} is wrong: {form}")
+        found[name] = value
+    return found
 
 
 def _done(studies: Studies, protocol: StudyProtocol, participant: str) -> bool:

@@ -14,6 +14,7 @@ from ...base.paths import config_file
 from ...base.suggestion import of_those
 from ...base.whole_file import write_whole
 from ...behaviors.language.yaml_text import dump, load
+from ..files.yaml_file import ConsoleFileError
 from .errors import StudyError
 from .log import is_written, read_events
 from .protocol import StudyProtocol
@@ -76,6 +77,19 @@ class StudyFiles:
         if name not in known:
             raise StudyError(f"there is no protocol {name!r}{of_those(name, known)}")
         return known[name].read_text(encoding="utf-8")
+
+    def newest_protocol(self) -> str:
+        """Name of the protocol of the trial that was begun last; empty if there is none, or its protocol has gone."""
+        begun = [(path.stat().st_mtime, path.parent.parent.name) for path in self.folder.glob(f"*/*/{ABOUT}")]
+        study = max(begun, default=(0.0, ""))[1]
+        known = self.protocols()
+        for name in sorted(known, key=lambda name: name != study):  # mostly the file is called as the study
+            try:
+                if study and read_protocol_file(known[name]).name == study:
+                    return name
+            except ConsoleFileError:
+                continue
+        return ""
 
     def store_protocol(self, name: str, text: str) -> Path:
         """Store a protocol of this computer; where it is. Raises ConsoleFileError if it cannot be run."""

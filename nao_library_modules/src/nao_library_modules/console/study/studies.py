@@ -12,6 +12,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from ...base.paths import config_file
+from ...base.suggestion import of_those
 from .conditions import filled
 from .errors import StudyError
 from .files import PROTOCOL, StudyFiles, TrialFolder
@@ -86,6 +87,7 @@ class Studies:
         position: int = 0,
         record: WantedRecordings | None = None,
         listener: Callable[[TrialRunner], None] | None = None,
+        values: Mapping[str, Any] | None = None,
     ) -> TrialRunner:
         """Begin a trial.
 
@@ -97,10 +99,16 @@ class Studies:
             position: Which of the participant's trials, from 1; 0: the first that is not finished.
             record: What is recorded; as the protocol has it without.
             listener: Called after each event, also the first one.
+            values: Those of the protocol that this trial has others of.
 
         Raises:
-            StudyError: It cannot begin: a trial runs on the robot, the participant is done, files cannot be written.
+            StudyError: It cannot begin: a trial runs on the robot, the participant is done, files cannot be written, a
+                value is none of the protocol.
         """
+        own = {**protocol.values, **(values or {})}
+        for name in own:
+            if name not in protocol.values:
+                raise StudyError(f"{protocol.name} has no value {name!r}{of_those(name, protocol.values)}")
         with self._lock:
             self._require_free(robot)
             number = self.files.number_of(protocol.name, pseudonym)
@@ -113,8 +121,8 @@ class Studies:
             trial = self.files.new_trial(protocol.name, pseudonym)
             (trial.path / PROTOCOL).write_text(protocol.text, encoding="utf-8")
             given = {"participant": pseudonym, "number": number, "trial": position, "trials": len(order)}
-            values = {**protocol.values_in(condition), **given}
-            values = {name: filled(each, values) if isinstance(each, str) else each for name, each in values.items()}
+            known = {**replace(protocol, values=own).values_in(condition), **given}
+            known = {name: filled(each, known) if isinstance(each, str) else each for name, each in known.items()}
             about = {
                 "study": protocol.name,
                 "participant": pseudonym,
@@ -135,11 +143,12 @@ class Studies:
                     "robot": robot.namespace,
                     "began": robot.now(),
                     "versions": versions(),
+                    "values": own,
                     "settings": settings(robot.namespace),
                 },
             )
             return self._start(
-                protocol, trial, robot, by, {**about, "trial": trial.id, "values": values}, wanted, listener
+                protocol, trial, robot, by, {**about, "trial": trial.id, "values": known}, wanted, listener
             )
 
     def take_up(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 from urllib.parse import quote
 
@@ -9,13 +10,18 @@ from nicegui import run, ui
 from starlette.requests import Request
 
 from ...study.errors import StudyError
+from ...study.protocol import NOTHING
 from ...study.studies import Studies
-from ...study.table import ConditionSummary, StudyTable, summaries_of, table_of
+from ...study.table import ConditionSummary, summaries_of, table_of
 from ..frame import framed
 from .links import study_links
 
 MOST_ROWS = 20
 """Rows of a table on the page at once."""
+
+
+COLOURS = ("#1565c0", "#e65100", "#2e7d32", "#8e24aa", "#c62828", "#00838f", "#f9a825", "#6d4c41")
+GREY = "#9e9e9e"
 
 
 def build(console: Any, studies: Studies) -> None:
@@ -47,12 +53,10 @@ def build(console: Any, studies: Studies) -> None:
             _trials(page, trials)
             _summaries(summaries_of(table))
             ui.button(
-                "Table as CSV", icon="download", on_click=lambda: ui.download(_csv(table), f"{chosen}.csv", "text/csv")
+                "Table as CSV",
+                icon="download",
+                on_click=lambda: ui.download(table.csv().encode(), f"{chosen}.csv", "text/csv"),
             ).props("no-caps")
-
-
-def _csv(table: StudyTable) -> bytes:
-    return table.csv().encode("utf-8-sig")  # the mark by which spreadsheets know the encoding
 
 
 def _trials(page: Any, trials: list[Any]) -> None:
@@ -103,13 +107,15 @@ def _summaries(summaries: list[ConditionSummary]) -> None:
         for i, each in enumerate(summaries)
     ]
     ui.table(columns=columns, rows=rows, row_key="id", pagination=MOST_ROWS).classes("w-full").props("dense flat")
+    colours = colours_of(answer for each in summaries for answer in each.answers)
     with ui.row().classes("w-full"):
         for label in dict.fromkeys(each.label for each in summaries):
             of_step = [each for each in summaries if each.label == label]
             if any(each.reactions for each in of_step):
                 _plot(f"Reaction time of {label}, s", of_step, _reaction_series(of_step))
-            answers = list(dict.fromkeys(answer for each in of_step for answer in each.answers))
-            _plot(f"Answers of {label}", of_step, [_count_series(answer, of_step) for answer in answers], legend=True)
+            answers = [answer for answer in colours if any(answer in each.answers for each in of_step)]
+            series = [_count_series(answer, of_step, colours[answer]) for answer in answers]
+            _plot(f"Answers of {label}", of_step, series, legend=True)
 
 
 def _plot(title: str, summaries: list[ConditionSummary], series: list[Any], legend: bool = False) -> None:
@@ -120,8 +126,8 @@ def _plot(title: str, summaries: list[ConditionSummary], series: list[Any], lege
             {
                 "animation": False,
                 "aria": {"enabled": True},
-                "legend": {"show": legend, "textStyle": {"color": "#888"}},
-                "grid": {"left": 40, "right": 10, "top": 30, "bottom": 60},
+                "legend": {"show": legend, "type": "scroll", "top": 0, "textStyle": {"color": "#888"}},
+                "grid": {"left": 40, "right": 10, "top": 40, "bottom": 60},
                 "xAxis": {
                     "type": "category",
                     "data": [_levels(each.condition) for each in summaries],
@@ -141,9 +147,16 @@ def _reaction_series(summaries: list[ConditionSummary]) -> list[dict[str, Any]]:
     ]
 
 
-def _count_series(answer: str, summaries: list[ConditionSummary]) -> dict[str, Any]:
+def _count_series(answer: str, summaries: list[ConditionSummary], colour: str) -> dict[str, Any]:
     counts = [each.answers.get(answer, 0) for each in summaries]
-    return {"type": "bar", "name": answer, "stack": "answers", "data": counts, "barMaxWidth": 60}
+    style = {"color": colour}
+    return {"type": "bar", "name": answer, "stack": "answers", "data": counts, "barMaxWidth": 60, "itemStyle": style}
+
+
+def colours_of(answers: Iterable[str]) -> dict[str, str]:
+    """A colour for each answer, the same in all plots of a study; no answer is grey, and the last."""
+    known = sorted({*answers} - {NOTHING})
+    return {**{answer: COLOURS[i % len(COLOURS)] for i, answer in enumerate(known)}, NOTHING: GREY}
 
 
 def _levels(condition: str) -> str:

@@ -8,14 +8,17 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable, Mapping
 from typing import Any
+from urllib.parse import quote
 
 from nicegui import run, ui
 from starlette.requests import Request
 
 from naoqi.errors import NaoError
 
+from ....behaviors.language.expressions import text_of
 from ...files.yaml_file import ConsoleFileError
 from ...study.checking import checked_for
+from ...study.conditions import filled
 from ...study.course import all_steps
 from ...study.errors import StudyError
 from ...study.order import order_of
@@ -71,6 +74,8 @@ class _StudyPage:
         self.page, self.studies, self.robot, self._wanted = page, studies, page.robot, wanted
         self.runner: TrialRunner | None = None
         self.protocol: StudyProtocol | None = None
+        self._chosen = wanted.get("protocol", "")
+        self._fields: dict[str, Any] = {}
         self._dirty = True
         self._leave: Any = None
         self._shown: tuple[bool, Any] | None = None
@@ -160,6 +165,7 @@ class _StudyPage:
                 self._person = ui.input("Participant (pseudonym)", on_change=self._tell_order).classes("min-w-[12rem]")
                 self._person.props('maxlength=64 autocomplete="off"')
             self._help = ui.label().classes("whitespace-pre-line")
+            self._values = ui.row()
             with ui.row():
                 self._bag = ui.checkbox("Rosbag")
                 self._video = ui.checkbox("Video of the camera")
@@ -176,11 +182,13 @@ class _StudyPage:
                 ui.button("Save", on_click=self._save).props("no-caps")
         self._person.value = self._wanted.get("participant", "")
         if names:
-            wanted = self._wanted.get("protocol", "")
-            self._choice.value = wanted if wanted in names else names[0]
+            chosen = self._chosen or await run.io_bound(self.studies.files.newest_protocol)
+            self._choice.value = chosen if chosen in names else names[0]
 
     async def _read(self) -> None:
-        name = self._choice.value
+        name = self._chosen = self._choice.value
+        person = f"&participant={quote(self._person.value.strip())}" if self._person.value else ""
+        ui.navigate.history.replace(f"/study?robot={quote(self.robot.name)}&protocol={quote(name)}{person}")
         try:
             text = await run.io_bound(self.studies.files.protocol_text, name)
             self._name.value, self._text.value = name, text
@@ -193,7 +201,17 @@ class _StudyPage:
             self._bag.value, self._video.value, self._sound.value = bool(record.bag), bool(record.video), record.sound
             self._problems.clear()
         self._begin_button.set_enabled(self.protocol is not None)
+        self._build_values()
         self._tell_order()
+
+    def _build_values(self) -> None:
+        """A field for each value of the protocol, with what the protocol has."""
+        self._values.clear()
+        self._fields = {}
+        with self._values:
+            for name, value in (self.protocol.values if self.protocol is not None else {}).items():
+                if not isinstance(value, (list, dict)):
+                    self._fields[name] = ui.input(name, value=text_of(value)).props('autocomplete="off"')
 
     def _tell_order(self) -> None:
         protocol = self.protocol
@@ -225,8 +243,10 @@ class _StudyPage:
             (protocol.record.video or "top") if self._video.value else "",
             bool(self._sound.value),
         )
+        given = {name: field.value or "" for name, field in self._fields.items()}
+        values = {name: text for name, text in given.items() if text != text_of(protocol.values[name])}
         by = self.page.visitor.name
-        await self._try(lambda: self.studies.begin(protocol, pseudonym, self.robot, by, record=wanted))
+        await self._try(lambda: self.studies.begin(protocol, pseudonym, self.robot, by, record=wanted, values=values))
 
     async def _take_up(self, trial: str) -> None:
         if self.page.operate():
@@ -323,6 +343,7 @@ class _StudyPage:
 
     def _build_steps(self, runner: TrialRunner) -> None:
         self._marks: dict[str, Any] = {}
+        self._texts: dict[str, tuple[Any, str]] = {}  # path -> label, text that may have names in it
         phase = ""
         for path, step in all_steps(runner.protocol):
             name = runner.protocol.phases[int(path.partition(".")[0]) - 1].name
@@ -337,7 +358,7 @@ class _StudyPage:
                     ui.label(f"{path} {step.count} rounds").classes("italic")
                 else:
                     self._marks[_any_round(path)] = ui.icon(ICONS[""]).props('role="img" aria-label="to come"')
-                    ui.label(f"{path} {step.text}")
+                    self._texts[_any_round(path)] = (ui.label(), f"{path} {step.text}")
 
     def _update_trial(self) -> None:
         runner = self.runner
@@ -386,6 +407,8 @@ class _StudyPage:
             if mark.name != ICONS[kind]:
                 mark.name = ICONS[kind]
                 mark.props(f'aria-label="{kind}"')
+        for label, text in self._texts.values():
+            label.text = filled(text, state.values)
 
     def _tick(self) -> None:
         outcome = self.runner.outcome if self.runner is not None else None
