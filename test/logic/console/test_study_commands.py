@@ -93,3 +93,9 @@ def test_a_recording_that_there_is_not_is_refused(run):
     told = run("run", "ten_steps", "--participant", "P01", "--record", "film")
     assert told.exit_code == 2
     assert "film" in told.output
+
+
+def test_a_value_that_the_protocol_does_not_have_is_refused(run):
+    told = run("run", "ten_steps", "--participant", "P01", "--value", "greting=Hi")
+    assert told.exit_code == 2
+    assert "did you mean 'greeting'" in told.output

@@ -137,7 +137,7 @@ class TrialRecordings:
 
     @staticmethod
     def _tell_begin(runner: Any, kind: str, **about: Any) -> None:
-        runner.tell(told.RECORDING_BEGAN, f"the {kind} is recorded", recording=kind, **about)
+        runner.tell(told.RECORDING_BEGAN, f"the recording of the {kind} begins", recording=kind, **about)
 
     @staticmethod
     def _tell_end(runner: Any, kind: str, **about: Any) -> None:
