@@ -59,7 +59,7 @@ class FunctionsView:
                 self._count = ui.label("asking the servers ...").classes("text-sm opacity-80").props("role=status")
                 with ui.scroll_area().classes("w-full h-64 md:h-[calc(100vh-21rem)]"):
                     self._names = ui.list().props("dense").classes("w-full")
-            with ui.column().classes("grow gap-4 min-w-80"):
+            with ui.column().classes("grow gap-4 min-w-80").style("flex-basis: 30rem"):
                 self._form = ui.card().classes("w-full gap-3")
                 self._answer = ui.card().classes("w-full gap-2")
         with self._form:
