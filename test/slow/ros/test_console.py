@@ -185,6 +185,8 @@ def test_an_observer_sees_and_moves_nothing(program, heard):
     try:
         other.enter(program.observer)
         other.open("/wizard")
+        other.click("nao-wizard-buttons button", "Yes")
+        other.until(lambda: other.all("nao-wizard-buttons .notice", "observers look on"), "why nothing happens")
         other.type("input[aria-label='Say']", "Not said")
         other.keys(Keys.ENTER)
         other.reads("observers look on")

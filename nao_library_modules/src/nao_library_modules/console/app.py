@@ -112,6 +112,7 @@ class Console:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind((settings.listen, settings.port))
+            listener.listen(128)  # who opens the address at once waits
         except OSError as error:
             listener.close()
             raise NaoError(

@@ -6,6 +6,7 @@ from ..row import Row
 from .behaviors import BehaviorOverhead
 from .cameras import CameraFrame, CameraRate, PhysicsWithCameras
 from .chained_functions import ChainedFunctions
+from .console import CONSOLE
 from .goal_round_trip import GoalRoundTrip
 from .library import LIBRARY
 from .memory import Memory
@@ -40,5 +41,6 @@ ROWS: tuple[Row, ...] = (
     BehaviorOverhead(),
     TouchEvent(),
     *SPEECH,
+    *CONSOLE,
     Memory(),
 )

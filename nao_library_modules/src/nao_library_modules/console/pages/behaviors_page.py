@@ -123,7 +123,11 @@ class BehaviorsView:
             self._project_button = ui.button("Project", icon="update", on_click=self._project).props("no-caps outline")
             self._project_button.tooltip("Run it on a simulated robot of its own, and take its times from there")
             self._save_button = ui.button("Save", icon="save", on_click=self._save).props("no-caps outline")
-            ui.button("Save as", on_click=self._save_as).props("no-caps flat")
+            save_as = ui.button("Save as", on_click=self._save_as).props("no-caps flat")
+        buttons = (self._run_button, self._check_button, self._project_button, self._save_button, save_as)
+        self._of_an_open_one = buttons
+        for button in self._of_an_open_one:
+            button.set_enabled(False)
         self._parameters = ui.expansion("Parameters").classes("w-full")
         with ui.tabs().props("dense align=left no-caps") as tabs:
             tracks_tab, text_tab = ui.tab("Timeline"), ui.tab("Text")
@@ -214,6 +218,8 @@ class BehaviorsView:
     async def _take(self, document: BehaviorDocument) -> None:
         """Show another behaviour."""
         self._document = document
+        for button in self._of_an_open_one:
+            button.set_enabled(True)
         self._selected, self._given, self._measured, self._problems = "", {}, {}, []
         self._facts.clear()
         self._tree.clear()

@@ -59,7 +59,7 @@ class FunctionsView:
                 self._count = ui.label("asking the servers ...").classes("text-sm opacity-80").props("role=status")
                 with ui.scroll_area().classes("w-full h-64 md:h-[calc(100vh-21rem)]"):
                     self._names = ui.list().props("dense").classes("w-full")
-            with ui.column().classes("grow gap-4 min-w-80"):
+            with ui.column().classes("grow gap-4 min-w-80").style("flex-basis: 30rem"):
                 self._form = ui.card().classes("w-full gap-3")
                 self._answer = ui.card().classes("w-full gap-2")
         with self._form:
@@ -126,8 +126,8 @@ class FunctionsView:
             with ui.expansion("Wait afterwards, failures").classes("w-full"):
                 self._common = FieldInputs(_common(told))
             with ui.row().classes("gap-2 items-center"):
-                ui.button("Send", icon="send", on_click=self._send)
-                self._cancel = ui.button("Cancel", icon="cancel", on_click=self._cancel_run).props("outline")
+                ui.button("Send", icon="send", on_click=self._send).props("no-caps")
+                self._cancel = ui.button("Cancel", icon="cancel", on_click=self._cancel_run).props("outline no-caps")
                 self._cancel.set_enabled(self._run is not None and not self._run.done)
                 ui.space()
                 ui.label("Copy as").classes("text-sm")
@@ -219,8 +219,8 @@ def show_copy(kind: str, text: str) -> None:
                 ui.clipboard.write(text)
                 ui.notify("copied")
 
-            ui.button("Copy", icon="content_copy", on_click=copy)
-            ui.button("Close", on_click=dialog.close).props("flat")
+            ui.button("Copy", icon="content_copy", on_click=copy).props("no-caps")
+            ui.button("Close", on_click=dialog.close).props("flat no-caps")
     dialog.on("hide", dialog.delete)
     dialog.open()
 

@@ -49,22 +49,24 @@ class SimulatorPanel:
         there = await in_background(lambda: self._simulator.there)
         if there and not self._built:
             self._built = True
+            speed = await in_background(self._simulator.speed)
             with self._holder:
-                self._build()
+                self._build(speed)
         if there != self._holder.visible:
             self._holder.set_visibility(there)
             self._view.props["touchable"] = "true" if there else "false"
             self._view.update()
 
-    def _build(self) -> None:
+    def _build(self, speed: float | None) -> None:
         with ui.card().classes("w-full nao-card"):
             ui.label("The simulator").classes("text-h6").props('role="heading" aria-level="2"')
             with ui.row().classes("items-center"):
                 self._button("Pause", self._simulator.pause)
                 self._button("Go on", self._simulator.resume)
                 self._button("Reset", self._simulator.reset)
-                ui.select(SPEEDS, value=1.0, label="Speed", on_change=lambda e: self._do(
-                    partial(self._simulator.set_speed, e.value), f"speed {SPEEDS[e.value]}"
+                speeds = SPEEDS if speed is None else {**SPEEDS, speed: SPEEDS.get(speed, f"{speed:g} x")}
+                ui.select(speeds, value=speed, label="Speed", on_change=lambda e: self._do(
+                    partial(self._simulator.set_speed, e.value), f"speed {speeds[e.value]}"
                 )).props("dense outlined").classes("nao-speed")  # fmt: skip
             with ui.expansion("Touch it", value=True).classes("w-full"):
                 ui.label("Click a sensor here, or a yellow spot on the robot.").classes("text-caption")

@@ -29,6 +29,7 @@ class ForeignGoals:
         self._namespace = namespace
         self._is_own = is_own
         self._lock = threading.Lock()
+        self._cancels: dict[str, rospy.Publisher] = {}
         self._topics: dict[str, list[Any]] = {}
         self._runs: dict[str, dict[str, Run]] = {}
 
@@ -38,9 +39,9 @@ class ForeignGoals:
         for server in wanted - set(self._topics):
             action = server_type(server).action()
             name = self._namespace + server
+            self._cancels[server] = rospy.Publisher(f"{name}/cancel", GoalID, queue_size=2)
             self._runs[server] = {}
-            self._topics[server] = [
-                rospy.Publisher(f"{name}/cancel", GoalID, queue_size=2),
+            self._topics[server] = [  # whose messages may come before the last of them is made
                 rospy.Subscriber(f"{name}/goal", type(action.action_goal), partial(self._sent, server)),
                 rospy.Subscriber(f"{name}/status", GoalStatusArray, partial(self._status, server)),
                 rospy.Subscriber(f"{name}/feedback", type(action.action_feedback), partial(self._feedback, server)),
@@ -50,6 +51,8 @@ class ForeignGoals:
                 topic.unregister()
             with self._lock:
                 self._runs.pop(server, None)
+                publisher = self._cancels.pop(server)
+            publisher.unregister()
 
     def runs(self) -> list[Run]:
         """Those that go on."""
@@ -89,7 +92,7 @@ class ForeignGoals:
             if runs is None:
                 return None
             if goal not in runs:
-                cancel = partial(self._topics[server][0].publish, GoalID(id=goal))
+                cancel = partial(self._cancels[server].publish, GoalID(id=goal))
                 label = ", ".join(names) or "a goal"
                 runs[goal] = Run(goal, self._namespace, server, names, label, "", rospy.get_time(), cancel)
             elif names and not runs[goal].functions:

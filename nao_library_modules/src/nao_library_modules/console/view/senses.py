@@ -35,6 +35,7 @@ class Senses:
         self._subscriptions = Subscriptions(f"senses of {robot.name}")
         self._sightings = Sightings()
         self._stands: bool | None = None
+        self._spoken: str | None = None  # the newest sentence; None: not told yet
         self.posture = ""
         self.pressed: frozenset[str] = frozenset()
 
@@ -52,7 +53,7 @@ class Senses:
             self._users -= 1
             if self._users:
                 return
-            self.posture, self.pressed, self._stands = "", frozenset(), None
+            self.posture, self.pressed, self._stands, self._spoken = "", frozenset(), None, None
             self._subscriptions.end()
 
     def _starts(self) -> list[Callable[[], Callable[[], None]]]:
@@ -117,7 +118,9 @@ class Senses:
         self._tell(self._sightings.seen(what, name, self._robot.now()), stamp)
 
     def _on_sentence(self, told: Any) -> None:
-        self._tell(said(told.data), told.header.stamp.to_sec())
+        before, self._spoken = self._spoken, told.data
+        if before is not None:  # the first message has what was said before anybody listened
+            self._tell(said(told.data), told.header.stamp.to_sec())
 
     def _on_posture(self, told: Any) -> None:
         before, self.posture = self.posture, told.data

@@ -100,6 +100,15 @@ class Simulator:
         """Put robot and things back to where they began."""
         self._empty("reset")
 
+    def speed(self) -> float | None:
+        """Simulated seconds per second as it was started; None if it does not say so."""
+        import rospy
+
+        for name in (f"{self._robot.namespace}{SIMULATOR}/speed", f"/{SIMULATOR}/speed"):
+            if rospy.has_param(name):
+                return float(rospy.get_param(name))
+        return None
+
     def set_speed(self, speed: float) -> None:
         """Simulated seconds per second; 0 for as fast as possible."""
         from nao_library_msgs.srv import SetSpeed
