@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import ipaddress
+import signal
+import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,7 +15,7 @@ from naoqi.errors import NaoError
 
 from ..base.paths import config_file
 from .access.controls import Controls
-from .access.guard import Guard
+from .access.guard import COOKIE, Guard
 from .access.sessions import Sessions
 from .access.users import OBSERVER, OPERATOR, read_users
 from .robots.robots import Robots
@@ -81,6 +84,7 @@ class Console:
         self.views = Views()
         self.controls = Controls()
         self.sessions = Sessions(None if settings.users is None else read_users(settings.users))
+        self.sessions.on_end = self.controls.forget
         self.app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         frame.build(self)
         for build in PAGES:
@@ -105,7 +109,11 @@ class Console:
 
         settings = self.settings
         guard = Guard(
-            self.app, self.sessions, LOOPBACK if settings.local else (), secure=settings.certificate is not None
+            self.app,
+            self.sessions,
+            (*LOOPBACK, settings.listen) if settings.local else (),
+            secure=settings.certificate is not None,
+            cookie=f"{COOKIE}_{settings.port}",
         )
         family = socket.AF_INET6 if ":" in settings.listen else socket.AF_INET
         listener = socket.socket(family)
@@ -126,8 +134,11 @@ class Console:
             ssl_keyfile=settings.key,
             timeout_graceful_shutdown=2,
             server_header=False,
+            ws_max_size=2**20,
             ws_per_message_deflate=False,  # pictures are compressed, and poses too short for it
         )
         for line in self.addresses():
             print(line, flush=True)
-        uvicorn.Server(config).run(sockets=[listener])
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))  # uvicorn raises it again when it has ended
+        with suppress(KeyboardInterrupt):
+            uvicorn.Server(config).run(sockets=[listener])

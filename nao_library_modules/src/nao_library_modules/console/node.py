@@ -26,8 +26,10 @@ def serve_console(**settings: Any) -> None:
     made = ConsoleSettings(**settings)
     if not rospy.core.is_initialized():
         start_node()
-    Console(made).serve()
-    rospy.signal_shutdown("the console has ended")
+    try:
+        Console(made).serve()
+    finally:
+        rospy.signal_shutdown("the console has ended")
 
 
 def start_node() -> None:

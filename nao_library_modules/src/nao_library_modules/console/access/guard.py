@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import html
 from collections.abc import Collection
+from concurrent.futures import ThreadPoolExecutor
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import parse_qs, quote, urlencode, urlsplit
@@ -47,13 +49,18 @@ class Guard:
         app: What is behind.
         hosts: Names by which browsers may call the console, without ports; empty: any.
         secure: Whether it is reached by https, so that cookies never go without.
+        cookie: Its name: browsers send those of a host to all of its ports.
     """
 
-    def __init__(self, app: Any, sessions: Sessions, hosts: Collection[str] = (), secure: bool = False) -> None:
+    def __init__(
+        self, app: Any, sessions: Sessions, hosts: Collection[str] = (), secure: bool = False, cookie: str = COOKIE
+    ) -> None:
         self.app = app
         self._sessions = sessions
         self._hosts = frozenset(hosts)
         self._secure = secure
+        self._cookie = cookie
+        self._logins = ThreadPoolExecutor(1, "login")  # strangers wait for each other, and nobody else for them
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Answer one connection."""
@@ -62,7 +69,7 @@ class Guard:
             return
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
         problem = self._foreign(headers, needs_origin=scope["type"] == "websocket")
-        session = None if problem else self._sessions.get(_cookie(headers.get("cookie", "")))
+        session = None if problem else self._sessions.get(_cookie(headers.get("cookie", ""), self._cookie))
         if scope["type"] == "websocket":
             if session is None:
                 await send({"type": "websocket.close", "code": 4403, "reason": problem or "not logged in"})
@@ -71,7 +78,7 @@ class Guard:
             return
         if problem:
             await _answer(send, 403, problem)
-        elif session is None or scope["path"] in (LOGIN, LOGOUT):
+        elif session is None or scope["path"] in (LOGIN, LOGOUT) or b"token=" in scope["query_string"]:
             await self._let_in(scope, receive, send, session)
         elif int(headers.get("content-length") or 0) > LARGEST:
             await _answer(send, 413, f"more than {LARGEST} bytes")
@@ -95,7 +102,9 @@ class Guard:
             await self._enter(send, None, "/")
         elif scope["path"] == LOGIN and scope["method"] == "POST" and self._sessions.users is not None:
             fields = parse_qs((await _body(receive)).decode("utf-8", "replace"))
-            made = await _in_thread(self._sessions.by_password, _first(fields, "name"), _first(fields, "password"))
+            made = await asyncio.get_running_loop().run_in_executor(
+                self._logins, self._sessions.by_password, _first(fields, "name"), _first(fields, "password")
+            )
             if made is None:
                 text = "This name and password are not known, or were wrong too often: wait a minute."
                 await _answer(send, 403, text, _FORM)
@@ -111,7 +120,7 @@ class Guard:
 
     async def _enter(self, send: Any, session: Session | None, target: str) -> None:
         key = "" if session is None else session.key
-        cookie = f"{COOKIE}={key}; Path=/; HttpOnly; SameSite=Strict"
+        cookie = f"{self._cookie}={key}; Path=/; HttpOnly; SameSite=Strict"
         cookie += ("; Secure" if self._secure else "") + ("; Max-Age=0" if session is None else "")
         path, question, rest = target.partition("?")
         location = "/" + quote(path.lstrip("/")) + question + rest
@@ -144,9 +153,9 @@ class Guard:
             await _answer(send, 413, f"more than {LARGEST} bytes")
 
 
-def _cookie(text: str) -> str:
+def _cookie(text: str, name: str) -> str:
     try:
-        found = SimpleCookie(text).get(COOKIE)
+        found = SimpleCookie(text).get(name)
     except CookieError:
         return ""
     return "" if found is None else found.value
@@ -154,12 +163,6 @@ def _cookie(text: str) -> str:
 
 def _first(fields: dict[str, list[str]], name: str) -> str:
     return fields.get(name, [""])[0]
-
-
-async def _in_thread(task: Any, *arguments: Any) -> Any:
-    import asyncio
-
-    return await asyncio.get_running_loop().run_in_executor(None, task, *arguments)
 
 
 async def _body(receive: Any, most: int = 4096) -> bytes:

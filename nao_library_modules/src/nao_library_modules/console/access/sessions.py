@@ -12,6 +12,9 @@ from .users import OBSERVER, OPERATOR, ConsoleUser
 
 TRIES, TRY_PERIOD = 5, 60.0
 """Wrong passwords for a name within so many s, after which none is looked at."""
+LONGEST_NAME = 100
+NOBODY = ConsoleUser("", OBSERVER, "scrypt$AAAA$AAAA")
+"""Has no password."""
 
 
 @dataclass(eq=False)
@@ -41,6 +44,7 @@ class Sessions:
         clock: s.
 
     Attributes:
+        on_end: Called with each session that has ended.
         tokens: Role -> token, for the printed addresses; empty where people log in.
     """
 
@@ -49,6 +53,7 @@ class Sessions:
     ) -> None:
         self.users = users
         self.tokens = {role: secrets.token_urlsafe(24) for role in (OPERATOR, OBSERVER)} if users is None else {}
+        self.on_end: Callable[[Session], None] = lambda _: None
         self._clock = clock
         self._lock = threading.Lock()
         self._sessions: dict[str, Session] = {}
@@ -74,21 +79,29 @@ class Sessions:
         """A new session for whoever knows the password; None if it is wrong, or was wrong too often lately."""
         now = self._clock()
         with self._lock:
-            recent = [when for when in self._failures.get(name, []) if when > now - TRY_PERIOD]
-            self._failures[name] = recent
+            lately = {who: [when for when in all_ if when > now - TRY_PERIOD] for who, all_ in self._failures.items()}
+            self._failures = {who: when for who, when in lately.items() if when}
+            recent = self._failures.setdefault(name[:LONGEST_NAME], [])
             if len(recent) >= TRIES:
                 return None
             recent.append(now)  # taken back below: tries side by side count as well
         user = (self.users or {}).get(name)
-        if user is None or not user.has_password(password):
+        right = (user or NOBODY).has_password(password)  # a name that there is not takes as long
+        if user is None or not right:
             return None
         with self._lock:
-            self._failures.pop(name, None)
+            self._failures.pop(name[:LONGEST_NAME], None)
         return self._keep(Session(user.name, user.role))
 
+    def known(self, session: Session) -> bool:
+        """Whether a session has not ended."""
+        return self.get(session.key) is session
+
     def end(self, session: Session) -> None:
+        """Forget a session; `on_end` is told."""
         with self._lock:
             self._sessions.pop(session.key, None)
+        self.on_end(session)
 
     def _keep(self, session: Session) -> Session:
         with self._lock:

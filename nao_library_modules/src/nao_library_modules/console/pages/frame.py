@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
+import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Awaitable, Callable, Union
 
-from fastapi import Request
+from fastapi import HTTPException, Request
 from fastapi.responses import JSONResponse
 from fastapi.staticfiles import StaticFiles
 from nicegui import context, ui
@@ -15,10 +15,12 @@ from nicegui import context, ui
 from naoqi.errors import NaoError
 
 from ...base.paths import config_file
-from ..access.guard import session_of
+from ..access.guard import LOGOUT, session_of
 from ..access.sessions import Session
 from ..robots.robot import RobotClient
-from ..view.background import Subscriptions
+from ..view.background import Subscriptions, in_background
+
+log = logging.getLogger(__name__)
 
 STATIC = "/console/static"
 PATHS = {"/": "Robot", "/wizard": "Wizard", "/study": "Study", "/behaviors": "Behaviours", "/functions": "Functions"}
@@ -41,7 +43,7 @@ def build(console: Any) -> None:
             client = console.robots.robot(robot)
         except NaoError as error:
             return JSONResponse({"error": str(error)}, status_code=404)
-        await asyncio.get_running_loop().run_in_executor(None, client.stop, session.name)
+        await in_background(client.stop, session.name)
         return JSONResponse({"stopped": client.name})
 
 
@@ -58,6 +60,10 @@ class PageContext:
 
     def operate(self) -> bool:
         """Whether this visitor may move the robot now; says why not."""
+        if not self.console.sessions.known(self.visitor):
+            with self._client:
+                ui.notify("you are logged out: load the page again", type="warning")
+            return False
         if self.console.controls.may_move(self.robot.namespace, self.visitor):
             return True
         with self._client:
@@ -83,7 +89,10 @@ class PageContext:
 
     def _left(self) -> None:
         for callback in self._leave:
-            callback()
+            try:
+                callback()
+            except Exception:  # the others are called all the same
+                log.exception("a page could not be left as it should")
         self._leave.clear()
 
 
@@ -97,9 +106,8 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
     session = session_of(request)
     try:
         robot = console.robots.robot(request.query_params.get("robot", ""))
-    except NaoError as error:
-        robot = console.robots.robot()
-        ui.notify(str(error), type="negative")
+    except NaoError as error:  # never another robot in its place
+        raise HTTPException(404, str(error)) from None
     page = PageContext(console, session, robot)
     ui.page_title(f"{title}, {robot.name}: NAO console")
     ui.add_head_html(f'<link rel="stylesheet" href="{STATIC}/console.css">')
@@ -113,10 +121,15 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
         _navigation(console, request.url.path, robot)
         ui.space()
         _people(console, page)
+        if console.sessions.users is not None:
+            ui.button(icon="logout", on_click=lambda: ui.navigate.to(LOGOUT)).props(
+                'flat round color=white aria-label="Log out"'
+            )
         ui.button(icon="contrast", on_click=lambda: _turn(session, dark)).props(
             'flat round color=white aria-label="Light or dark"'
         )
-        ui.button("Stop", icon="pan_tool", on_click=lambda: _stop(page)).classes("nao-stop").props(
+        # Pressed, it is a request of its own, as the key is: see static/frame.js.
+        ui.button("Stop", icon="pan_tool").classes("nao-stop").props(
             'color=negative aria-keyshortcuts="Escape" title="Ends everything that the robot does (Escape)"'
         )
     with ui.column().classes("nao-main w-full"):
@@ -151,7 +164,9 @@ def _people(console: Any, page: PageContext) -> None:
         button.set_enabled(session.operator)
 
     def turn() -> None:
-        if console.controls.holder(robot) is session:
+        if not console.sessions.known(session):
+            page.notify("you are logged out: load the page again", "warning")
+        elif console.controls.holder(robot) is session:
             console.controls.release(robot, session)
         else:
             console.controls.take(robot, session)
@@ -166,11 +181,3 @@ def _turn(session: Session, dark: Any) -> None:
     """Light to dark and back; the first time against what the computer has."""
     session.dark = not session.dark
     dark.set_value(session.dark)
-
-
-async def _stop(page: PageContext) -> None:
-    if not page.visitor.operator:
-        page.notify("observers look on; only operators stop the robot", "warning")
-        return
-    await asyncio.get_running_loop().run_in_executor(None, page.robot.stop, page.visitor.name)
-    page.notify("Everything is told to stop", "positive")

@@ -11,3 +11,7 @@ class NotThere(NaoError):
 
 class ServiceRefused(NaoError):
     """A service answers that it cannot."""
+
+
+class Stopped(NaoError):
+    """Everything was stopped between the wish and the deed."""

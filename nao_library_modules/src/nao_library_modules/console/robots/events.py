@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
+
+log = logging.getLogger(__name__)
 
 KEPT = 1000
 """Events that are kept for pages that open later."""
@@ -44,7 +47,10 @@ class EventStream:
             self._events.append(event)
             listeners = list(self._listeners.values())
         for listener in listeners:
-            listener(event)
+            try:
+                listener(event)
+            except Exception:  # the others, a trial's log among them, are told all the same
+                log.exception("an event is lost to one who listens: %s", event)
         return event
 
     def subscribe(self, listener: Callable[[ConsoleEvent], None]) -> Callable[[], None]:

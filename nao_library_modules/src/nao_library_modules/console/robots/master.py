@@ -9,9 +9,10 @@ from typing import Any
 import rospy
 
 from ...functions.server_types import servers_among, those_in
+from ...ros.master_watch import GONE
 
-FRESH = 1.0
-"""s of this computer for which an answer is good."""
+FRESH, PATIENCE = 1.0, 0.5
+"""s of this computer: for which an answer is good, and for which one is waited."""
 CANCEL, CANCEL_TYPE = "/cancel", "actionlib_msgs/GoalID"
 
 
@@ -24,6 +25,7 @@ class MasterLook:
         self._services: list[str] = []
         self._subscribed: dict[str, list[str]] = {}
         self._types: dict[str, str] = {}
+        self._asking, self._answered = False, threading.Event()
 
     def namespaces(self) -> list[str]:
         """Of the robots that have servers, each with a slash at both ends, sorted."""
@@ -51,7 +53,7 @@ class MasterLook:
         """Where a service is at this moment, by its full name; empty if it is not there."""
         try:
             code, _, address = rospy.get_master().lookupService(service)
-        except OSError:
+        except GONE:
             return ""
         return address if code == 1 else ""
 
@@ -60,17 +62,32 @@ class MasterLook:
         return [name for name in servers_among(self._services) if f"{name}/goal" in self._subscribed]
 
     def _look(self) -> None:
+        """Read the books again, where they are old; a master that takes its time is waited for once, and briefly."""
         with self._lock:
             if time.monotonic() - self._read < FRESH:
                 return
-            self._read = time.monotonic()
-            state: Any = ([], [], [])
-            try:
-                code, _, found = rospy.get_master().getSystemState()
-                state = found if code == 1 else state
-                self._types = dict(rospy.get_master().getTopicTypes()[2])
-            except OSError:
-                pass  # no master: nothing runs
-            _, subscribers, services = state
+            patience = 0.0 if self._asking else PATIENCE
+            if not self._asking:
+                self._asking = True
+                self._answered.clear()
+                threading.Thread(target=self._ask, name="look at the master", daemon=True).start()
+        self._answered.wait(patience)
+
+    def _ask(self) -> None:
+        services: Any = []
+        subscribers: Any = []
+        types: dict[str, str] = {}
+        try:
+            code, _, state = rospy.get_master().getSystemState()
+            if code == 1:
+                _, subscribers, services = state
+                types = dict(rospy.get_master().getTopicTypes()[2])
+        except GONE:
+            pass  # no master: nothing runs
+        with self._lock:
             self._services = [name for name, _ in services]
             self._subscribed = {name: list(nodes) for name, nodes in subscribers}
+            self._types = types
+            self._read = time.monotonic()
+            self._asking = False
+        self._answered.set()

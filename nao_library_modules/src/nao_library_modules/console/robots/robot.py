@@ -6,6 +6,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -26,7 +27,7 @@ from ...owners.line import OwnerLine
 from ...ros.check_client import NotAnswered, call_service
 from ...ros.goal_tracker import GoalTracker, server_connection
 from .commands import CommandGoal, RobotCommand, goal_of, type_of
-from .errors import NotThere, ServiceRefused
+from .errors import NotThere, ServiceRefused, Stopped
 from .events import EventStream
 from .foreign_goals import ForeignGoals
 from .master import MasterLook
@@ -42,8 +43,6 @@ WALK_HOLD = 0.4
 CONSOLE = "console"
 """Who sends goals in nobody's name."""
 CANCEL, STOP_WALK = "/cancel", "stop_walk_srv"
-FINISHED_KEPT = 20
-"""Goals that are over and still told."""
 
 
 class RobotClient:
@@ -67,7 +66,7 @@ class RobotClient:
         self._described: dict[str, tuple[str, Any]] = {}
         self._cancels: dict[str, rospy.Publisher] = {}
         self._own: dict[str, Run] = {}
-        self._finished: list[Run] = []
+        self._stops = 0
         self._foreign = ForeignGoals(namespace, self._is_own)
         self._watchers = 0
         self._owners: OwnerLine | None = None
@@ -129,26 +128,33 @@ class RobotClient:
 
     # --- goals ----------------------------------------------------------------------------------------------------
 
-    def send(self, command: RobotCommand, by: str = "", label: str = "") -> Run | None:
+    def send(self, command: RobotCommand, by: str = "", label: str = "", stops: int | None = None) -> Run | None:
         """Carry out a command; None for one that stops everything.
 
-        Raises BadGoal if it will not do, NotThere if there is no such server.
+        `stops`: as it was when somebody wanted that. Raises BadGoal if it will not do, NotThere if there is no such
+        server, Stopped if everything was stopped meanwhile.
         """
+        stops = self._stops if stops is None else stops
         if command.stops:
             self.stop(by)
             return None
         types = self._types_of(command.server)
-        return self.send_goal(goal_of(command, types), by, label or command.label)
+        return self.send_goal(goal_of(command, types), by, label or command.label, stops)
 
-    def send_goal(self, goal: CommandGoal, by: str = "", label: str = "") -> Run:
-        """Send a goal. Raises NotThere if no server takes it within SERVER_LIMIT."""
+    def send_goal(self, goal: CommandGoal, by: str = "", label: str = "", stops: int | None = None) -> Run:
+        """Send a goal; see `send`. Raises NotThere if no server takes it within SERVER_LIMIT, Stopped."""
+        stops = self._stops if stops is None else stops
         client = self._client(goal.server, goal.action)
         names = [function.function for function in getattr(goal.goal, "functions", ())]  # those of plans have none
         run = Run("", self.namespace, goal.server, names, label or ", ".join(names), by or CONSOLE, self.now())
         tracker = _OwnedGoal(self._owner_line(goal.server))
         chain = plain(goal.goal).get("functions", [plain(goal.goal)])
+        if stops != self._stops:
+            raise Stopped(f"everything was stopped: {run.label} is not sent")
         handle = client.send_goal(goal.goal, partial(self._moved, run, tracker), partial(self._told, run))
         self._note(run, tracker, handle)
+        if stops != self._stops:
+            run.cancel()
         self.events.add("sent", f"{goal.server}: {run.label}", run.by, goal=run.id, server=goal.server, chain=chain)
         return run
 
@@ -158,12 +164,6 @@ class RobotClient:
         with self._lock:
             own = list(self._own.values())
         return [*own, *self._foreign.runs()]
-
-    @property
-    def finished(self) -> list[Run]:
-        """The newest goals of this console that are over, the oldest of them first."""
-        with self._lock:
-            return list(self._finished)
 
     def prepare(self, servers: Iterable[str]) -> None:
         """Connect to servers, so that the first goal of each goes at once. In the background."""
@@ -203,18 +203,26 @@ class RobotClient:
 
     # --- stop and walk --------------------------------------------------------------------------------------------
 
+    @property
+    def stops(self) -> int:
+        """How often everything was stopped; who acts later than asked for gives it to `send`."""
+        return self._stops
+
     def stop(self, by: str = "") -> None:
         """End all goals of all actions of the robot, and its walk."""
-        self._hold_walk(None)
         with self._lock:
-            ready, own = dict(self._cancels), list(self._own.values())
+            self._stops += 1
+            ready = {topic: each for topic, each in self._cancels.items() if each.get_num_connections()}
+            own = list(self._own.values())
+        self._hold_walk(None)
         for publisher in ready.values():
-            publisher.publish(GoalID())
+            with suppress(rospy.ROSException):  # closed at this moment, as its last page has left
+                publisher.publish(GoalID())
         for run in own:
-            if self.namespace + run.server + CANCEL not in ready:
-                run.cancel()
+            run.cancel()  # a goal that is on its way may come behind the cancel of all
         self.events.add("stopped", "everything is told to stop", by)
-        _in_thread(self._stop_rest, set(ready))
+        _in_thread(self._stop_walk)
+        _in_thread(self._stop_others, set(ready))
 
     def walk(self, x: float, y: float, theta: float, by: str = "") -> None:
         """Walk at shares -1..1 of the top speed, ahead, to the left and turning left, for WALK_HOLD s."""
@@ -232,9 +240,6 @@ class RobotClient:
             self._walk = way or (0.0, 0.0, 0.0)
             self._walk_until = time.monotonic() + WALK_HOLD if any(self._walk) else 0.0
             if self._walk_thread is None:
-                if self._velocity is None:
-                    topic = self.namespace + "cmd_vel"
-                    self._velocity = rospy.Publisher(topic, Twist, queue_size=1, tcp_nodelay=True)
                 self._walk_thread = threading.Thread(target=self._walk_on, name=f"walk of {self.name}", daemon=True)
                 self._walk_thread.start()
             self._walk_lock.notify_all()
@@ -242,6 +247,10 @@ class RobotClient:
 
     def _walk_on(self) -> None:
         """Send velocities at once and ten times a second, and a stop at their end."""
+        with self._connecting:
+            if self._velocity is None:
+                topic = self.namespace + "cmd_vel"
+                self._velocity = rospy.Publisher(topic, Twist, queue_size=1, tcp_nodelay=True)
         while True:
             with self._walk_lock:
                 over = time.monotonic() >= self._walk_until or self._walk is None
@@ -255,19 +264,28 @@ class RobotClient:
                 left = min(0.1, self._walk_until - time.monotonic())
                 self._walk_lock.wait(max(left, 0.0))
 
-    def _stop_rest(self, ready: set[str]) -> None:
-        """What takes its time: actions that nobody was connected to, and a walk that no goal holds."""
+    def _stop_walk(self) -> None:
+        """End a walk that no goal holds."""
         try:
             if self.has_service(STOP_WALK):
                 self.call(STOP_WALK, Empty)
         except NaoError as error:
             log.warning("the robot %s was not told to stop walking: %s", self.name, error)
-        for topic in self._master.cancel_topics(self.namespace):
-            if topic in ready:
-                continue
-            publisher = rospy.Publisher(topic, GoalID, queue_size=1)
-            if _within(SERVER_LIMIT, lambda p=publisher: p.get_num_connections() > 0):
+
+    def _stop_others(self, ready: set[str]) -> None:
+        """Cancel the goals of actions that nobody was connected to."""
+        topics = [topic for topic in self._master.cancel_topics(self.namespace) if topic not in ready]
+        left = [rospy.Publisher(topic, GoalID, queue_size=1) for topic in topics]
+        made = list(left)
+
+        def tell() -> bool:
+            for publisher in [each for each in left if each.get_num_connections()]:
                 publisher.publish(GoalID())
+                left.remove(publisher)
+            return not left
+
+        _within(SERVER_LIMIT, tell)
+        for publisher in made:
             publisher.unregister()
 
     # --- inside ---------------------------------------------------------------------------------------------------
@@ -340,7 +358,6 @@ class RobotClient:
         with self._lock:
             if self._own.pop(run.id, None) is None:
                 return
-            self._finished = [*self._finished, run][-FINISHED_KEPT:]
         state = ENDS.get(handle.get_terminal_state(), "lost")
         text, result = handle.get_goal_status_text() or "", handle.get_result()
         fields = {} if result is None else plain(result)

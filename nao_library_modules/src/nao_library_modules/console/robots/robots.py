@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable
 
@@ -9,6 +10,8 @@ from ...base.suggestion import of_those
 from .errors import NotThere
 from .master import MasterLook
 from .robot import RobotClient
+
+log = logging.getLogger(__name__)
 
 PERIOD = 2.0
 """s of this computer between two looks for new servers while somebody watches."""
@@ -70,7 +73,10 @@ class Robots:
                     return
                 watched = set(self._watchers.values())
             for refresh in watched:
-                refresh()
+                try:
+                    refresh()
+                except Exception:  # looks again in a while
+                    log.exception("a look at the master failed")
 
 
 def _namespace(name: str) -> str:

@@ -41,17 +41,8 @@ class Run:
     _listeners: list[Callable[[Run], None]] = field(default_factory=list, repr=False)
 
     @property
-    def own(self) -> bool:
-        """Whether this console has sent it."""
-        return bool(self.by)
-
-    @property
     def done(self) -> bool:
         return self._over.is_set()
-
-    @property
-    def succeeded(self) -> bool:
-        return self.state == "succeeded"
 
     def cancel(self) -> None:
         """Have it ended, unless it is over."""

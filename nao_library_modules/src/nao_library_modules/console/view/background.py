@@ -15,6 +15,8 @@ from naoqi.errors import NaoError
 log = logging.getLogger(__name__)
 
 End = Callable[[], None]
+RETRY = 2.0
+"""s of this computer until what could not begin is tried again."""
 
 
 async def in_background(task: Callable[..., Any], *arguments: Any) -> Any:
@@ -50,36 +52,49 @@ class Subscriptions:
 
     def __init__(self, name: str) -> None:
         self._name = name
-        self._lock = threading.Lock()
+        self._changed = threading.Condition()
         self._ends: list[End] | None = None
 
     def begin(self, *starts: Callable[[], End]) -> None:
-        """Begin what has not begun; each start returns what ends it, or raises NaoError, which is logged."""
+        """Begin what has not begun; each start returns what ends it, or raises NaoError, and is tried again then."""
         ends: list[End] = []
-        with self._lock:
+        with self._changed:
             self._ends = ends
 
         def run() -> None:
-            for start in starts:
-                with self._lock:
-                    if ends is not self._ends:
+            left = list(starts)
+            while left:
+                left = [start for start in left if not self._started(start, ends)]
+                with self._changed:  # a driver that is not up yet comes later
+                    if not left or self._changed.wait_for(lambda: ends is not self._ends, RETRY):
                         return
-                try:
-                    end = start()
-                except NaoError as error:
-                    log.info("%s: %s", self._name, error)
-                    continue
-                with self._lock:
-                    late = ends is not self._ends
-                    if not late:
-                        ends.append(end)
-                if late:  # nobody wants it any more
-                    end()
 
         threading.Thread(target=run, name=f"{self._name} begin", daemon=True).start()
 
+    def _started(self, start: Callable[[], End], ends: list[End]) -> bool:
+        """Whether it has begun, or nobody wants it any more."""
+        with self._changed:
+            if ends is not self._ends:
+                return True
+        try:
+            end = start()
+        except NaoError as error:
+            log.debug("%s: %s", self._name, error)
+            return False
+        except Exception:
+            log.exception("%s could not begin", self._name)
+            return True
+        with self._changed:
+            wanted = ends is self._ends
+            if wanted:
+                ends.append(end)
+        if not wanted:
+            end()
+        return True
+
     def end(self) -> None:
         """End what has begun."""
-        with self._lock:
+        with self._changed:
             ends, self._ends = self._ends or [], None
+            self._changed.notify_all()
         threading.Thread(target=lambda: [end() for end in ends], name=f"{self._name} end", daemon=True).start()
