@@ -92,6 +92,23 @@ def test_repeat_begins_a_step_anew(trial):
     assert [each.outcome for each in trial.end().outcomes[1:3]] == ["repeated", "done"]
 
 
+def test_who_stops_the_robot_pauses_its_trial(trial):
+    trial.begin().at("2.1").robot.events.add("stopped", "everything is told to stop", "ann")
+    trial.until(lambda: trial.runner.state.status == "paused")
+    trial.runner.abort()
+    trial.end()
+
+
+def test_a_wait_for_a_time_ends_though_nothing_happens(tmp_path):
+    begin, _, _ = PROTOCOL.partition("phases:")
+    text = begin + "phases: [{steps: [{wait: until, until: seconds >= 0.3}, {wait: until, until: seconds >= -1}]}]"
+    trial = Trial(tmp_path, text=text).begin()
+    now = trial.robot.now
+    trial.at("1.1")
+    trial.robot.now = lambda: now() + 1.0
+    assert [each.outcome for each in trial.end().outcomes] == ["done", "done"]
+
+
 def test_a_pause_ends_a_wait_that_begins_anew_behind_it(trial):
     trial.begin().at("2.1").runner.pause()
     trial.until(lambda: trial.runner.state.status == "paused")

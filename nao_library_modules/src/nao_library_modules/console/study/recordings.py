@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from subprocess import SubprocessError
 from typing import Any
 
 from naoqi.errors import NaoError
@@ -47,7 +48,7 @@ class TrialRecordings:
             if wanted:
                 try:
                     begin(runner)
-                except (NaoError, OSError) as error:
+                except (NaoError, OSError, SubprocessError) as error:
                     runner.deviation(f"the {kind}: {error}")
 
     def end(self, runner: Any) -> None:
@@ -56,7 +57,7 @@ class TrialRecordings:
         for kind, about in list(runner.state.recordings.items()):
             try:
                 ends[kind](runner, about)
-            except (NaoError, OSError) as error:
+            except (NaoError, OSError, SubprocessError) as error:
                 self._tell_end(runner, kind, error=str(error))
                 runner.deviation(f"the {kind} could not be ended: {error}")
 

@@ -38,10 +38,14 @@ log = logging.getLogger(__name__)
 
 NEXT, REPEAT, PAUSE, CONTINUE, ABORT, CHOICE = "next", "repeat", "pause", "continue", "abort", "choice"
 _RUN_ENDED, _TIME_UP, _HAPPENED = "run ended", "time is up", "happened"
+STOPPED = "stopped"
+"""Kind of the event when everything was stopped."""
 COUNTED = {"touched": "touches", "heard": "words", "seen": "faces"}
 """Kind of an event -> what conditions that are waited for call its count."""
 GOAL_LAG = 0.5
 """s of ROS time by which a goal may tell of a touch later than the topics: its onset is the better one."""
+LOOK_PERIOD = 0.1
+"""s of this computer after which conditions are looked at again, whatever has happened."""
 After = Callable[[float, Callable[[], None]], Callable[[], None]]
 """Has a function called once after so many s of ROS time; returns what prevents that."""
 
@@ -90,6 +94,7 @@ class TrialRunner:
         self._inbox: queue.Queue[tuple[str, Any, str]] = queue.Queue()
         self._lock = threading.RLock()
         self._listeners: list[Callable[[TrialRunner], None]] = []
+        self._stops_itself = False
         self._pausing, self._was_held = False, state.status == told.HELD
         self._unsubscribe: Callable[[], None] = lambda: None
         self._thread = threading.Thread(target=self._run, name=f"trial {self.id}", daemon=True)
@@ -193,6 +198,8 @@ class TrialRunner:
             if event.kind not in (TRIAL, "note", "deviation") or event.data.get("trial") == self.id:
                 self.state.apply(logged)
             listeners = list(self._listeners)
+        if event.kind == STOPPED and not self._stops_itself:  # who stops the robot does not want its next step
+            self._inbox.put((PAUSE, self._place(), event.by))
         if event.kind in COUNTED:
             self._inbox.put((_HAPPENED, event, ""))
         for listener in listeners:
@@ -341,7 +348,9 @@ class TrialRunner:
         command = _command_of(step)
         if command is not None:
             texts = {name: str(value) for name, value in values.items()}
+            self._stops_itself = command.stops
             run = self.robot.send(command.filled(texts) if isinstance(step, CommandStep) else command)
+            self._stops_itself = False
             if run is None:  # of a stop, which nothing is waited for
                 return StepEnd(told.DONE), ""
             run.on_end(lambda ended: self._inbox.put((_RUN_ENDED, ended, "")))
@@ -353,7 +362,10 @@ class TrialRunner:
             while True:
                 if isinstance(step, UntilStep) and self._holds(step, values, counts, began):
                     return StepEnd(told.DONE, "", self.robot.now()), ""
-                what, about, by = self._inbox.get()
+                try:
+                    what, about, by = self._inbox.get(timeout=LOOK_PERIOD if isinstance(step, UntilStep) else None)
+                except queue.Empty:  # time is a condition, too
+                    continue
                 if what == _RUN_ENDED and about is run:
                     end = _end_of(step, run)
                     return (felt if felt is not None and end.outcome == told.TIMEOUT else end), ""
