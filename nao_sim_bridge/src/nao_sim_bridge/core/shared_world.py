@@ -5,6 +5,7 @@ No thread and no wall clock: whoever calls `tick` minds both.
 
 from __future__ import annotations
 
+import threading
 from typing import TYPE_CHECKING, Callable, Iterable, Protocol, Sequence
 
 from nao_sim_bridge.base.errors import NotFinite
@@ -99,7 +100,7 @@ class SharedWorld:
         self._air: Air | None = None
         if isinstance(renderer, str):
             require_renderer(renderer)
-        self._renderer = renderer
+        self._renderer, self._making = renderer, threading.Lock()
         self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
 
     @property
@@ -109,11 +110,13 @@ class SharedWorld:
 
     @property
     def renderer(self) -> Renderer:
-        """What draws, for all robots; made when somebody first asks for it."""
+        """What draws, for all robots; made when somebody first asks for it. Any thread."""
         if isinstance(self._renderer, str):
             from nao_sim_bridge.render.client import Renderer  # who is blind needs nothing of it
 
-            self._renderer = Renderer(self.scene.world, self.scene.version, self._renderer)
+            with self._making:
+                if isinstance(self._renderer, str):
+                    self._renderer = Renderer(self.scene.world, self.scene.version, self._renderer)
         return self._renderer
 
     @property
