@@ -7,7 +7,7 @@ import qi
 from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
 from selenium.webdriver.common.keys import Keys
 
-from nao_library_modules.processes.own_stack import OwnStack
+from nao_library_modules.processes.own_stack import OwnStack, can_connect
 from nao_sim_bridge.testing import wait_until
 
 pytestmark = pytest.mark.alone
@@ -18,6 +18,7 @@ TEXT = "ALTextToSpeech/CurrentSentence"
 def test_each_page_is_of_one_robot(tmp_path):
     with OwnStack(tmp_path / "stack.txt", {"robots": "2", "cameras": "false"}) as stack:
         stack.wait_for_robot(LIMIT)
+        wait_until(lambda: can_connect(stack.nao_port + 1), LIMIT, "the second robot")
         sessions = [qi.Session(), qi.Session()]
         for number, session in enumerate(sessions):
             session.connect(f"tcp://127.0.0.1:{stack.nao_port + number}")

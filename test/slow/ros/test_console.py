@@ -23,7 +23,7 @@ PAGES = {
     "/behaviors": "Search behaviours",
     "/functions": "Search functions",
 }
-SUCCEEDED, PREEMPTED = 3, 2
+SUCCEEDED, PREEMPTED, ABORTED = 3, 2, 4
 
 
 class Heard:
@@ -176,7 +176,7 @@ def test_escape_ends_everything_on_every_page(browser, heard):
     browser.open("/functions")
     browser.keys(Keys.ESCAPE)
     end = results.wait(lambda each: each.status.goal_id.id == goal.goal_id.id)
-    assert end.status.status == PREEMPTED
+    assert end.status.status in (PREEMPTED, ABORTED)  # aborted, where it sees the end of its own goals first
 
 
 def test_an_observer_sees_and_moves_nothing(program, heard):
