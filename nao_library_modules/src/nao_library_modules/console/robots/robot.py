@@ -26,7 +26,7 @@ from ...owners.line import OwnerLine
 from ...ros.check_client import NotAnswered, call_service
 from ...ros.goal_tracker import GoalTracker, server_connection
 from .commands import CommandGoal, RobotCommand, goal_of, type_of
-from .errors import NotThere, ServiceRefused
+from .errors import NotThere, ServiceRefused, Stopped
 from .events import EventStream
 from .foreign_goals import ForeignGoals
 from .master import MasterLook
@@ -70,6 +70,7 @@ class RobotClient:
         self._finished: list[Run] = []
         self._foreign = ForeignGoals(namespace, self._is_own)
         self._watchers = 0
+        self._stops = 0
         self._owners: OwnerLine | None = None
         self._walk_lock = threading.Condition()
         self._walk: tuple[float, float, float] | None = None
@@ -129,15 +130,19 @@ class RobotClient:
 
     # --- goals ----------------------------------------------------------------------------------------------------
 
-    def send(self, command: RobotCommand, by: str = "", label: str = "") -> Run | None:
+    def send(self, command: RobotCommand, by: str = "", label: str = "", stops: int | None = None) -> Run | None:
         """Carry out a command; None for one that stops everything.
 
-        Raises BadGoal if it will not do, NotThere if there is no such server.
+        `stops`: number of stops when it was asked for; None: it does not matter.
+
+        Raises BadGoal if it will not do, NotThere if there is no such server, Stopped.
         """
         if command.stops:
             self.stop(by)
             return None
         types = self._types_of(command.server)
+        if stops not in (None, self.stops):
+            raise Stopped(f"the robot was stopped before {label or command.label} was sent")
         return self.send_goal(goal_of(command, types), by, label or command.label)
 
     def send_goal(self, goal: CommandGoal, by: str = "", label: str = "") -> Run:
@@ -203,8 +208,15 @@ class RobotClient:
 
     # --- stop and walk --------------------------------------------------------------------------------------------
 
+    @property
+    def stops(self) -> int:
+        """How often it was stopped, by anybody."""
+        return self._stops
+
     def stop(self, by: str = "") -> None:
         """End all goals of all actions of the robot, and its walk."""
+        with self._lock:
+            self._stops += 1
         self._hold_walk(None)
         with self._lock:
             ready, own = dict(self._cancels), list(self._own.values())
