@@ -13,6 +13,7 @@ import pytest
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.console.files.yaml_file import ConsoleFileError
+from nao_library_modules.console.robots.errors import Stopped
 from nao_library_modules.console.robots.events import EventStream
 from nao_library_modules.console.wizard.desk import WizardDesk
 from nao_library_modules.console.wizard.errors import EditConflict, PressRefused
@@ -65,7 +66,9 @@ class FakeRobot:
         self.stops = 0
         self.came = threading.Semaphore(0)
 
-    def send(self, command, by="", label=""):
+    def send(self, command, by="", label="", stops=None):
+        if stops not in (None, self.stops):
+            raise Stopped(f"stopped before {label}")
         return self._sent(command)
 
     def send_goal(self, goal, by="", label=""):
@@ -102,9 +105,9 @@ def robot():
     return FakeRobot()
 
 
-def press(desk, robot, layout, label, page="page"):
+def press(desk, robot, layout, label, page="page", **more):
     group, button = next(pair for pair in layout.buttons() if pair[1].label == label)
-    return desk.press(robot, group, button, "eva", page)
+    return desk.press(robot, group, button, "eva", page, **more)
 
 
 def state(desk, layout, label):
@@ -341,6 +344,36 @@ def test_a_repetition_ends_with_a_failure_a_stop_and_its_page(end, desk, robot, 
     assert state(desk, layout, "Again") == "" and len(robot.sent) == 1
 
 
+def ended_repetition(robot, layout, desk):
+    """End the first run, and wait for the note that there are no more repetitions; its text."""
+    told, notes = threading.Event(), []
+    robot.events.subscribe(lambda event: event.kind == "note" and (notes.append(event.text), told.set()))
+    robot.runs[0].end("succeeded")
+    assert told.wait(5.0)
+    assert state(desk, layout, "Again") == "" and len(robot.sent) == 1
+    return notes[0]
+
+
+def test_a_repetition_ends_when_its_user_may_not_move_the_robot_any_more(desk, robot, layout):
+    press(desk, robot, layout, "Again", refusal=lambda: "bob holds the controls")
+    assert "bob holds the controls" in ended_repetition(robot, layout, desk)
+
+
+@pytest.mark.parametrize("label", ["Once", "Again", "Plan"])
+def test_what_was_pressed_before_a_stop_is_not_sent_after_it(label, desk, robot, layout):
+    pressed_at = robot.stops
+    robot.stop()
+    with pytest.raises(Stopped):
+        press(desk, robot, layout, label, stops=pressed_at)
+    assert not robot.sent and state(desk, layout, label) == ""
+
+
+def test_a_repetition_is_not_sent_after_a_stop_that_nobody_has_told_of_yet(desk, robot, layout):
+    press(desk, robot, layout, "Again")
+    robot.stops += 1
+    assert "no more repetitions" in ended_repetition(robot, layout, desk)
+
+
 def test_a_designator_goes_to_the_plans(desk, robot, layout):
     press(desk, robot, layout, "Plan")
     assert robot.sent[0].server == "perform_designator"
@@ -364,9 +397,12 @@ def pages(desk, robot, layout):
     made = SimpleNamespace(refusal="", operator=True, points=[], other=FakeRobot("/nao2/"), closed=[])
     pointer = SimpleNamespace(point=lambda *a: made.points.append(a), close=lambda: made.closed.append(True))
     rights = PageRights("eva", lambda _: made.refusal, lambda: made.operator)
-    made.session = WizardSession(
-        "page", robot, desk, lambda: layout, rights, lambda _: made.other, lambda _robot: pointer
-    )
+    found = {}
+
+    def find(name):
+        return found.setdefault(name, made.other)
+
+    made.session = WizardSession("page", robot, desk, lambda: layout, rights, find, found.get, lambda _robot: pointer)
     made.take = lambda message: made.session.take(*read_message(json.dumps(message)))
     return made
 
@@ -380,6 +416,65 @@ def test_a_page_that_leaves_stops_what_it_walked(pages, robot):
     pages.take({"walk": [1, 0, 0]})
     pages.session.leave()
     assert robot.walks[-1] == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("stop", ["of another page", "of this page"])
+def test_a_walk_that_is_held_does_not_go_on_after_a_stop(stop, pages, robot):
+    pages.take({"walk": [1, 0, 0]})
+    if stop == "of another page":
+        robot.stop()
+    else:
+        pages.take({"stop": True})
+    robot.walks.clear()
+    assert "let go" in pages.take({"walk": [1, 0, 0]}) and pages.session.must_let_go
+    assert pages.take({"walk": [0, 0, 0]}) == "" and not robot.walks
+    assert pages.take({"walk": [0.5, 0, 0]}) == "" and robot.walks == [(0.5, 0.0, 0.0)]
+
+
+def test_a_stop_while_a_velocity_is_passed_on_ends_it(pages, robot):
+    passed = robot.walk
+
+    def stopped_before(*velocity):
+        robot.walk = passed
+        robot.stop()
+        passed(*velocity)
+
+    robot.walk = stopped_before
+    pages.take({"walk": [1, 0, 0]})
+    assert robot.walks == [(1.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
+
+
+def test_a_press_that_has_waited_over_a_stop_is_refused(pages, robot, layout):
+    arrived = pages.session.stops()
+    robot.stop()
+    kind, message = read_message(json.dumps({"press": "2", "revision": layout.revision}))
+    assert pages.session.take(kind, message, arrived) and not robot.sent
+
+
+def test_after_the_page_has_left_nothing_is_done_but_a_stop(pages, robot, layout):
+    pages.take({"head": {"kind": "click", "camera": "top", "x": 0, "y": 0}})
+    pages.session.leave()
+    for message in ({"walk": [1, 0, 0]}, {"press": "2", "revision": layout.revision},
+                    {"head": {"kind": "click", "camera": "top", "x": 0, "y": 0}}):  # fmt: skip
+        pages.take(message)
+    assert not robot.walks and not robot.sent and len(pages.points) == 1
+    pages.take({"press": "4", "revision": layout.revision})
+    assert robot.stops == 1
+    assert not pages.closed
+    pages.session.close_pointer()
+    assert pages.closed == [True]
+
+
+def test_a_repetition_whose_page_leaves_while_it_begins_is_sent_once(pages, desk, robot, layout):
+    allowed = pages.session._rights.refusal
+
+    def leaving(namespace):
+        pages.session.leave()
+        return allowed(namespace)
+
+    pages.session._rights = PageRights("eva", leaving, lambda: True)
+    pages.take({"press": "3", "revision": layout.revision})
+    assert "page is gone" in ended_repetition(robot, layout, desk)
 
 
 def test_who_may_not_move_the_robot_does_not(pages, robot, layout):
@@ -402,11 +497,17 @@ def test_a_press_of_a_former_layout_is_refused(pages, robot):
 
 
 def test_a_button_of_another_robot_goes_there_and_a_stop_too(pages, robot, layout):
+    assert pages.take({"stop": True}) == "" and pages.other.stops == 0  # it is not known yet
     assert pages.take({"press": "6", "revision": layout.revision}) == ""
     assert len(pages.other.sent) == 1 and not robot.sent
     assert pages.take({"stop": True}) == "" and pages.other.stops == 1
     pages.operator = False
     assert "observers" in pages.take({"stop": True})
+
+
+def test_an_integer_that_no_float_holds_is_a_velocity_at_its_limit(pages, robot):
+    assert pages.take({"walk": [10**400, -(10**400), 0]}) == ""
+    assert robot.walks == [(1.0, -1.0, 0.0)]
 
 
 @pytest.mark.parametrize("message", [{"walk": [1, 0]}, {"walk": ["a", 0, 0]}, {"walk": [True, 0, 0]}, {"walk": None},

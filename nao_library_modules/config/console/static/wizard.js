@@ -132,7 +132,8 @@ class WizardLink extends EventTarget {
     this.speed = null;
     this.keysOn = true;
     this.retry = FIRST_RETRY;
-    this.noticed = new Map();
+    this.noticed = { text: "", time: -Infinity }; // the last one that was shown
+    this.gamepadFree = false; // whether it was let go since the last stop
     this.ends = new AbortController();
     const until = { signal: this.ends.signal };
     window.addEventListener("keydown", (event) => this.escape(event), { ...until, capture: true });
@@ -202,6 +203,7 @@ class WizardLink extends EventTarget {
       this.states = message.states;
       this.tell("states", {});
     }
+    if (message.let_go) this.letGo(); // somebody has stopped the robot
     if (message.notice) this.notice(message.notice);
   }
 
@@ -212,9 +214,8 @@ class WizardLink extends EventTarget {
   // What went wrong, in words; a velocity that is refused ten times a second is told once.
   notice(text) {
     const now = performance.now();
-    if (now - (this.noticed.get(text) ?? -Infinity) < NOTICE_PERIOD) return;
-    this.noticed.clear();
-    this.noticed.set(text, now);
+    if (text === this.noticed.text && now - this.noticed.time < NOTICE_PERIOD) return;
+    this.noticed = { text, time: now };
     this.tell("notice", { text });
   }
 
@@ -287,8 +288,10 @@ class WizardLink extends EventTarget {
     this.tell("walk", { velocity });
   }
 
+  // Ends what is held. Keys and joysticks begin again with a new press; a gamepad once it was let go.
   letGo() {
     this.held.clear();
+    this.gamepadFree = false;
     this.tell("release", {});
     this.sources.joystick = this.sources.gamepad = [0, 0, 0];
     this.source("keys", [0, 0, 0]);
@@ -312,7 +315,8 @@ class WizardLink extends EventTarget {
       }
       if (document.hasFocus()) {
         const velocity = sum(pads.map(gamepadVelocity));
-        if (velocity.some((part, i) => part !== this.sources.gamepad[i])) this.aim(velocity);
+        if (velocity.every((part) => part === 0)) this.gamepadFree = true;
+        if (this.gamepadFree && velocity.some((part, i) => part !== this.sources.gamepad[i])) this.aim(velocity);
       }
       requestAnimationFrame(look);
     };
@@ -426,8 +430,8 @@ class WizardButtons extends WizardElement {
       const now = this.link.states[id] || "";
       made.dataset.state = now;
       state.textContent = STATE_WORDS[now] || "";
-      made.toggleAttribute("aria-disabled", false);
       if (now === "used") made.setAttribute("aria-disabled", "true");
+      else made.removeAttribute("aria-disabled");
       if (now === "repeats") made.setAttribute("aria-pressed", "true");
       else made.removeAttribute("aria-pressed");
     }

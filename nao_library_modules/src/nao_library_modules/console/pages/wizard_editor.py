@@ -52,7 +52,7 @@ class WizardEditor:
 
     async def _load(self) -> None:
         try:
-            saved = self._file.text()
+            saved = await run.io_bound(self._file.text)
         except ConsoleFileError as error:
             self._show(error.problems, "The file cannot be read")
             return
@@ -70,11 +70,13 @@ class WizardEditor:
 
     async def _check(self) -> bool:
         """Whether the text can be saved; tells what is wrong with it."""
+        if self._code is None:  # the file could not be read, which stands there
+            return False
         text = self._code.value
         try:
             if len(text) > LONGEST:
                 raise ConsoleFileError(self._file.path.name, [Problem("", f"more than {LONGEST} characters", 1)])
-            layout = read_layout(text, self._file.path.name)
+            layout = await run.io_bound(read_layout, text, self._file.path.name)
         except ConsoleFileError as error:
             self._show(error.problems, f"{_count(error.problems)}: it cannot be saved so")
             return False
@@ -104,7 +106,7 @@ class WizardEditor:
             return
         self._revision = saved.revision
         self._over.set_visibility(False)
-        self._current.look()
+        await run.io_bound(self._current.look)
         self._page.notify(f"Saved: {self._file.path}", "positive")
 
     def _show(self, problems: Sequence[Problem], told: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 import uuid
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
@@ -18,6 +19,7 @@ from ...base.paths import config_file
 from ..access.guard import session_of
 from ..access.sessions import Session
 from ..robots.commands import RobotCommand
+from ..view.background import in_background
 from ..wizard.desk import PLANS, WizardDesk
 from ..wizard.layout_file import CurrentLayout, LayoutFile
 from ..wizard.model import WizardLayout
@@ -45,6 +47,16 @@ class WizardParts:
         self.file = LayoutFile(own, shipped)
         self.current = CurrentLayout(self.file)
         self.desk = WizardDesk()
+
+    def find_all(self, layout: WizardLayout) -> None:
+        """In the background, have the robots of buttons known: a stop asks nobody for them."""
+
+        def search() -> None:
+            for name in sorted({button.robot for _, button in layout.buttons() if button.robot}):
+                with suppress(NaoError):
+                    self.console.robots.robot(name)
+
+        threading.Thread(target=search, name="robots of buttons", daemon=True).start()
 
 
 def build(console: Any) -> None:
@@ -78,7 +90,7 @@ class _WizardPage:
         page.static("camera.js")
         page.static("wizard.js")
         editor = WizardEditor(self._parts.file, self._parts.current, page)
-        page.every(LOOK_PERIOD, self._parts.current.look)
+        page.every(LOOK_PERIOD, self._look)
         self._follow(self._parts.current.subscribe, self._changed)
         self._follow(self._desk.subscribe, self._show_desk)
         page.robot.prepare(servers_of(self._parts.current.layout))
@@ -105,6 +117,9 @@ class _WizardPage:
                     ui.element("nao-wizard-drive").props(f'robot="{self._space}"')
         self._show_problems()
 
+    async def _look(self) -> None:
+        await run.io_bound(self._parts.current.look)
+
     # --- free text ----------------------------------------------------------------------------------------------------
 
     def _talk(self) -> None:
@@ -129,7 +144,8 @@ class _WizardPage:
             return
         self._desk.take_names(self._parts.current.layout, self._space)
         try:
-            await run.io_bound(self._desk.say, self._page.robot, text, self._animated.value, self._page.visitor.name)
+            robot, by = self._page.robot, self._page.visitor.name
+            await run.io_bound(self._desk.say, robot, text, self._animated.value, by, robot.stops)
         except NaoError as error:
             self._page.notify(str(error), "negative")
             return
@@ -177,9 +193,12 @@ class _WizardPage:
                 .classes("w-full")
                 for name, value in values.items()
             }
+            for field in self._fields.values():
+                field.set_enabled(self._page.visitor.operator)
 
     def _name(self, name: str, value: str | None) -> None:
-        self._desk.set_values(self._space, {name: value or ""})
+        if self._page.visitor.operator:
+            self._desk.set_values(self._space, {name: value or ""})
 
     def _camera(self) -> None:
         with ui.row().classes("w-full items-center"):
@@ -252,13 +271,13 @@ class _DriveSocket:
         self._session = session_of(socket)
         self._wake = asyncio.Event()
         self._lanes: dict[str, ThreadPoolExecutor] = {}
-        self._notices: list[str] = []
+        self._notices: list[dict[str, Any]] = []
 
     async def serve(self) -> None:
         """Answer until the page is gone."""
         socket, console = self._socket, self._parts.console
         try:
-            robot = console.robots.robot(socket.query_params.get("robot", ""))
+            robot = await in_background(self._parts.console.robots.robot, socket.query_params.get("robot", ""))
         except NaoError as error:
             await socket.close(4404, str(error)[:100])
             return
@@ -269,7 +288,8 @@ class _DriveSocket:
             self._parts.desk,
             lambda: self._parts.current.layout,
             _rights(console, self._session),
-            console.robots.robot,
+            self._parts.console.robots.robot,
+            self._parts.console.robots.known,
             _head_pointer,
         )
         loop = asyncio.get_running_loop()
@@ -285,9 +305,11 @@ class _DriveSocket:
             teller.cancel()
             for end in ends:
                 end()
+            wizard.leave()
+            if HEAD in self._lanes:
+                self._lanes[HEAD].submit(wizard.close_pointer)
             for lane in self._lanes.values():
                 lane.shutdown(wait=False)
-            await loop.run_in_executor(None, wizard.leave)
 
     def _take(self, wizard: WizardSession, text: str) -> None:
         try:
@@ -296,20 +318,21 @@ class _DriveSocket:
             self._notice(str(error))
             return
         if kind not in (PRESS, HEAD):
-            self._notice(wizard.take(kind, message))
+            self._notice(wizard.take(kind, message), wizard.must_let_go)
             return
         if kind not in self._lanes:
             self._lanes[kind] = ThreadPoolExecutor(1, f"wizard {kind}")
-        done = asyncio.get_running_loop().run_in_executor(self._lanes[kind], wizard.take, kind, message)
+        done = asyncio.get_running_loop().run_in_executor(self._lanes[kind], wizard.take, kind, message, wizard.stops())
         done.add_done_callback(self._taken)
 
     def _taken(self, done: Any) -> None:
         if not done.cancelled():
             self._notice(done.result())
 
-    def _notice(self, text: str) -> None:
+    def _notice(self, text: str, let_go: bool = False) -> None:
+        """Tell the page something; `let_go`: what it holds does not count any more."""
         if text:
-            self._notices.append(text)
+            self._notices.append({"notice": text, "let_go": let_go})
             self._wake.set()
 
     async def _tell(self, wizard: WizardSession) -> None:
@@ -321,14 +344,15 @@ class _DriveSocket:
                 message: dict[str, Any] = {}
                 if layout.revision != revision:
                     message, revision, states = layout_message(layout), layout.revision, None
+                    self._parts.find_all(layout)
                 now = wizard.states()
                 if now != states:
                     message["states"], states = now, now
                 if message:
                     await self._socket.send_json(message)
                 notices, self._notices = self._notices, []
-                for text in notices:
-                    await self._socket.send_json({"notice": text})
+                for notice in notices:
+                    await self._socket.send_json(notice)
                 await self._wake.wait()
                 self._wake.clear()
 

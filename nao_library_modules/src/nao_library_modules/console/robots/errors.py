@@ -9,9 +9,9 @@ class NotThere(NaoError):
     """A server, service or topic does not run."""
 
 
+class Stopped(NaoError):
+    """The robot was stopped since something was asked of it."""
+
+
 class ServiceRefused(NaoError):
     """A service answers that it cannot."""
-
-
-class Stopped(NaoError):
-    """Everything was stopped between the wish and the deed."""

@@ -33,11 +33,9 @@ class Robots:
 
     def robot(self, name: str = "") -> RobotClient:
         """A robot by its name; empty: the first. Raises NotThere if it has never been seen."""
-        if name:
-            with self._lock:  # without the master: a stop needs no more
-                known = self._robots.get(_namespace(name))
-            if known is not None:
-                return known
+        known = self.known(name) if name else None
+        if known is not None:
+            return known
         names = self.names()
         wanted = name.strip("/") or ("/" if name or "/" in names or not names else names[0])
         namespace = _namespace(wanted)
@@ -47,6 +45,11 @@ class Robots:
             if name and wanted not in names:
                 raise NotThere(f"there is no robot {name!r}{of_those(wanted, names)}")
             return self._robots.setdefault(namespace, RobotClient(namespace, self.master))
+
+    def known(self, name: str) -> RobotClient | None:
+        """A robot that was asked for before; the master is not asked, as a stop must not wait for it."""
+        with self._lock:
+            return self._robots.get(_namespace(name))
 
     def watch(self, robot: RobotClient) -> Callable[[], None]:
         """Follow what a robot does and which servers it has, until what comes back is called."""

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, Tuple
 
 from ..robots.commands import CommandGoal, RobotCommand, say
+from ..robots.errors import Stopped
 from .errors import PressRefused
 from .model import ButtonAction, ButtonGroup, PlanDesignator, WizardButton, WizardLayout
 from .texts import filled_text, names_in
@@ -30,7 +31,10 @@ class DeskRobot(Protocol):
     namespace: str
     events: Any
 
-    def send(self, command: RobotCommand, by: str = "", label: str = "") -> Any: ...
+    @property
+    def stops(self) -> int: ...
+
+    def send(self, command: RobotCommand, by: str = "", label: str = "", stops: int | None = None) -> Any: ...
 
     def send_goal(self, goal: CommandGoal, by: str = "", label: str = "") -> Any: ...
 
@@ -54,6 +58,20 @@ class _Pressed:
         return "runs" if self.runs else "used" if self.used else ""
 
 
+@dataclass(frozen=True)
+class _Press:
+    """What is sent by one press, and again by its repetitions."""
+
+    robot: DeskRobot
+    button: WizardButton
+    action: ButtonAction
+    by: str
+    pressed: _Pressed
+    repetition: object  # None: it is sent once
+    refusal: Callable[[], str]
+    stops: int  # of the robot when it was pressed
+
+
 @dataclass
 class _RobotDesk:
     """What is kept of one robot."""
@@ -67,7 +85,8 @@ class WizardDesk:
     """Presses of buttons, free texts and the values of names, of all robots. Any thread.
 
     A button that is for once is so for all pages. A repetition ends when its button is pressed again, when one of its
-    runs does not succeed, when the robot is stopped, and when the page that it began on leaves.
+    runs does not succeed, when the robot is stopped, when the page that it began on leaves, and when the user who began
+    it may not move the robot any more.
     """
 
     def __init__(self) -> None:
@@ -77,7 +96,15 @@ class WizardDesk:
         self._listeners: dict[object, Callable[[], None]] = {}
 
     def press(
-        self, robot: DeskRobot, group: ButtonGroup, button: WizardButton, by: str, page: str = "", via: str = "click"
+        self,
+        robot: DeskRobot,
+        group: ButtonGroup,
+        button: WizardButton,
+        by: str,
+        page: str = "",
+        via: str = "click",
+        refusal: Callable[[], str] = lambda: "",
+        stops: int | None = None,
     ) -> Any:
         """Do what a button is for; the goal is on its way when this returns.
 
@@ -88,15 +115,20 @@ class WizardDesk:
             by: User who pressed it.
             page: Id of the page that it was pressed on.
             via: click or key, for the log.
+            refusal: Why the user may not move the robot any more, asked before each repetition; empty: the user may.
+            stops: Stops of the robot when it was pressed; None: as many as now.
 
         Returns:
             The Run of its goal; None if it stops everything, or a repetition.
 
         Raises:
             PressRefused: It was for once, or a name of its texts is empty.
+            Stopped: The robot was stopped since.
             NaoError: The robot cannot be sent a goal.
         """
         place = (robot.namespace, group.title, button.label)
+        if stops is None:
+            stops = robot.stops
         with self._lock:
             pressed = self._pressed.setdefault(place, _Pressed())
             if pressed.repetition is not None:
@@ -119,7 +151,7 @@ class WizardDesk:
                 pressed.repetition, pressed.page = repetition, page
             self._watch_stops(robot)
         try:
-            return self._run(robot, button, action, by, pressed, repetition)
+            return self._run(_Press(robot, button, action, by, pressed, repetition, refusal, stops))
         except Exception as error:
             with self._lock:
                 pressed.used = False
@@ -128,8 +160,11 @@ class WizardDesk:
         finally:
             self._tell()
 
-    def say(self, robot: DeskRobot, text: str, animated: bool, by: str) -> Any:
-        """Say a free text, with names filled in. Returns its Run. Raises PressRefused if it will not do."""
+    def say(self, robot: DeskRobot, text: str, animated: bool, by: str, stops: int | None = None) -> Any:
+        """Say a free text, with names filled in. Returns its Run. Raises PressRefused if it will not do, and Stopped.
+
+        `stops`: of the robot when it was typed; None: it does not matter.
+        """
         text = text.strip()
         if not text:
             raise PressRefused("there is no text to say")
@@ -144,7 +179,7 @@ class WizardDesk:
         spoken = filled_text(text, values)
         robot.events.add("pressed", f"says: {spoken}", by, button="free text")
         self._tell()
-        return robot.send(say(spoken, animated), by)
+        return robot.send(say(spoken, animated), by, stops=stops)
 
     def history(self, namespace: str) -> list[str]:
         """Free texts that were said by a robot, the newest first, each once."""
@@ -219,22 +254,15 @@ class WizardDesk:
             raise PressRefused(f"{what} needs {' and '.join(empty)}: fill that in under Names")
         return kept
 
-    def _run(
-        self,
-        robot: DeskRobot,
-        button: WizardButton,
-        action: ButtonAction,
-        by: str,
-        pressed: _Pressed,
-        repetition: object,
-    ) -> Any:
-        if isinstance(action, RobotCommand) and action.stops:
-            robot.stop(by)
+    def _run(self, press: _Press) -> Any:
+        pressed, repetition = press.pressed, press.repetition
+        if isinstance(press.action, RobotCommand) and press.action.stops:
+            press.robot.stop(press.by)
             return None
         with self._lock:
             pressed.runs += 1
         try:
-            run = _send(robot, button.label, action, by)
+            run = _send(press)
         except Exception:
             with self._lock:
                 pressed.runs -= 1
@@ -247,9 +275,7 @@ class WizardDesk:
                 pressed.runs -= 1
                 if repetition is not None and pressed.repetition is repetition:
                     if run.state == "succeeded":
-                        again = threading.Timer(
-                            button.repeat, self._again, (robot, button, action, by, pressed, repetition)
-                        )
+                        again = threading.Timer(press.button.repeat, self._again, (press,))
                         again.daemon = True
                         pressed.timer = again
                         again.start()
@@ -260,22 +286,20 @@ class WizardDesk:
         run.on_end(ended)
         return None if repetition is not None else run
 
-    def _again(
-        self,
-        robot: DeskRobot,
-        button: WizardButton,
-        action: ButtonAction,
-        by: str,
-        pressed: _Pressed,
-        repetition: object,
-    ) -> None:
+    def _again(self, press: _Press) -> None:
         with self._lock:
-            if pressed.repetition is not repetition:
+            if press.pressed.repetition is not press.repetition:
                 return
         try:
-            self._run(robot, button, action, by, pressed, repetition)
-        except Exception as error:  # the robot is gone, or its server
-            robot.events.add("note", f"{button.label}: no more repetitions: {error}")
+            refusal = press.refusal()
+            if refusal:
+                raise PressRefused(refusal)
+            self._run(press)
+        except Exception as error:  # also: the robot is gone, or its server
+            with self._lock:
+                if press.pressed.repetition is press.repetition:
+                    self._end_repetition(press.pressed)
+            press.robot.events.add("note", f"{press.button.label}: no more repetitions: {error}")
         self._tell()
 
     def _watch_stops(self, robot: DeskRobot) -> None:
@@ -318,10 +342,13 @@ class WizardDesk:
             self._listeners.pop(key, None)
 
 
-def _send(robot: DeskRobot, label: str, action: ButtonAction, by: str) -> Any:
-    if isinstance(action, RobotCommand):
-        return robot.send(action, by, label)
+def _send(press: _Press) -> Any:
+    robot, label = press.robot, press.button.label
+    if isinstance(press.action, RobotCommand):
+        return robot.send(press.action, press.by, label, stops=press.stops)
     from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorGoal
 
-    goal = PerformDesignatorGoal(designator=action.text)
-    return robot.send_goal(CommandGoal(PLANS, PerformDesignatorAction, goal), by, label)
+    if press.stops != robot.stops:
+        raise Stopped(f"the robot was stopped before {label} was sent")
+    goal = PerformDesignatorGoal(designator=press.action.text)
+    return robot.send_goal(CommandGoal(PLANS, PerformDesignatorAction, goal), press.by, label)

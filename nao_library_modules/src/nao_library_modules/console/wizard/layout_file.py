@@ -93,14 +93,14 @@ class CurrentLayout:
         self.layout = WizardLayout()
         self.problems: Sequence[Problem] = ()
         self._file = file
-        self._lock = threading.Lock()
+        self._lock, self._looking = threading.Lock(), threading.Lock()  # nobody waits for the file with the first
         self._mark: tuple[int, int] | None = None
         self._listeners: dict[object, Callable[[], None]] = {}
         self.look()
 
     def look(self) -> None:
-        """Read the file again if it has changed, and tell pages of that."""
-        with self._lock:
+        """Read the file again if it has changed, and tell pages of that. Not for the event loop."""
+        with self._looking:
             mark = self._file.mark
             if mark == self._mark:
                 return
@@ -109,6 +109,7 @@ class CurrentLayout:
                 self.layout, self.problems = self._file.layout(), ()
             except ConsoleFileError as error:
                 self.problems = error.problems
+        with self._lock:
             listeners = list(self._listeners.values())
         for listener in listeners:
             listener()

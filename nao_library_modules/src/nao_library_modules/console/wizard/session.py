@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,7 +52,8 @@ class WizardSession:
         desk: Of all pages.
         layout: Gives the layout that the page shows.
         rights: Of the visitor.
-        find: Gives a robot by its name; raises NaoError if there is none.
+        find: Gives a robot by its name; raises NaoError if there is none. May ask the ROS master.
+        known: Gives a robot by its name that was found before, without asking anybody; None: there is none.
         pointer: Makes what turns the head, when it is needed first.
     """
 
@@ -65,6 +65,7 @@ class WizardSession:
         layout: Callable[[], WizardLayout],
         rights: PageRights,
         find: Callable[[str], Any],
+        known: Callable[[str], Any],
         pointer: Callable[[Any], Any],
     ) -> None:
         self.robot = robot
@@ -73,25 +74,45 @@ class WizardSession:
         self._layout = layout
         self._rights = rights
         self._find = find
+        self._known = known
         self._make_pointer = pointer
         self._pointer: Any = None
-        self._walks = False
+        self._left = False
+        # Stops of the robot when the walk began that is held; -1: it was stopped from this page; None: none is held.
+        self._walk_stops: int | None = None
         self._takers = {WALK: self._walk, PRESS: self._press, HEAD: self._head, STOP: self._stop}
 
-    def take(self, kind: str, message: Mapping[str, Any]) -> str:
-        """Carry out a message, as `read_message` gives it. Returns what to tell the visitor; empty: all is well."""
+    def stops(self) -> dict[str, int]:
+        """Namespaces of the robots that are known -> how often each was stopped. Does not wait for anything."""
+        return {robot.namespace: robot.stops for robot in (self.robot, *self._others())}
+
+    def take(self, kind: str, message: Mapping[str, Any], stops: Mapping[str, int] | None = None) -> str:
+        """Carry out a message, as `read_message` gives it; after `leave` only a press that stops.
+
+        Args:
+            kind: Of the message.
+            message: The message.
+            stops: What `stops` gave when it arrived; None: it arrives now. A press from before a stop is refused.
+
+        Returns:
+            What to tell the visitor; empty: all is well.
+        """
+        if self._left and kind != PRESS:
+            return ""
         try:
-            self._takers[kind](message[kind], message)
+            self._takers[kind](message[kind], message, self.stops() if stops is None else stops)
         except (ValueError, NaoError) as error:
             return str(error)
         return ""
 
     def leave(self) -> None:
         """The page is gone, or cannot be heard any more: what it held ends."""
-        if self._walks:
-            self._walks = False
-            self.robot.walk(0.0, 0.0, 0.0, self._rights.name)
+        self._left = True
+        self._end_walk()
         self._desk.leave(self.page)
+
+    def close_pointer(self) -> None:
+        """After `leave`, in the thread of head messages: end what turned the head."""
         if self._pointer is not None:
             self._pointer.close()
             self._pointer = None
@@ -109,31 +130,48 @@ class WizardSession:
 
         return self._desk.states(self._layout(), namespace)
 
-    def _stop(self, _value: Any, _message: Any) -> None:
+    @property
+    def must_let_go(self) -> bool:
+        """Whether the robot was stopped while this page holds a walk: velocities count again after a zero."""
+        return self._walk_stops is not None and self._walk_stops != self.robot.stops
+
+    def _others(self) -> list[Any]:
+        """The robots of buttons that are known, without that of the page."""
+        names = {button.robot for _, button in self._layout().buttons() if button.robot}
+        found = {robot.namespace: robot for robot in map(self._known, names) if robot is not None}
+        found.pop(self.robot.namespace, None)
+        return list(found.values())
+
+    def _stop(self, _value: Any, _message: Any, _stops: Any) -> None:
         if not self._rights.operator():
             raise ValueError("observers look on; only operators stop the robot")
-        self._walks = False
-        robots = {}
-        for _, button in self._layout().buttons():
-            with suppress(NaoError):
-                other = self.robot_of(button)
-                robots[other.namespace] = other
-        for namespace, other in robots.items():
-            if namespace != self.robot.namespace:
-                other.stop(self._rights.name)
+        if self._walk_stops is not None:
+            self._end_walk()
+            self._walk_stops = -1
+        for other in self._others():
+            other.stop(self._rights.name)
 
-    def _walk(self, value: Any, _message: Any) -> None:
+    def _walk(self, value: Any, _message: Any, _stops: Any) -> None:
         velocity = _velocity(value)
         if not any(velocity):
-            if self._walks:
-                self._walks = False
-                self.robot.walk(0.0, 0.0, 0.0, self._rights.name)
+            self._end_walk()
             return
+        if self.must_let_go:
+            raise ValueError("the robot was stopped: let go, and then walk again")
         self._require(self.robot)
-        self._walks = True
+        if self._walk_stops is None:
+            self._walk_stops = self.robot.stops
         self.robot.walk(*velocity, self._rights.name)
+        if self.must_let_go:  # stopped between the look and the walk
+            self.robot.walk(0.0, 0.0, 0.0, self._rights.name)
 
-    def _press(self, value: Any, message: Mapping[str, Any]) -> None:
+    def _end_walk(self) -> None:
+        """Forget the walk that is held, and end it unless a stop has."""
+        held, self._walk_stops = self._walk_stops, None
+        if held is not None and held == self.robot.stops:
+            self.robot.walk(0.0, 0.0, 0.0, self._rights.name)
+
+    def _press(self, value: Any, message: Mapping[str, Any], stops: Mapping[str, int]) -> None:
         layout = self._layout()
         if message.get("revision") != layout.revision:
             raise ValueError("the buttons have changed meanwhile: look again, and press once more")
@@ -141,15 +179,18 @@ class WizardSession:
         if not found:
             raise ValueError("there is no such button any more: load the page again")
         ((group, button),) = found
+        ends = getattr(button.action, "stops", False)
+        if self._left and not ends:
+            return
         robot = self.robot_of(button)
-        stops = getattr(button.action, "stops", False)
-        if not (stops and self._rights.operator()):
+        if not (ends and self._rights.operator()):
             self._require(robot)
         self._desk.take_names(layout, robot.namespace)
         via = "key" if message.get("via") == "key" else "click"
-        self._desk.press(robot, group, button, self._rights.name, self.page, via)
+        refusal, count = lambda: self._refusal(robot), stops.get(robot.namespace)
+        self._desk.press(robot, group, button, self._rights.name, self.page, via, refusal, count)
 
-    def _head(self, value: Any, _message: Any) -> None:
+    def _head(self, value: Any, _message: Any, _stops: Any) -> None:
         if not isinstance(value, dict) or value.get("kind") not in POINTS:
             raise ValueError("a point of the picture that is none")
         x, y = _share(value.get("x")), _share(value.get("y"))
@@ -159,9 +200,12 @@ class WizardSession:
         self._pointer.point(value["kind"], str(value.get("camera")), x, y, self._rights.name)
 
     def _require(self, robot: Any) -> None:
-        refusal = self._rights.refusal(robot.namespace)
+        refusal = self._refusal(robot)
         if refusal:
             raise ValueError(refusal)
+
+    def _refusal(self, robot: Any) -> str:
+        return "the page is gone" if self._left else self._rights.refusal(robot.namespace)
 
 
 def read_message(text: str) -> tuple[str, Mapping[str, Any]]:
@@ -186,9 +230,10 @@ def _velocity(value: Any) -> tuple[float, float, float]:
 
 
 def _number(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not number or (isinstance(value, float) and not math.isfinite(value)):
         raise ValueError(f"{value!r} is no number")
-    return min(max(float(value), -1.0), 1.0)
+    return float(min(max(value, -1), 1))  # an integer may be too large for a float
 
 
 def _share(value: Any) -> float:
