@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 import rospy
 from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
@@ -102,6 +104,24 @@ def test_a_page_is_there_and_complains_of_nothing(browser, path):
     browser.open(path)
     browser.until(lambda: browser.all("body", PAGES[path]) or browser.all(f"[aria-label='{PAGES[path]}']"), PAGES[path])
     assert browser.complaints() == []
+
+
+READABLE = (Path(__file__).parents[2] / "support" / "readable.js").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_everything_can_be_read_and_has_a_name(browser, dark):
+    is_dark = "return document.body.classList.contains('body--dark')"
+    browser.open("/functions")
+    if browser.script(is_dark) != dark:
+        browser.click("[aria-label='Light or dark']")
+        browser.until(lambda: browser.script(is_dark) == dark, "the other colours")
+    hard = {}
+    for path, text in PAGES.items():
+        browser.open(path)
+        browser.until(lambda text=text: text in browser.text() or browser.all(f"[aria-label='{text}']"), text)
+        hard[path] = browser.script(READABLE)
+    assert hard == {path: [] for path in PAGES}
 
 
 YAW = """
