@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 import signal
+import socket
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -59,7 +60,8 @@ class ConsoleSettings:
     @property
     def url(self) -> str:
         """Address for a browser, with a slash at its end."""
-        host = f"[{self.listen}]" if ":" in self.listen else self.listen
+        everywhere = not self.local and ipaddress.ip_address(self.listen).is_unspecified
+        host = socket.gethostname() if everywhere else f"[{self.listen}]" if ":" in self.listen else self.listen
         return f"{'http' if self.certificate is None else 'https'}://{host}:{self.port}/"
 
 
@@ -103,8 +105,6 @@ class Console:
 
     def serve(self) -> None:
         """Serve pages until the process is told to end (SIGINT, SIGTERM). Raises NaoError if the port is taken."""
-        import socket
-
         import uvicorn
 
         settings = self.settings
