@@ -300,4 +300,3 @@ function view(id) {
 export const show = (id, tracks, selected, whole) => view(id)?.show(tracks, selected, whole);
 export const mark = (id, states, at) => { const known = view(id); if (known?.line) known.mark(states, at); };
 export const zoom = (id, factor) => { const known = view(id); if (known) { if (factor) known.zoom(factor); else known.fit(); } };
-export const focus = (id, path) => view(id)?.groups?.get(path)?.focus();

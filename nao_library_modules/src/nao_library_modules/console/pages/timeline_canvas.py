@@ -57,9 +57,6 @@ class TimelineCanvas:
         """Zoom; 0: to the whole."""
         self._call("zoom", factor)
 
-    def focus(self, path: str) -> None:
-        self._call("focus", path)
-
     def _call(self, name: str, *arguments: Any) -> None:
         given = ", ".join(map(json.dumps, (self._element.html_id, *arguments)))
         with self._element:

@@ -67,14 +67,6 @@ class BehaviorDocument:
         return self.text != self._stored
 
     @property
-    def can_undo(self) -> bool:
-        return bool(self._before)
-
-    @property
-    def can_redo(self) -> bool:
-        return bool(self._after)
-
-    @property
     def file(self) -> str:
         """What problems call its file."""
         return f"{self.name or 'new'}.yaml"

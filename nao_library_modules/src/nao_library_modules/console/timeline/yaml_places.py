@@ -106,12 +106,6 @@ def move_item(text: str, source: Place, target: Place, index: int) -> str:
     return _applied(text, cuts, content)
 
 
-def item_text(text: str, place: Place) -> str:
-    """The text of a value in a list as it stands there, without what is in front of its lines."""
-    root = _root(text)
-    return _raw_block(text, _node(root, place[:-1]), _node(root, place))
-
-
 # --- nodes ------------------------------------------------------------------------------------------------------------
 
 

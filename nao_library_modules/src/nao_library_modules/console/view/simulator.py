@@ -45,12 +45,6 @@ class Simulator:
 
         self._call("touch", TouchSensors, sensors=list(devices), time=_duration(seconds), wait=False)
 
-    def press(self, devices: Sequence[str]) -> None:
-        """Fingers on these sensors and no others."""
-        from nao_library_msgs.srv import PressSensors
-
-        self._call("press", PressSensors, sensors=list(devices))
-
     def push(self, force: float, direction: float, seconds: float) -> None:
         """Push the torso with so many N, for so many s, to where a direction in rad points in the world."""
         from geometry_msgs.msg import Vector3

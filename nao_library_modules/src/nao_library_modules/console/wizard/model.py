@@ -93,10 +93,6 @@ class WizardLayout:
             for button in group.buttons:
                 yield group, button
 
-    def button(self, button_id: str) -> WizardButton | None:
-        """The button of an id; None if there is none."""
-        return next((button for _, button in self.buttons() if button.id == button_id), None)
-
 
 def hex_colour(text: str) -> str:
     """A colour as #RRGGBB. `text`: as `base.colours.parse_colour` takes it, which raises BadGoal."""
