@@ -175,7 +175,8 @@ class BehaviorsView:
             self._list_state.text = str(error)
             return
         self._infos = {info.name: info for info in infos}
-        self._described = await run.io_bound(_described, robot) or {}
+        found = await run.io_bound(robot.describe_all) or {}
+        self._described = {server: told for server, told in found.items() if server != SERVER}
         self._show_list()
         if self._document is None and self._wanted in self._infos:
             await self._open(self._wanted)
@@ -643,19 +644,6 @@ def _ask(robot: Any, **fields: Any) -> Any:
     from nao_library_msgs.srv import ListBehaviors
 
     return robot.call(f"{SERVER}/list", ListBehaviors, **fields)
-
-
-def _described(robot: Any) -> dict[str, Any]:
-    """What the servers say of their functions, of those that steps may use."""
-    described = {}
-    for server in robot.servers():
-        if server == SERVER:
-            continue
-        try:
-            described[server] = robot.describe(server)
-        except NaoError:
-            continue  # it has gone meanwhile
-    return described
 
 
 def _tree_line(line: StepLine) -> None:

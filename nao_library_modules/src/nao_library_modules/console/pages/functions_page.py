@@ -71,7 +71,7 @@ class FunctionsView:
     # --- the list -----------------------------------------------------------------------------------------------------
 
     async def _ask(self) -> None:
-        self._described = await run.io_bound(_describe_all, self._page.robot) or {}
+        self._described = await run.io_bound(self._page.robot.describe_all) or {}
         self._servers.set_options([ALL, *self._described], value=ALL)
         self._list()
 
@@ -223,16 +223,6 @@ def show_copy(kind: str, text: str) -> None:
             ui.button("Close", on_click=dialog.close).props("flat no-caps")
     dialog.on("hide", dialog.delete)
     dialog.open()
-
-
-def _describe_all(robot: Any) -> dict[str, Any]:
-    described = {}
-    for server in robot.servers():
-        try:
-            described[server] = robot.describe(server)
-        except NaoError:
-            continue  # it has gone meanwhile
-    return described
 
 
 def _common(told: Any) -> list[Any]:

@@ -103,6 +103,14 @@ class RobotClient:
                 self._types.pop(server, None)
         return kept[1]
 
+    def describe_all(self) -> dict[str, Any]:
+        """Server -> what it says of its functions, of all that run."""
+        described = {}
+        for server in self.servers():
+            with suppress(NaoError):  # it has gone meanwhile
+                described[server] = self.describe(server)
+        return described
+
     def state_of(self, server: str) -> Any:
         """How a server does: DescribeFunctionsResponse without functions. Raises NotThere."""
         return self.call(server + DESCRIBE, DescribeFunctions, without_functions=True)
