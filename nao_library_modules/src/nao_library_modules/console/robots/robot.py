@@ -32,12 +32,12 @@ from .events import EventStream
 from .foreign_goals import ForeignGoals
 from .master import MasterLook
 from .runs import ENDS, STATES, Run
+from .waits import within
 
 log = logging.getLogger(__name__)
 
 SERVER_LIMIT = 5.0
 """s that the server of a goal may take to be found."""
-LOOK_PERIOD = 0.01
 WALK_HOLD = 0.4
 """s that a velocity holds; who wants more sends it again."""
 CONSOLE = "console"
@@ -292,7 +292,7 @@ class RobotClient:
                 left.remove(publisher)
             return not left
 
-        _within(SERVER_LIMIT, tell)
+        within(SERVER_LIMIT, tell)
         for publisher in made:
             publisher.unregister()
 
@@ -321,7 +321,7 @@ class RobotClient:
             if server not in self._clients:
                 self._clients[server] = actionlib.ActionClient(self.namespace + server, action)
             client = self._clients[server]
-        if not _within(SERVER_LIMIT, lambda: server_connection(client) is not None):
+        if not within(SERVER_LIMIT, lambda: server_connection(client) is not None):
             raise NotThere(f"the server {server} does not run{of_those(server, self.servers())}")
         return client
 
@@ -384,13 +384,3 @@ class _OwnedGoal(GoalTracker):
 
 def _in_thread(task: Callable[..., Any], *arguments: Any) -> None:
     threading.Thread(target=task, args=arguments, daemon=True).start()
-
-
-def _within(limit: float, condition: Callable[[], bool]) -> bool:
-    """Whether something becomes true within so many s of this computer."""
-    deadline = time.monotonic() + limit
-    while not condition():
-        if time.monotonic() > deadline:
-            return False
-        time.sleep(LOOK_PERIOD)
-    return True

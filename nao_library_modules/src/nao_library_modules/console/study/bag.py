@@ -13,11 +13,12 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 from naoqi.errors import NaoError
 
 from ...ros.master_watch import GONE, Api, Refused
+from ..robots.waits import within
 
 LONGEST = "4h"
 """Of a bag whose console does not come back."""
@@ -27,8 +28,6 @@ BEGIN_LIMIT = 15.0
 """s of this computer that it has until it reads all topics."""
 SETTLED = 1.0
 """s of this computer without a new connection, behind which a publisher that is still missing counts as dead."""
-PART = 0.05
-"""s between looks at what nothing tells of: files, processes that are no children, connections of another node."""
 ACTIVE = ".active"
 """End of the name of a bag that is not whole yet."""
 CALLER, NODE = "/nao_study", "/nao_study_bag"
@@ -78,7 +77,7 @@ class BagRecorder:
             missing[:] = self._missing()
             return not missing
 
-        if not _within(BEGIN_LIMIT, records):
+        if not within(BEGIN_LIMIT, records):
             what = f"does not read {', '.join(missing)}"
             raise NaoError(f"rosbag {what} after {BEGIN_LIMIT:g} s: what comes before is missing in the bag")
 
@@ -125,20 +124,10 @@ def end_bag(file: Path, about: Mapping[str, Any], recorder: BagRecorder | None =
         os.kill(int(about["pid"]), signal.SIGINT)
     if recorder is not None and recorder.pid == about["pid"]:
         recorder.wait_for_end()
-    elif not _within(LIMIT, lambda: not is_bag(file, about)):
+    elif not within(LIMIT, lambda: not is_bag(file, about)):
         raise NaoError(f"rosbag (process {about['pid']}) has not ended within {LIMIT:g} s")
     if not file.exists():
         raise NaoError("rosbag left no whole file: see rosbag.log")
-
-
-def _within(seconds: float, holds: Callable[[], bool]) -> bool:
-    """Look now and then whether something has come to hold; whether it has."""
-    limit = time.monotonic() + seconds
-    while not holds():
-        if time.monotonic() > limit:
-            return False
-        time.sleep(PART)
-    return True
 
 
 def _program() -> str:
