@@ -47,6 +47,30 @@ async def in_background(task: Callable[..., Any], *arguments: Any) -> Any:
     return await future
 
 
+class Takers:
+    """Counts who wants something: it begins for the first, and ends behind the last. Any thread."""
+
+    def __init__(self, begin: Callable[[], None], end: Callable[[], None]) -> None:
+        self._begin, self._end = begin, end
+        self._lock = threading.Lock()
+        self._count = 0
+
+    def acquire(self) -> End:
+        """One more wants it, until what comes back is called, which may be called twice."""
+        with self._lock:
+            self._count += 1
+            if self._count == 1:
+                self._begin()
+        given = threading.Lock()  # a lock that is taken once
+        return lambda: self._release() if given.acquire(blocking=False) else None
+
+    def _release(self) -> None:
+        with self._lock:
+            self._count -= 1
+            if not self._count:
+                self._end()
+
+
 class Subscriptions:
     """Several, which begin one after the other in the background, and end there. Any thread."""
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from .background import Subscriptions
+from .background import Subscriptions, Takers
 from .body_status import BodyStatus, read_status
 
 
@@ -19,6 +17,7 @@ class BodyWatch:
         `connection` (nao_library_msgs/ConnectionState).
 
     Attributes:
+        acquire: Follows the body until what it returns is called.
         status: The body; replaced at each report.
         connection: connecting, connected, lost or closed; empty until it is told.
         address: Of the robot.
@@ -27,35 +26,24 @@ class BodyWatch:
 
     def __init__(self, robot: Any) -> None:
         self._robot = robot
-        self._lock = threading.Lock()
-        self._users = 0
         self._subscriptions = Subscriptions(f"body of {robot.name}")
+        self.acquire = Takers(self._begin, self._end).acquire
         self._clear()
 
-    def acquire(self) -> Callable[[], None]:
-        """Follow it until what comes back is called, which may be called twice."""
+    def _begin(self) -> None:
         from diagnostic_msgs.msg import DiagnosticArray
 
         from nao_library_msgs.msg import ConnectionState
 
-        with self._lock:
-            self._users += 1
-            if self._users == 1:
-                topic = self._robot.topic
-                self._subscriptions.begin(
-                    partial(topic, "/diagnostics", DiagnosticArray, self._on_diagnostics, queue_size=20),
-                    partial(topic, "connection", ConnectionState, self._on_connection),
-                )
-        given = threading.Lock()  # a lock that is taken once
-        return lambda: self._release() if given.acquire(blocking=False) else None
+        topic = self._robot.topic
+        self._subscriptions.begin(
+            partial(topic, "/diagnostics", DiagnosticArray, self._on_diagnostics, queue_size=20),
+            partial(topic, "connection", ConnectionState, self._on_connection),
+        )
 
-    def _release(self) -> None:
-        with self._lock:
-            self._users -= 1
-            if self._users:
-                return
-            self._subscriptions.end()
-            self._clear()
+    def _end(self) -> None:
+        self._subscriptions.end()
+        self._clear()
 
     def _clear(self) -> None:
         self.status = BodyStatus()

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from .background import Subscriptions
+from .background import Subscriptions, Takers
 from .memory_topics import TEXT, MemoryTopics
 from .sense_texts import BUMPER, CHEST, HAND, HEAD, Perception, Sightings, clicked, felt, heard, said, touched
 
@@ -23,6 +23,7 @@ class Senses:
         and of the robot's memory (`nao_memory/watch`) what it says, its posture and whether it has fallen.
 
     Attributes:
+        acquire: Has its perceptions added to `robot.events` until what it returns is called.
         posture: As the robot calls it; empty until it is told.
         pressed: Touch sensors that are pressed, by their names in the robot's memory; replaced at each change.
     """
@@ -31,7 +32,7 @@ class Senses:
         self._robot = robot
         self._memory = memory
         self._lock = threading.Lock()
-        self._users = 0
+        self.acquire = Takers(lambda: self._subscriptions.begin(*self._starts()), self._end).acquire
         self._subscriptions = Subscriptions(f"senses of {robot.name}")
         self._sightings = Sightings()
         self._stands: bool | None = None
@@ -39,22 +40,10 @@ class Senses:
         self.posture = ""
         self.pressed: frozenset[str] = frozenset()
 
-    def acquire(self) -> Callable[[], None]:
-        """Have its perceptions added to `robot.events` until what comes back is called, which may be called twice."""
+    def _end(self) -> None:
         with self._lock:
-            self._users += 1
-            if self._users == 1:
-                self._subscriptions.begin(*self._starts())
-        given = threading.Lock()  # a lock that is taken once
-        return lambda: self._release() if given.acquire(blocking=False) else None
-
-    def _release(self) -> None:
-        with self._lock:
-            self._users -= 1
-            if self._users:
-                return
             self.posture, self.pressed, self._stands, self._spoken = "", frozenset(), None, None
-            self._subscriptions.end()
+        self._subscriptions.end()
 
     def _starts(self) -> list[Callable[[], Callable[[], None]]]:
         """What begins each subscription; those of the memory come last, as it may take a while to answer."""
