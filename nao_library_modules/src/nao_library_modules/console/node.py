@@ -10,8 +10,10 @@ import rospy
 
 from naoqi.errors import NaoError
 
+from .app import LOOPBACK, PORT, Console, ConsoleSettings
+
 NAME = "nao_console"
-PARAMETERS = {"port": 8080, "listen": "127.0.0.1", "users": "", "cert": "", "key": "", "buttons": "", "studies": ""}
+PARAMETERS = {"port": PORT, "listen": LOOPBACK[0], "users": "", "cert": "", "key": "", "buttons": "", "studies": ""}
 """Private parameters of the launched node, with their defaults."""
 _PATHS = {"users": "users", "cert": "certificate", "key": "key", "buttons": "buttons", "studies": "studies"}
 
@@ -21,8 +23,6 @@ def serve_console(**settings: Any) -> None:
 
     Raises NaoError if it cannot begin.
     """
-    from .app import Console, ConsoleSettings
-
     made = ConsoleSettings(**settings)
     if not rospy.core.is_initialized():
         start_node()

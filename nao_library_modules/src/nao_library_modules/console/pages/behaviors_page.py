@@ -22,7 +22,7 @@ from ..timeline.stored import StoredBehaviors, problems_in
 from ..timeline.tracks import Tracks, tracks_of
 from ..timeline.yaml_places import EditRefused
 from .field_inputs import FieldInputs
-from .frame import PageContext, framed
+from .frame import PageContext, framed, sure
 from .insert_dialog import BEHIND, INSIDE, LAST, InsertDialog
 from .step_form import StepForm
 from .timeline_canvas import KEYS, TimelineCanvas
@@ -202,7 +202,7 @@ class BehaviorsView:
                         ui.badge("library" if info.shipped else "yours").props("outline")
 
     async def _open(self, name: str) -> None:
-        if self._document is not None and self._document.changed and not await _sure("Leave the changes unsaved?"):
+        if self._document is not None and self._document.changed and not await sure("Leave the changes unsaved?"):
             return
         try:
             text, shipped = await run.io_bound(self._stored.text, name)
@@ -212,7 +212,7 @@ class BehaviorsView:
         await self._take(BehaviorDocument(name, text, shipped))
 
     async def _new(self) -> None:
-        if self._document is not None and self._document.changed and not await _sure("Leave the changes unsaved?"):
+        if self._document is not None and self._document.changed and not await sure("Leave the changes unsaved?"):
             return
         await self._take(BehaviorDocument.new())
 
@@ -572,7 +572,7 @@ class BehaviorsView:
         if there is not None and there.shipped:
             ui.notify(f"{name!r} comes with the library and is not replaced: choose another name", type="negative")
             return
-        if there is not None and not await _sure(f"Replace your behaviour {name}?"):
+        if there is not None and not await sure(f"Replace your behaviour {name}?"):
             return
         await self._store(name, overwrite=there is not None)
 
@@ -656,17 +656,6 @@ def _tree_line(line: StepLine) -> None:
         ui.label(f"{line.path} {line.what}{label}: {state}{took}").classes("text-sm")
         if line.text:
             ui.label(line.text).classes("text-xs opacity-80 break-words")
-
-
-async def _sure(question: str) -> bool:
-    with ui.dialog() as dialog, ui.card():
-        ui.label(question)
-        with ui.row():
-            ui.button("Yes", on_click=lambda: dialog.submit(True))
-            ui.button("No", on_click=lambda: dialog.submit(False)).props("flat")
-    answer = await dialog
-    dialog.delete()
-    return bool(answer)
 
 
 async def _ask_name(title: str, suggested: str, hint: str) -> str:

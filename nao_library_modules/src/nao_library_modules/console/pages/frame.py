@@ -181,3 +181,15 @@ def _turn(session: Session, dark: Any) -> None:
     """Light to dark and back; the first time against what the computer has."""
     session.dark = not session.dark
     dark.set_value(session.dark)
+
+
+async def sure(question: str, yes: str = "Yes", no: str = "No") -> bool:
+    """Ask in a dialog. `yes`, `no`: its answers, in words that say what happens."""
+    with ui.dialog() as dialog, ui.card():
+        ui.label(question)
+        with ui.row():
+            ui.button(yes, on_click=lambda: dialog.submit(True)).props("no-caps")
+            ui.button(no, on_click=lambda: dialog.submit(False)).props("no-caps outline")
+    answer = await dialog
+    dialog.delete()
+    return bool(answer)

@@ -27,7 +27,7 @@ from ...study.reader import read_protocol
 from ...study.runner import TrialRunner
 from ...study.state import DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, SKIPPED, STOPPED, TIMEOUT, TrialState
 from ...study.studies import Studies
-from ..frame import framed
+from ..frame import framed, sure
 from .links import study_links
 
 PERIOD = 0.1
@@ -253,7 +253,7 @@ class _StudyPage:
             await self._try(lambda: self.studies.take_up(trial, self.robot, self.page.visitor.name))
 
     async def _give_up(self, trial: str) -> None:
-        if self.page.operate() and await _sure(trial):
+        if self.page.operate() and await _sure_to_abort(trial):
             await self._try(lambda: self.studies.abort(trial, self.robot, self.page.visitor.name))
             self._shown = None
             await self._refresh()
@@ -437,7 +437,7 @@ class _StudyPage:
         runner = self.runner
         if runner is None or not self.page.operate():
             return
-        if await _sure(runner.id):
+        if await _sure_to_abort(runner.id):
             runner.abort(self.page.visitor.name)
 
     def _choose(self, choice: str) -> None:
@@ -475,14 +475,8 @@ class _StudyPage:
             self._choose(step.choices[int(key) - 1])
 
 
-async def _sure(trial: str) -> bool:
-    """Ask whether a trial is to be aborted."""
-    with ui.dialog() as dialog, ui.card():
-        ui.label(f"Abort trial {trial}? What was logged stays.")
-        with ui.row():
-            ui.button("Abort the trial", color="negative", on_click=lambda: dialog.submit(True)).props("no-caps")
-            ui.button("Do not abort", on_click=lambda: dialog.submit(False)).props("no-caps outline")
-    return bool(await dialog)
+async def _sure_to_abort(trial: str) -> bool:
+    return await sure(f"Abort trial {trial}? What was logged stays.", "Abort the trial", "Do not abort")
 
 
 def _any_round(path: str) -> str:
