@@ -49,6 +49,14 @@ class DriverCameraLostRobot(MortalSimulator, unittest.TestCase):
         self.assertIn("ros_nao_camera_top_0", subscribers)
         self.assertEqual(self.proxy("ALVideoDevice").getParameter(0, BRIGHTNESS), 20)
 
+    def enabled(self):
+        """Whether the detection could be switched on; it has a connection of its own, which may come after pictures."""
+        try:
+            self.switches["enable"]()
+        except rospy.ServiceException:
+            return False
+        return True
+
     def check_detection(self):
         landmarks = self.proxy("ALLandMarkDetection")
         wait_until(lambda: landmarks.getSubscribersInfo(), LIMIT, "the detection of landmarks")
@@ -67,7 +75,7 @@ class DriverCameraLostRobot(MortalSimulator, unittest.TestCase):
             self.assertEqual(look.pairs, [])
             self.start()
             self.check_pictures(look)
-            self.switches["enable"]()
+            wait_until(self.enabled, LIMIT, "the robot for the detection")
             self.check_detection()
             self.kill()
             self.wait_for_report("nao_camera: camera top", "no pictures: ")

@@ -64,7 +64,6 @@ def graph(monkeypatch):
         return fake
 
     monkeypatch.delenv("ROS_NAMESPACE", raising=False)
-    monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:9")  # the port of the discard service: nobody listens
     return make
 
 
