@@ -12,7 +12,8 @@ from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.limits import check, declared, kinds
 from nao_sim_bridge.naoqi.binding import limits
-from nao_sim_bridge.naoqi.binding.api import FILE, module_methods
+from nao_sim_bridge.naoqi.binding.api import FILE, module_methods, older_tables
+from nao_sim_bridge.naoqi.binding.binding import published_methods
 from nao_sim_bridge.naoqi.binding.wire_types import fitted
 from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
 
@@ -22,9 +23,9 @@ BAD = [math.nan, -math.inf, 1.7e308, -1.7e308]
 
 def numeric_parameters():
     """Module, method and parameter of everything in NAOqi's table, and of NaoSimulation, that may hold numbers."""
-    for module in read_json(config_file(FILE)):
+    for module in {*read_json(config_file(FILE)), *older_tables()["modules"]}:
         if not module.startswith("_"):
-            for name, method in module_methods(module).items():
+            for name, method in published_methods(module).items():
                 for overload in method.overloads:
                     for kind, parameter in zip(overload.types, overload.names):
                         if any(number in kind for number in NUMERIC):

@@ -8,7 +8,8 @@ import pytest
 from naoqi_calls import read_calls
 
 from nao_sim_bridge.naoqi.binding.api import COMMON, module_methods
-from nao_sim_bridge.naoqi.binding.binding import DEFECT, NATIVE, offered
+from nao_sim_bridge.naoqi.binding.binding import DEFECT, NATIVE, offered, published_methods
+from nao_sim_bridge.naoqi.binding.older import older_methods
 
 LONGEST = 8.0
 """No call takes longer than this, in s of simulated time."""
@@ -137,9 +138,10 @@ def ways_to_call(robot, module):
                 yield method["name"], len(re.findall(r"\[?[a-z]\]?", method["parametersSignature"])), ()
         return
     known = {method: arguments for method, arguments, *_ in CALLS[module][1]}
-    for name in offered(module, robot.server.modules()[module])[0]:
+    table = published_methods(module)
+    for name in [*offered(module, robot.server.modules()[module])[0], *older_methods(module)]:
         if name not in NATIVE | ENDS and (module == "ALTouch" or name not in module_methods(COMMON)):
-            for overload in module_methods(module)[name].overloads:
+            for overload in table[name].overloads:
                 yield name, len(overload.types), known.get(name, ())
 
 

@@ -17,10 +17,11 @@ from nao_sim_bridge.naoqi import motion
 from nao_sim_bridge.naoqi.behaviors import animation_player, behavior_manager, frame_manager
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.binding.later import Later, made
+from nao_sim_bridge.naoqi.binding.older import older_events
 from nao_sim_bridge.naoqi.body import leds
 from nao_sim_bridge.naoqi.body.body_modules import BodyModules
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
-from nao_sim_bridge.naoqi.cameras import video_device
+from nao_sim_bridge.naoqi.cameras import video_device, vision_toolbox
 from nao_sim_bridge.naoqi.cameras.film_recorder import VideoRecorder
 from nao_sim_bridge.naoqi.cameras.photographer import Photographer
 from nao_sim_bridge.naoqi.cameras.photos_and_films import FILMS, PHOTOS, ALPhotoCapture, ALVideoRecorder
@@ -34,6 +35,7 @@ from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.sound.wiring import AudioModules, SpeechModules
 from nao_sim_bridge.naoqi.speech.recognition_engine import NAME as RECOGNITION
 from nao_sim_bridge.naoqi.speech.speech_recognition import ALSpeechRecognition
+from nao_sim_bridge.naoqi.system import sentinel
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
@@ -88,7 +90,7 @@ class RobotModules:
         self.runner = runner
         self.simulation = simulation = runner.simulation
         self.began = 0.0
-        self.memory = memory = MemoryStore(lambda: simulation.snapshot.time, simulation.shared.guard)
+        self.memory = memory = MemoryStore(lambda: simulation.snapshot.time, simulation.shared.guard, older_events())
         self.files = files = ClientFiles(options.record_dir, [sounds_directory()])
         sounds = SoundFiles(files, workers.sounds)
         self._audio = AudioModules(runner, sounds, broker, memory, options.allow_private_streams)
@@ -111,6 +113,9 @@ class RobotModules:
         self.film = FilmControl(runner, files, options.renderer)
         self.health = HealthControl(runner)
         self._body = BodyModules(runner, memory)
+        of_robot = system(memory, zone)
+        photos = lambda: ALPhotoCapture(self._photographer, files, cameras.tables)  # noqa: E731
+        films = lambda: ALVideoRecorder(self._recorder, files, cameras.tables)  # noqa: E731
         self.modules: dict[str, Sequence[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
             "ALLeds": leds.parts(runner),
@@ -127,10 +132,16 @@ class RobotModules:
             **{name: SoundLocalization(name, simulation, memory).parts() for name in LOCALIZATIONS},
             video_device.NAME: self.video.parts(),
             **self.vision.modules,
-            PHOTOS: [ALPhotoCapture(self._photographer, files, cameras.tables)],
-            FILMS: [ALVideoRecorder(self._recorder, files, cameras.tables)],
+            PHOTOS: [photos()],
+            FILMS: [films()],
+            vision_toolbox.NAME: Later(lambda: [vision_toolbox.ALVisionToolbox(photos(), films())]),
             **self._body.modules,
-            "ALSystem": [system(memory, zone)],
+            sentinel.NAME: Later(
+                lambda: [
+                    sentinel.ALSentinel(memory, self._body.power, self._body.temperature, of_robot, self.speech.say)
+                ]
+            ),
+            "ALSystem": [of_robot],
         }
 
     def begin(self) -> None:

@@ -1,16 +1,21 @@
-"""NAOqi's methods as the robot publishes them: overloads, names and summaries, from `config/naoqi_api.json`."""
+"""NAOqi's methods as the robot publishes them: overloads, names and summaries.
+
+Those of NAOqi 2.8 are in `config/naoqi_api.json`, modules of earlier versions in `config/older_names.json`.
+"""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Mapping, Tuple
+from typing import Any, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
 
-FILE = "naoqi_api.json"
+FILE, OLDER_FILE = "naoqi_api.json", "older_names.json"
 COMMON = "_common_module"
+DEPRECATED = re.compile(r"deprecated[^;]*")
 
 SIMPLE_TYPES = {
     "void": "v",
@@ -48,12 +53,13 @@ class Overload:
 
 @dataclass(frozen=True)
 class Method:
-    """One method of a NAOqi module."""
+    """One method of a NAOqi module; `older` says what to use today, and is empty for a method of today."""
 
     name: str
     overloads: Tuple[Overload, ...]
     returns: str
     summary: str
+    older: str = ""
 
     def usage(self) -> str:
         """All ways to call it, one a line."""
@@ -76,8 +82,17 @@ def qi_type(name: str) -> str:
 
 
 @lru_cache(maxsize=1)
+def older_tables() -> Mapping[str, Any]:
+    """What is known of NAOqi before 2.8; `_meta` in the file tells its form."""
+    return read_json(config_file(OLDER_FILE))
+
+
+@lru_cache(maxsize=1)
 def _tables() -> Mapping[str, Any]:
-    return read_json(config_file(FILE))
+    tables = dict(read_json(config_file(FILE)))
+    for module, methods in older_tables()["modules"].items():
+        tables[module] = {**methods, **tables.get(module, {})}
+    return tables
 
 
 @lru_cache(maxsize=None)
@@ -95,16 +110,31 @@ def module_methods(module: str) -> Mapping[str, Method]:
     for table in (*shared, module):
         for name, entry in tables[table].items():
             if not name.startswith("_"):
-                methods[name] = _method(name, entry)
+                methods[name] = make_method(name, entry, _older(tables[table], entry))
     return methods
 
 
-def _method(name: str, entry: Mapping[str, Any]) -> Method:
-    overloads = tuple(
-        Overload(tuple(types), tuple(n or f"arg{i}" for i, n in enumerate(names)))
-        for types, names in zip(entry["overloads"], entry["params"])
-    )
-    return Method(name, overloads, entry["returns"], entry["summary"])
+def make_method(name: str, entry: Mapping[str, Any], older: str = "") -> Method:
+    """The method of an entry of one of the two files."""
+    if "ways" in entry:
+        overloads = tuple(_overload(way["takes"]) for way in entry["ways"])
+    else:
+        overloads = tuple(
+            Overload(tuple(types), tuple(n or f"arg{i}" for i, n in enumerate(names)))
+            for types, names in zip(entry["overloads"], entry["params"])
+        )
+    return Method(name, overloads, entry["returns"], entry["summary"], older)
+
+
+def _overload(takes: Sequence[str]) -> Overload:
+    pairs = [each.rsplit(" ", 1) for each in takes]
+    return Overload(tuple(kind for kind, _ in pairs), tuple(name for _, name in pairs))
+
+
+def _older(table: Mapping[str, Any], entry: Mapping[str, Any]) -> str:
+    if "_last" in table:
+        return f"of a module of NAOqi {table['_last']} and before; today there is {table['_now']}"
+    return DEPRECATED.search(entry["summary"])[0].strip() if entry.get("deprecated") else ""
 
 
 def _split(text: str) -> list[str]:

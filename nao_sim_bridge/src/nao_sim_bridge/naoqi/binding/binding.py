@@ -21,6 +21,7 @@ from nao_sim_bridge.naoqi.binding.api import Method, module_methods, qi_type
 from nao_sim_bridge.naoqi.binding.common import CommonModule
 from nao_sim_bridge.naoqi.binding.later import Later, made
 from nao_sim_bridge.naoqi.binding.limits import check_sizes
+from nao_sim_bridge.naoqi.binding.older import older_methods, warning_once
 from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to
 
 log = logging.getLogger("nao_sim.services")
@@ -54,9 +55,10 @@ class Service:
         self._broker = broker
         self._parts = parts
         self._targets = self._bound_to(parts)
-        names = module_methods(module).keys() - NATIVE if isinstance(parts, Later) else self._targets.methods
+        table = published_methods(module)
+        names = table.keys() - NATIVE if isinstance(parts, Later) else self._targets.methods
         body: dict[str, Any] = {}
-        for name, method in module_methods(module).items():
+        for name, method in table.items():
             if name in names:
                 for position, overload in enumerate(method.overloads):
                     call = self._published(name, method.summary, qi_type(method.returns))
@@ -85,12 +87,15 @@ class Service:
         return _Targets(self._methods_of(parts))
 
     def _methods_of(self, parts: Sequence[Any]) -> Methods:
-        table = module_methods(self._module)
+        table = published_methods(self._module)
         common = CommonModule(self._module, table, self._broker)
         for name, method in table.items():
             target = None if name in NATIVE else _find(name, [*parts, common])
             if target is not None:
                 common.targets[name] = _checked(self._module, method, target)
+        for name, older in older_methods(self._module).items():
+            if older.calls and all(target in common.targets for target in older.targets):
+                common.targets[name] = _checked(self._module, older.method, older.bound_to(common.targets))
         return {**common.targets, "pCall": common.pCall}
 
     def _published(self, name: str, summary: str | None, returns: Any, types: Any = None) -> Any:
@@ -162,6 +167,11 @@ def typed(
     return decorate
 
 
+def published_methods(module: str) -> dict[str, Method]:
+    """Methods of a module by name, with those that it had before NAOqi 2.8."""
+    return {**module_methods(module), **{name: older.method for name, older in older_methods(module).items()}}
+
+
 def offered(module: str, parts: Sequence[Any]) -> tuple[list[str], list[str]]:
     """Names of the table's methods that a service of these parts answers, and those it does not."""
     table = module_methods(module)
@@ -229,7 +239,7 @@ def _checked(module: str, method: Method, target: Callable[..., Any]) -> Callabl
     def checked(*args: Any) -> Any:
         return target(*fitted(method, args, module))
 
-    return checked
+    return warning_once(module, method, checked)
 
 
 def _text(label: str, error: Exception) -> str:

@@ -22,7 +22,12 @@ from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 
 class BodyModules:
-    """Modules that tell how the robot is, and what raises their events."""
+    """Modules that tell how the robot is, and what raises their events.
+
+    Attributes:
+        power: ALBattery.
+        temperature: ALBodyTemperature.
+    """
 
     def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
         self._simulation = simulation = runner.simulation
@@ -30,8 +35,8 @@ class BodyModules:
         self._touch = touch.ALTouch(simulation.model, memory)
         self._sonar = sonar.ALSonar(runner, memory)
         gestures, stiffness = tactile_gesture.ALTactileGesture(memory), sensors.ALSensors(runner, memory)
-        power = battery.ALBattery(runner, memory)
-        temperature = body_temperature.ALBodyTemperature(runner, memory)
+        self.power = battery.ALBattery(runner, memory)
+        self.temperature = body_temperature.ALBodyTemperature(runner, memory)
         failures = diagnosis.ALDiagnosis(simulation, memory)
         pose = posture.ALRobotPose(runner)
         self._watchers = [
@@ -43,8 +48,8 @@ class BodyModules:
             stiffness,
             self._sonar,
             motion_events.DiagnosisEvents(simulation, memory),
-            power,
-            temperature,
+            self.power,
+            self.temperature,
             failures,
             motion_events.PushEvents(simulation, memory),
             pose,
@@ -56,8 +61,8 @@ class BodyModules:
             touch.FEET: [touch.EventsOnly()],
             sensors.NAME: stiffness.parts(),
             sonar.NAME: self._sonar.parts(),
-            battery.NAME: [power],
-            body_temperature.NAME: [temperature],
+            battery.NAME: [self.power],
+            body_temperature.NAME: [self.temperature],
             diagnosis.NAME: [failures],
             robot_model.NAME: [robot_model.ALRobotModel(simulation.model.version)],
             posture.POSE: [pose],

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Sequence
 
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
+from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.life import abilities as ability_names
 from nao_sim_bridge.naoqi.life import autonomous_life, awareness, movements
@@ -30,6 +31,7 @@ from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.tracker import tracking
 from nao_sim_bridge.naoqi.tracker.looking import Looking
+from nao_sim_bridge.naoqi.tracker.older_trackers import TARGETS, older_tracker
 from nao_sim_bridge.naoqi.tracker.tracker import ALTracker
 from nao_sim_bridge.naoqi.tracker.tracking import Tracking
 
@@ -37,7 +39,7 @@ STAND, STAND_SPEED = "Stand", 0.8
 
 
 class LifeModules:
-    """ALAutonomousLife, ALAutonomousMoves, ALBasicAwareness and ALTracker of one robot."""
+    """ALAutonomousLife, ALAutonomousMoves, ALBasicAwareness and ALTracker of one robot, and the older trackers."""
 
     def __init__(
         self,
@@ -76,7 +78,8 @@ class LifeModules:
         )
         launchpad = Launchpad(simulation, self._life, memory, lambda: self._awareness.human, zone)
         safeguards = Safeguards(self._life, runner, memory, wake.rest)
-        self.modules: dict[str, list[Any]] = {
+        tracker = ALTracker(self._tracking, runner)
+        self.modules: dict[str, Sequence[Any]] = {
             autonomous_life.NAME: [
                 ALAutonomousLife(self._life, running.installed, self._awareness.stimuli, runner),
                 self._life.record,
@@ -86,7 +89,8 @@ class LifeModules:
             ],
             movements.NAME: [ALAutonomousMoves(background, listening, runner)],
             awareness.NAME: [ALBasicAwareness(self._awareness, runner)],
-            tracking.NAME: [ALTracker(self._tracking, runner), Looking(self._tracking, runner)],
+            tracking.NAME: [tracker, Looking(self._tracking, runner)],
+            **{module: Later(older_tracker(module, tracker)) for module in TARGETS},
         }
 
     def close(self) -> None:

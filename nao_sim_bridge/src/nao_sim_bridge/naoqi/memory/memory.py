@@ -153,6 +153,9 @@ class ALMemory:
 
     unsubscribeToMicroEvent = unsubscribeToEvent
 
+    def subscribeOnDataChange(self, name: str, module: str, message: str, method: str) -> None:
+        self._subscribe(name, module, message, method, MICRO_EVENT, only_changes=True)
+
     def unregisterModuleReference(self, module: str) -> None:
         self._store.forget_module(module)
 
@@ -187,8 +190,15 @@ class ALMemory:
         self._store.remove(key, kind)
         self._signals.pop(key, None)
 
-    def _subscribe(self, name: str, module: str, message: str, method: str, kind: str) -> None:
+    def _subscribe(
+        self, name: str, module: str, message: str, method: str, kind: str, only_changes: bool = False
+    ) -> None:
+        told: list[Any] = []
+
         def notify(event: str, value: Any, text: str) -> None:
+            if only_changes and told == [value]:
+                return
+            told[:] = [value]
             self._broker.call(module, method, [event, value, text])
 
         self._store.subscribe(_name(name), module, notify, message, kind, by_client=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import threading
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Any, Callable, Hashable, Iterable, Mapping
+from typing import Any, Callable, Hashable, Iterable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.guard import Guard
@@ -47,11 +47,14 @@ class MemoryStore:
     """Keys and what they hold; the `clock` gives time stamps, s since 1970 (or since the start of the simulation).
 
     What is written `by_client` counts (see `MemoryRoom`), and is refused with a NaoqiError where there is no room. The
-    `guard` calls subscribers, listeners and watchers.
+    `guard` calls subscribers, listeners and watchers. An event is raised under its `older` names, too.
     """
 
-    def __init__(self, clock: Callable[[], float], guard: Guard | None = None) -> None:
+    def __init__(
+        self, clock: Callable[[], float], guard: Guard | None = None, older: Mapping[str, Sequence[str]] = {}
+    ) -> None:
         self._clock = clock
+        self._older = older
         self._guard = guard or Guard()
         self._lock = threading.RLock()
         self._entries: dict[str, _Entry] = {}
@@ -177,6 +180,8 @@ class MemoryStore:
     def raise_event(self, name: str, value: Any, by_client: bool = False) -> None:
         """Write an event and tell its subscribers."""
         self._write(name, value, EVENT, by_client)
+        for older in self._older.get(name, ()):
+            self._write(older, value, EVENT, by_client)
 
     def raise_micro_event(self, name: str, value: Any, by_client: bool = False) -> None:
         """Write a micro event and tell its subscribers."""

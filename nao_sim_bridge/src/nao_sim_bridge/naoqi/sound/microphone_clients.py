@@ -1,4 +1,7 @@
-"""Modules of clients that hear the robot's microphones: their method `processRemote` is called for each block."""
+"""Modules of clients that hear the robot's microphones: their method `processRemote` is called for each block.
+
+Modules for NAOqi before 1.12 have `processSoundRemote` instead, which gets no time.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ from nao_sim_bridge.naoqi.sound.microphone_formats import MicrophoneFormat
 
 log = logging.getLogger("nao_sim.microphones")
 
-METHOD = "processRemote"
+METHOD, OLDER_METHOD = "processRemote", "processSoundRemote"
 # Blocks that wait for a client, at 170 ms each; it loses the oldest when it is that far behind.
 WAITING = load_sizes().clients.sound_blocks
 # Wall time, s: how long one call may take before the client counts as hanging, and its time is not waited for any more.
@@ -150,6 +153,7 @@ class _Client:
         # Of the listener that counts: blocks that are to be sent together with the next ones.
         self._begun: list[Any] = []
         self._remote = remote
+        self._method = METHOD
         self._service = service
         self._ears = ears
         self._gone = gone
@@ -222,7 +226,7 @@ class _Client:
             self._news.notify_all()
 
     def _run(self) -> None:
-        _warn_of_text(self.module, self._remote)
+        self._method = _receiver(self.module, self._remote)
         while True:
             with self._news:
                 self._called = 0.0
@@ -240,7 +244,8 @@ class _Client:
         stamp = [microseconds // 1000000, microseconds % 1000000]
         frames, channels = block.samples.shape
         try:
-            call = self._remote.call(METHOD, channels, frames, stamp, wanted.packed(block.samples), _async=True)
+            when = [] if self._method == OLDER_METHOD else [stamp]
+            call = self._remote.call(self._method, channels, frames, *when, wanted.packed(block.samples), _async=True)
             answer(call, self._news, lambda: not self._ended)
             self._failing = False
         except NoAnswer as error:
@@ -250,7 +255,7 @@ class _Client:
                 self._leave(f"{self.module} is gone")
             elif not self._failing:
                 self._failing = True
-                log.warning("%s.%s failed: %s", self.module, METHOD, error)
+                log.warning("%s.%s failed: %s", self.module, self._method, error)
 
     def _leave(self, reason: str) -> None:
         if not self._ended:
@@ -272,19 +277,26 @@ def _joined(blocks: Sequence[Any]) -> Any:
     return replace(blocks[0], samples=np.concatenate([block.samples for block in blocks]))
 
 
-def _warn_of_text(module: str, remote: Any) -> None:
-    """Say it when a module would get its bytes as text: libqi's Python binding makes it of what is not declared raw."""
+def _receiver(module: str, remote: Any) -> str:
+    """The method that takes the sound.
+
+    Says it when a module would get its bytes as text: libqi's Python binding makes it of what is not declared raw.
+    """
     try:
         methods = remote.metaObject()["methods"].values()
     except RuntimeError:
-        return  # it is gone again; the first call finds out
-    signatures = [entry["parametersSignature"] for entry in methods if entry["name"] == METHOD]
-    if not signatures:
+        return METHOD  # it is gone again; the first call finds out
+    found = {name: [m["parametersSignature"] for m in methods if m["name"] == name] for name in (METHOD, OLDER_METHOD)}
+    method = next((name for name, signatures in found.items() if signatures), METHOD)
+    if not found[method]:
         log.warning("%s has no method %s to send sound to", module, METHOD)
-    elif not any("r" in signature for signature in signatures):
+    elif not any("r" in signature for signature in found[method]):
+        time_type = "" if method == OLDER_METHOD else "qi.Dynamic, "
         log.warning(
             "%s.%s does not declare its buffer as raw: a Python module gets text for it. Declare it with "
-            '@qi.bind(qi.Void, [qi.Int32, qi.Int32, qi.Dynamic, "r"]), or take ast.literal_eval(buffer)',
+            '@qi.bind(qi.Void, [qi.Int32, qi.Int32, %s"r"]), or take ast.literal_eval(buffer)',
             module,
-            METHOD,
+            method,
+            time_type,
         )
+    return method
