@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Sequence
 
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.life import abilities as ability_names
-from nao_sim_bridge.naoqi.life import autonomous_life, awareness, movements
+from nao_sim_bridge.naoqi.life import ability_modules, autonomous_life, awareness, movements
 from nao_sim_bridge.naoqi.life.abilities import Abilities
 from nao_sim_bridge.naoqi.life.autonomous_life import ALAutonomousLife
 from nao_sim_bridge.naoqi.life.awareness import Awareness
@@ -37,7 +37,7 @@ STAND, STAND_SPEED = "Stand", 0.8
 
 
 class LifeModules:
-    """ALAutonomousLife, ALAutonomousMoves, ALBasicAwareness and ALTracker of one robot."""
+    """ALAutonomousLife, the modules of its abilities, ALAutonomousMoves and ALTracker of one robot."""
 
     def __init__(
         self,
@@ -57,26 +57,29 @@ class LifeModules:
         self._awareness = Awareness(runner, memory, self._calls, lambda: bool(self._tracking.active))
         background = BackgroundMovement(simulation)
         listening = ListeningMovement(runner, memory, speech.animator)
-        speaking = SpeakingMovement(speech.speaker, speech.animator, speech.library, simulation.scene.seed)
+        speaking = SpeakingMovement(
+            speech.speaker, speech.animator, speech.library, speech.body_language, simulation.scene.seed
+        )
+        abilities = Abilities(
+            {
+                ability_names.BLINKING: Blinking(simulation).switch,
+                ability_names.BACKGROUND: background.switch,
+                ability_names.AWARENESS: self._be_aware,
+                ability_names.LISTENING: listening.switch,
+                ability_names.SPEAKING: speaking.switch,
+            }
+        )
         self._life = Life(
             simulation,
             running,
             memory,
-            Abilities(
-                {
-                    ability_names.BLINKING: Blinking(simulation).switch,
-                    ability_names.BACKGROUND: background.switch,
-                    ability_names.AWARENESS: self._be_aware,
-                    ability_names.LISTENING: listening.switch,
-                    ability_names.SPEAKING: speaking.switch,
-                }
-            ),
+            abilities,
             wake.wakeUp,
             lambda: posture.goToPosture(STAND, STAND_SPEED),
         )
         launchpad = Launchpad(simulation, self._life, memory, lambda: self._awareness.human, zone)
         safeguards = Safeguards(self._life, runner, memory, wake.rest)
-        self.modules: dict[str, list[Any]] = {
+        self.modules: dict[str, Sequence[Any]] = {
             autonomous_life.NAME: [
                 ALAutonomousLife(self._life, running.installed, self._awareness.stimuli, runner),
                 self._life.record,
@@ -85,6 +88,7 @@ class LifeModules:
                 safeguards,
             ],
             movements.NAME: [ALAutonomousMoves(background, listening, runner)],
+            **ability_modules.modules(abilities, runner, background, listening, speaking, speech),
             awareness.NAME: [ALBasicAwareness(self._awareness, runner)],
             tracking.NAME: [ALTracker(self._tracking, runner), Looking(self._tracking, runner)],
         }
