@@ -48,6 +48,8 @@ CHANGES = [
     ("ALTextToSpeech.setParameter('pitchShift', 1.5)", "ALTextToSpeech.getParameter('pitchShift')"),
     ("ALTextToSpeech.addToDictionary('nao', 'now')", ""),
     ("ALAnimatedSpeech.setBodyLanguageMode(0)", ""),
+    ("ALBackgroundMovement.setEnabled(True)", ""),
+    ("ALSpeakingMovement.setMode('random')", ""),
     ("ALAudioDevice.setOutputVolume(31)", ""),
     ("ALAudioDevice.muteAudioOut(True)", ""),
     ("ALAudioDevice.closeAudioInputs()", ""),

@@ -59,6 +59,7 @@ class AnimationLibrary:
     body_language: str
     words: dict[str, list[str]] = field(default_factory=dict)
     _tags: dict[str, list[str]] = field(default_factory=dict)
+    _own_words: dict[str, list[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for animation in self.animations.values():
@@ -99,6 +100,14 @@ class AnimationLibrary:
             if tag not in tags:
                 tags.append(tag)
 
+    def keep_words(self) -> None:
+        """What words call for now is what `forget_words` goes back to."""
+        self._own_words = {word: list(tags) for word, tags in self.words.items()}
+
+    def forget_words(self) -> None:
+        """Forget what words have been made to call for."""
+        self.words = {word: list(tags) for word, tags in self._own_words.items()}
+
 
 def load_animations() -> AnimationLibrary:
     """A library of the animations that come with the robot, which its owner may add to."""
@@ -106,6 +115,7 @@ def load_animations() -> AnimationLibrary:
     library = AnimationLibrary(dict(_shipped()), tables["body_language"])
     for tag, words in tables["words"].items():
         library.add_words(tag, words)
+    library.keep_words()
     return library
 
 

@@ -49,6 +49,11 @@ class Animator:
     def busy(self) -> bool:
         return any(move.animation is not None for move in self._moves.values())
 
+    @property
+    def plans(self) -> bool:
+        """Whether gestures are still to begin."""
+        return bool(self._planned)
+
     def running(self, animation: Animation) -> Task | None:
         return next((task for task, move in self._moves.items() if move.animation is animation), None)
 

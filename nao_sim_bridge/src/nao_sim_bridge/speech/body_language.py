@@ -17,6 +17,25 @@ QUICKEST, SLOWEST = 0.72, 1.5
 REST = 0.1
 
 
+@dataclass
+class BodyLanguage:
+    """How a robot moves while it speaks: `way` is random or contextual, and counts while it is enabled."""
+
+    way: str = CONTEXTUAL
+    enabled: bool = True
+
+    @property
+    def mode(self) -> str:
+        """One of `MODES`."""
+        return self.way if self.enabled else DISABLED
+
+    @mode.setter
+    def mode(self, mode: str) -> None:
+        self.enabled = mode != DISABLED
+        if self.enabled:
+            self.way = mode
+
+
 @dataclass(frozen=True)
 class PlannedGesture:
     """A gesture that begins `start` s after its sentence and takes `length` s."""

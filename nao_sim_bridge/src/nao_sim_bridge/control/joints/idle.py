@@ -101,6 +101,11 @@ class Idle:
     def has_mode(self, group: str, mode: Mode) -> bool:
         return all(self._chains[name].mode is mode for name in GROUPS[group])
 
+    @property
+    def breathes(self) -> bool:
+        """Whether any chain breathes now: it is free, and the robot stands."""
+        return any(chain.mode is Mode.BREATH and chain.joined is not None for chain in self._chains.values())
+
     def set_breath(self, bpm: float, amplitude: float) -> None:
         """Change the breath; fast breaths are flat: the amplitude is cut to what the frequency allows."""
         self.bpm = bpm

@@ -1,4 +1,7 @@
-"""The autonomous abilities: each may be enabled, and works while life does. Simulation thread only."""
+"""The autonomous abilities: each works while life does and it is enabled, or its own module says so.
+
+Simulation thread only, but for what is read.
+"""
 
 from __future__ import annotations
 
@@ -34,15 +37,30 @@ class Abilities:
         return all(self._enabled[one] for one in self.named(name))
 
     def enable(self, name: str, enabled: bool) -> None:
-        """Switch an ability, or all of them; an UnknownName when there is no such ability."""
+        """Let an ability, or all of them, work while life does; an UnknownName when there is no such ability."""
         for one in self.named(name):
             self._enabled[one] = enabled
-        self._update()
+            self._run(one, self._alive and enabled)
+
+    def switch(self, name: str, on: bool) -> None:
+        """Switch an ability on or off, whether there is life or not; the next state of life decides anew."""
+        self._enabled[name] = on
+        self._run(name, on)
+
+    def runs(self, name: str) -> bool:
+        """Whether an ability is switched on, by life or by itself."""
+        return self._running[name]
 
     def live(self, alive: bool) -> None:
         """Life begins or ends."""
-        self._alive = alive
-        self._update()
+        if alive != self._alive:
+            self._alive = alive
+            self.decide()
+
+    def decide(self) -> None:
+        """What is enabled works if there is life, and nothing else does."""
+        for name, enabled in self._enabled.items():
+            self._run(name, self._alive and enabled)
 
     def named(self, name: str) -> list[str]:
         """The ability of a name; "All": all of them. An UnknownName when there is no such ability."""
@@ -50,9 +68,7 @@ class Abilities:
             return list(self._abilities)
         return [known(name, "autonomous ability", [*self._abilities, ALL])]
 
-    def _update(self) -> None:
-        for name, switch in self._abilities.items():
-            wanted = self._alive and self._enabled[name]
-            if wanted != self._running[name]:
-                self._running[name] = wanted
-                switch(wanted)
+    def _run(self, name: str, wanted: bool) -> None:
+        if wanted != self._running[name]:
+            self._running[name] = wanted
+            self._abilities[name](wanted)

@@ -212,6 +212,7 @@ class Life:
         self._stacked.clear()
         if self.state != DISABLED:
             self._enter(DISABLED)
+        self.abilities.decide()
 
 
 def follow(task: Task, then: Callable[[Any], None], failed: Callable[[Exception], None]) -> None:

@@ -49,6 +49,11 @@ class BackgroundMovement:
         self._breathes = on
         self.update()
 
+    @property
+    def moves(self) -> bool:
+        """Whether the robot breathes now."""
+        return self._simulation.robot.reflexes.idle.breathes
+
     def update(self) -> None:
         mode = Mode.BREATH if self._breathes else Mode.POSTURE if self.strategy == BACK_TO_NEUTRAL else Mode.NOTHING
         self._simulation.robot.reflexes.idle.set_mode(BODY, mode)
@@ -57,9 +62,18 @@ class BackgroundMovement:
 class SpeakingMovement:
     """Moves arms and head while ALTextToSpeech speaks; gestures that ALAnimatedSpeech plans replace these."""
 
-    def __init__(self, mouth: Speaker, animator: Animator, library: AnimationLibrary, seed: int) -> None:
+    def __init__(
+        self,
+        mouth: Speaker,
+        animator: Animator,
+        library: AnimationLibrary,
+        body_language: body_language.BodyLanguage,
+        seed: int,
+    ) -> None:
+        self._mouth = mouth
         self._animator = animator
         self._library = library
+        self._body_language = body_language
         self._chance = random.Random(seed)
         self._on = False
         mouth.listeners.insert(0, self._hear)
@@ -69,13 +83,18 @@ class SpeakingMovement:
             self._animator.drop_plans()
         self._on = on
 
+    @property
+    def moves(self) -> bool:
+        """Whether the robot speaks, and moves with it."""
+        return self._mouth.speaking and (self._animator.busy or self._animator.plans)
+
     def _hear(self, event: SpeechEvent) -> None:
         if not self._on or event.kind != speaker.SENTENCE or self._animator.busy:
             return
         clip = event.value
         words = [(time, mark.text) for time, mark in clip.marks if isinstance(mark, SpokenWord)]
         self._animator.plan(
-            body_language.plan(clip.sound.duration, words, body_language.CONTEXTUAL, self._library, self._chance)
+            body_language.plan(clip.sound.duration, words, self._body_language.mode, self._library, self._chance)
         )
 
 
@@ -92,6 +111,11 @@ class ListeningMovement:
 
     def switch(self, on: bool) -> None:
         self._on = on
+
+    @property
+    def moves(self) -> bool:
+        """Whether the robot nods now."""
+        return self._animator.running(NOD) is not None
 
     def _hear(self, voice: Any) -> None:
         if not (self._on and self.enabled and voice):

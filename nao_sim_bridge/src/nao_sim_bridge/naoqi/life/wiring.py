@@ -10,7 +10,7 @@ from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.life import abilities as ability_names
-from nao_sim_bridge.naoqi.life import autonomous_life, awareness, movements
+from nao_sim_bridge.naoqi.life import ability_modules, autonomous_life, awareness, movements
 from nao_sim_bridge.naoqi.life.abilities import Abilities
 from nao_sim_bridge.naoqi.life.autonomous_life import ALAutonomousLife
 from nao_sim_bridge.naoqi.life.awareness import Awareness
@@ -39,7 +39,7 @@ STAND, STAND_SPEED = "Stand", 0.8
 
 
 class LifeModules:
-    """ALAutonomousLife, ALAutonomousMoves, ALBasicAwareness and ALTracker of one robot, and the older trackers."""
+    """ALAutonomousLife, the modules of its abilities, ALAutonomousMoves, ALTracker and the older trackers of one robot."""
 
     def __init__(
         self,
@@ -59,20 +59,23 @@ class LifeModules:
         self._awareness = Awareness(runner, memory, self._calls, lambda: bool(self._tracking.active))
         background = BackgroundMovement(simulation)
         listening = ListeningMovement(runner, memory, speech.animator)
-        speaking = SpeakingMovement(speech.speaker, speech.animator, speech.library, simulation.scene.seed)
+        speaking = SpeakingMovement(
+            speech.speaker, speech.animator, speech.library, speech.body_language, simulation.scene.seed
+        )
+        abilities = Abilities(
+            {
+                ability_names.BLINKING: Blinking(simulation).switch,
+                ability_names.BACKGROUND: background.switch,
+                ability_names.AWARENESS: self._be_aware,
+                ability_names.LISTENING: listening.switch,
+                ability_names.SPEAKING: speaking.switch,
+            }
+        )
         self._life = Life(
             simulation,
             running,
             memory,
-            Abilities(
-                {
-                    ability_names.BLINKING: Blinking(simulation).switch,
-                    ability_names.BACKGROUND: background.switch,
-                    ability_names.AWARENESS: self._be_aware,
-                    ability_names.LISTENING: listening.switch,
-                    ability_names.SPEAKING: speaking.switch,
-                }
-            ),
+            abilities,
             wake.wakeUp,
             lambda: posture.goToPosture(STAND, STAND_SPEED),
         )
@@ -88,6 +91,7 @@ class LifeModules:
                 safeguards,
             ],
             movements.NAME: [ALAutonomousMoves(background, listening, runner)],
+            **ability_modules.modules(abilities, runner, background, listening, speaking, speech),
             awareness.NAME: [ALBasicAwareness(self._awareness, runner)],
             tracking.NAME: [tracker, Looking(self._tracking, runner)],
             **{module: Later(older_tracker(module, tracker)) for module in TARGETS},

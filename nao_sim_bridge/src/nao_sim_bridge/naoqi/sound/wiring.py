@@ -21,6 +21,7 @@ from nao_sim_bridge.naoqi.speech.text_to_speech import ALTextToSpeech
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
 from nao_sim_bridge.speech.animations import load_animations
 from nao_sim_bridge.speech.animator import Animator
+from nao_sim_bridge.speech.body_language import BodyLanguage
 from nao_sim_bridge.speech.speaker import Speaker
 from nao_sim_bridge.speech.studio import Studio
 
@@ -70,6 +71,7 @@ class SpeechModules:
         self.speaker = Speaker(runner.simulation, studio)
         self.animator = Animator(runner.simulation)
         self.library = load_animations()
+        self.body_language = BodyLanguage()
         settings = VoiceSettings(studio.engines, files)
         events = SpeechEvents(memory, lambda: runner.simulation.sound.time)
         self.speaker.listeners.append(events)
@@ -84,6 +86,7 @@ class SpeechModules:
             self._call,
             self.animator,
             self.library,
+            self.body_language,
         )
         self.modules: dict[str, list[Any]] = {
             "ALTextToSpeech": [self._text_to_speech, settings],

@@ -15,7 +15,7 @@ from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
 from nao_sim_bridge.speech.animations import AnimationLibrary, read_animations
 from nao_sim_bridge.speech.animator import Animator
-from nao_sim_bridge.speech.body_language import CONTEXTUAL, DISABLED, MODES
+from nao_sim_bridge.speech.body_language import CONTEXTUAL, DISABLED, MODES, BodyLanguage
 from nao_sim_bridge.speech.speaker import Speaker
 from nao_sim_bridge.speech.studio import Studio
 
@@ -37,6 +37,7 @@ class ALAnimatedSpeech:
         call: Caller,
         animator: Animator,
         library: AnimationLibrary,
+        body_language: BodyLanguage,
     ) -> None:
         self._runner = runner
         self._memory = memory
@@ -48,15 +49,15 @@ class ALAnimatedSpeech:
         self._animator = animator
         self._library = library
         self._chance = random.Random(runner.simulation.scene.seed)
-        self._mode = CONTEXTUAL
+        self._body_language = body_language
         memory.declare_event(END, "ALAnimatedSpeech")
 
     def say(self, text: str, configuration: Any = None) -> Task:
-        return self._say(text, self._mode if configuration is None else self._configured(configuration), self._call)
+        return self._say(text, self._configured(configuration), self._call)
 
     def say_without_calls(self, text: str) -> Task:
         """What a behaviour says: instructions that call methods are left out."""
-        return self._say(text, self._mode, None)
+        return self._say(text, self._body_language.mode, None)
 
     def _say(self, text: str, mode: str, call: Caller | None) -> Task:
         talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, call)
@@ -71,21 +72,21 @@ class ALAnimatedSpeech:
     # --- body language --------------------------------------------------------------------------------------------
 
     def getBodyLanguageMode(self) -> int:
-        return MODES.index(self._mode)
+        return MODES.index(self._body_language.mode)
 
     def getBodyLanguageModeToStr(self) -> str:
-        return self._mode
+        return self._body_language.mode
 
     def setBodyLanguageMode(self, mode: int | str) -> None:
-        self._mode = _mode(mode)
+        self._body_language.mode = _mode(mode)
 
     setBodyLanguageModeFromStr = setBodyLanguageMode
 
     def isBodyLanguageEnabled(self) -> bool:
-        return self._mode != DISABLED
+        return self._body_language.enabled
 
     def setBodyLanguageEnabled(self, enable: bool) -> None:
-        self._mode = CONTEXTUAL if enable else DISABLED
+        self._body_language.mode = CONTEXTUAL if enable else DISABLED
 
     isBodyTalkEnabled, setBodyTalkEnabled = isBodyLanguageEnabled, setBodyLanguageEnabled
 
@@ -96,19 +97,21 @@ class ALAnimatedSpeech:
         self._library.add(read_animations(self._files.to_read(f"{name}.json")).values())
 
     def declareTagForAnimations(self, tags: Any) -> None:
-        for tag, names in _lists(tags, "tagsToAnimations").items():
+        for tag, names in lists_by_tag(tags, "tagsToAnimations").items():
             for name in names:
                 one_of(name, "animation", self._library.animations)
             self._library.add_tag(tag, names)
 
     def addTagsToWords(self, tags: Any) -> None:
-        for tag, words in _lists(tags, "tagsToWords").items():
+        for tag, words in lists_by_tag(tags, "tagsToWords").items():
             self._library.add_words(tag, words)
 
     def _configured(self, configuration: Any) -> str:
+        if configuration is None:
+            return self._body_language.mode
         if not isinstance(configuration, Mapping) or set(configuration) - {MODE_KEY}:
             raise BadValue("configuration", configuration, f'a map like {{"{MODE_KEY}": "{CONTEXTUAL}"}}')
-        return _mode(configuration[MODE_KEY]) if configuration else self._mode
+        return _mode(configuration[MODE_KEY]) if configuration else self._body_language.mode
 
 
 def _mode(value: Any) -> str:
@@ -121,7 +124,8 @@ def _mode(value: Any) -> str:
     raise BadValue(MODE_KEY, value, f"one of {names}")
 
 
-def _lists(value: Any, field: str) -> dict[str, list[str]]:
+def lists_by_tag(value: Any, field: str) -> dict[str, list[str]]:
+    """Lists of texts by tag, as clients send them; a BadValue when it is something else."""
     if not isinstance(value, Mapping):
         raise BadValue(field, value, "a map of tags to lists")
     for tag, names in value.items():

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable
+from typing import Any, Callable, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.settings import CAMERA_NAMES
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.vision import face_detection, movement_detection
+from nao_sim_bridge.naoqi.vision import color_blob_detection, face_detection, light_detection, movement_detection
 from nao_sim_bridge.naoqi.vision.vision_extractor import Sight, VisionExtractor, in_picture
 from nao_sim_bridge.naoqi.vision.watching import QVGA, TOP, Watching
 from nao_sim_bridge.vision.ball import Ball
@@ -100,6 +101,29 @@ DETECTIONS = (
 )
 
 
+@dataclass(frozen=True)
+class Rare:
+    """An extractor that few ask for, made when it is first called: what makes it, and what it raises and writes.
+
+    What is made has a `watching`, and ends it in `close()`.
+    """
+
+    make: Callable[[Simulation, MemoryStore, VisionProcess], Any]
+    events: Tuple[str, ...]
+    keys: Tuple[str, ...] = ()
+
+
+RARE: Mapping[str, Rare] = {
+    color_blob_detection.NAME: Rare(color_blob_detection.ALColorBlobDetection, (color_blob_detection.EVENT,)),
+    light_detection.DARKNESS: Rare(
+        light_detection.ALDarknessDetection, (light_detection.DARK,), (light_detection.DARKNESS_VALUE,)
+    ),
+    light_detection.BACKLIGHTING: Rare(
+        light_detection.ALBacklightingDetection, (light_detection.BACKLIGHT,), (light_detection.BACKLIGHT_VALUE,)
+    ),
+}
+
+
 class VisionModules:
     """The modules that look through the cameras of one robot; their process starts with the first subscriber."""
 
@@ -108,19 +132,30 @@ class VisionModules:
         movement = movement_detection.ALMovementDetection(simulation, memory, process)
         self._learner = faces.learner
         self._watchings: list[Watching] = []
-        self.modules: dict[str, list[Any]] = {}
+        self.modules: dict[str, Sequence[Any]] = {}
 
-        def add(module: str, own: list[Any], watching: Watching, *events_and_keys: list[str]) -> None:
+        def parts(module: str, own: list[Any], watching: Watching, *events_and_keys: Sequence[str]) -> list[Any]:
             work = (watching.start, watching.stop)
             extractor = Extractor(module, memory, *work, *events_and_keys, changed=watching.changed)
-            self.modules[module] = [*own, VisionExtractor(watching, simulation.cameras.tables), extractor]
+            return [*own, VisionExtractor(watching, simulation.cameras.tables), extractor]
+
+        def add(module: str, own: list[Any], watching: Watching, *events_and_keys: Sequence[str]) -> None:
+            self.modules[module] = parts(module, own, watching, *events_and_keys)
             self._watchings.append(watching)
+
+        def later(module: str, rare: Rare) -> Later:
+            def make() -> list[Any]:
+                made = rare.make(simulation, memory, process)
+                return parts(module, [made], made.watching, rare.events, rare.keys)
+
+            return Later(make)
 
         for one in DETECTIONS:
             add(one.module, [], one.watching(simulation, memory, process), [one.event])
         add(face_detection.NAME, [faces], faces.watching, [face_detection.EVENT])
         events, keys = movement_detection.EVENTS, [movement_detection.INFO]
         add(movement_detection.NAME, [movement], movement.watching, events, keys)
+        self.modules.update((module, later(module, rare)) for module, rare in RARE.items())
 
     def closing(self) -> list[Callable[[], None]]:
         """Steps after which nothing is looked at any more; blocking."""
