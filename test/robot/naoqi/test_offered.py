@@ -21,6 +21,7 @@ ELSEWHERE = {
     "ALSpeechRecognition": "activateAllRules activateRule addContext addWordListToSlot compile deactivateAllRules "
     "deactivateRule getContextParam getRules loadContextSet loadVocabulary popContexts removeContext "
     "removeWordListFromSlot setContextParam",
+    "ALPreferenceManager": "importPrefFile update",
     "ALSystem": "changePassword factoryReset setRobotIcon shutdown upgrade",
     "DCM": "calibration special",
     "ALVideoDevice": "getDirectRawImageLocal getDirectRawImagesLocal getImageLocal getImagesLocal",
