@@ -21,12 +21,13 @@ PREFERENCE_SIGNALS = {
 
 
 class SystemModules:
-    """ALPreferenceManager, ALPreferences and their like of one robot."""
+    """ALPreferenceManager, ALKnowledge and their like of one robot."""
 
     def __init__(self, files: ClientFiles, memory: MemoryStore) -> None:
         self.modules: dict[str, Later] = {}
         self._add("ALPreferenceManager", "preference_manager", files, memory, signals=PREFERENCE_SIGNALS)
         self._add("ALPreferences", "preference_files", files, memory)
+        self._add("ALKnowledge", "knowledge", files)
 
     def _add(self, module: str, file: str, *arguments: Any, signals: Mapping[str, str] | None = None) -> None:
         """Add a module, the class of its name in a file beside this one; it is given its signals last, if any."""
