@@ -22,6 +22,7 @@ ELSEWHERE = {
     "deactivateRule getContextParam getRules loadContextSet loadVocabulary popContexts removeContext "
     "removeWordListFromSlot setContextParam",
     "ALPreferenceManager": "importPrefFile update",
+    "ALLogger": "logInForwarder logInSys",
     "ALSystem": "changePassword factoryReset setRobotIcon shutdown upgrade",
     "DCM": "calibration special",
     "ALVideoDevice": "getDirectRawImageLocal getDirectRawImagesLocal getImageLocal getImagesLocal",

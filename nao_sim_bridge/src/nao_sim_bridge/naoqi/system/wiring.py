@@ -28,6 +28,7 @@ class SystemModules:
         self._add("ALPreferenceManager", "preference_manager", files, memory, signals=PREFERENCE_SIGNALS)
         self._add("ALPreferences", "preference_files", files, memory)
         self._add("ALKnowledge", "knowledge", files)
+        self._add("ALLogger", "logger", files)
 
     def _add(self, module: str, file: str, *arguments: Any, signals: Mapping[str, str] | None = None) -> None:
         """Add a module, the class of its name in a file beside this one; it is given its signals last, if any."""
