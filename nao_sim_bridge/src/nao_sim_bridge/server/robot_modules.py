@@ -132,7 +132,7 @@ class RobotModules:
             FILMS: [ALVideoRecorder(self._recorder, files, cameras.tables)],
             **self._body.modules,
             "ALSystem": [system(memory, zone)],
-            **SystemModules(files, memory).modules,
+            **SystemModules(simulation, broker, files, memory).modules,
         }
 
     def begin(self) -> None:

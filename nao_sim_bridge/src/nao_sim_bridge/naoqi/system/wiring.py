@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any, Mapping
 
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.binding.signals import Signals
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -23,12 +24,13 @@ PREFERENCE_SIGNALS = {
 class SystemModules:
     """ALPreferenceManager, ALKnowledge and their like of one robot."""
 
-    def __init__(self, files: ClientFiles, memory: MemoryStore) -> None:
+    def __init__(self, simulation: Simulation, broker: Any, files: ClientFiles, memory: MemoryStore) -> None:
         self.modules: dict[str, Later] = {}
         self._add("ALPreferenceManager", "preference_manager", files, memory, signals=PREFERENCE_SIGNALS)
         self._add("ALPreferences", "preference_files", files, memory)
         self._add("ALKnowledge", "knowledge", files)
         self._add("ALLogger", "logger", files)
+        self._add("ALResourceManager", "resource_manager", simulation, broker)
 
     def _add(self, module: str, file: str, *arguments: Any, signals: Mapping[str, str] | None = None) -> None:
         """Add a module, the class of its name in a file beside this one; it is given its signals last, if any."""
