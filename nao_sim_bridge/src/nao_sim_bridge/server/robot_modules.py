@@ -132,7 +132,7 @@ class RobotModules:
             FILMS: [ALVideoRecorder(self._recorder, files, cameras.tables)],
             **self._body.modules,
             "ALSystem": [system(memory, zone)],
-            **SystemModules(simulation, broker, files, memory).modules,
+            **SystemModules(simulation, broker, files, memory, self.speech.say).modules,
         }
 
     def begin(self) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any, Mapping
+from typing import Any, Callable, Mapping
 
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.binding.signals import Signals
@@ -24,12 +25,20 @@ PREFERENCE_SIGNALS = {
 class SystemModules:
     """ALPreferenceManager, ALKnowledge and their like of one robot."""
 
-    def __init__(self, simulation: Simulation, broker: Any, files: ClientFiles, memory: MemoryStore) -> None:
+    def __init__(
+        self,
+        simulation: Simulation,
+        broker: Any,
+        files: ClientFiles,
+        memory: MemoryStore,
+        say: Callable[[str], Task],
+    ) -> None:
         self.modules: dict[str, Later] = {}
         self._add("ALPreferenceManager", "preference_manager", files, memory, signals=PREFERENCE_SIGNALS)
         self._add("ALPreferences", "preference_files", files, memory)
         self._add("ALKnowledge", "knowledge", files)
         self._add("ALLogger", "logger", files)
+        self._add("ALNotificationManager", "notification_manager", memory, say)
         self._add("ALResourceManager", "resource_manager", simulation, broker)
 
     def _add(self, module: str, file: str, *arguments: Any, signals: Mapping[str, str] | None = None) -> None:
