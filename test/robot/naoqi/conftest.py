@@ -70,12 +70,16 @@ class Listener:
     """A module of a client that events call back, and that has signals."""
 
     def __init__(self):
-        self.heard = queue.Queue()
+        self.heard, self.conflicts = queue.Queue(), queue.Queue()
         self.touched, self.moved = qi.Signal("(i)"), qi.Signal("(ii)")
 
     @qi.bind(qi.Void, [qi.String, qi.Dynamic, qi.String])
     def onEvent(self, name, value, message):
         self.heard.put((name, value, message))
+
+    @qi.bind(qi.Void, [qi.String, qi.String])
+    def onConflict(self, resource, owner):
+        self.conflicts.put((resource, owner))
 
     def next(self):
         """Name, value and message of the next call."""

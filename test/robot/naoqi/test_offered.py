@@ -22,6 +22,8 @@ ELSEWHERE = {
     "ALSpeechRecognition": "activateAllRules activateRule addContext addWordListToSlot compile deactivateAllRules "
     "deactivateRule getContextParam getRules loadContextSet loadVocabulary popContexts removeContext "
     "removeWordListFromSlot setContextParam",
+    "ALPreferenceManager": "importPrefFile update",
+    "ALLogger": "logInForwarder logInSys",
     "ALSystem": "changePassword factoryReset setRobotIcon shutdown upgrade",
     "DCM": "calibration special",
     "ALVideoDevice": "getDirectRawImageLocal getDirectRawImagesLocal getImageLocal getImagesLocal",

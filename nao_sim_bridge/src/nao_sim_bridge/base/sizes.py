@@ -161,6 +161,18 @@ class BehaviorSizes:
 
 
 @dataclass(frozen=True)
+class KeptSizes:
+    """Of what clients have the robot keep in files of its own and in lists; the file says what each is."""
+
+    file_bytes: int
+    log_bytes: int
+    triples: int
+    resources: int
+    notifications: int
+    users: int
+
+
+@dataclass(frozen=True)
 class FilmSizes:
     """Of what is written into a film."""
 
@@ -186,6 +198,7 @@ class Sizes:
     speech: SpeechSizes
     vocabulary: VocabularySizes
     behaviors: BehaviorSizes
+    kept: KeptSizes
     film: FilmSizes
 
 

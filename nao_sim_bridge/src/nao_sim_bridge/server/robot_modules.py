@@ -38,6 +38,7 @@ from nao_sim_bridge.naoqi.speech.speech_recognition import ALSpeechRecognition
 from nao_sim_bridge.naoqi.system import sentinel
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
+from nao_sim_bridge.naoqi.system.wiring import SystemModules
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
 from nao_sim_bridge.server.film import END_LIMIT
 from nao_sim_bridge.server.film_control import FilmControl
@@ -142,6 +143,7 @@ class RobotModules:
                 ]
             ),
             "ALSystem": [of_robot],
+            **SystemModules(simulation, broker, files, memory, self.speech.say).modules,
         }
 
     def begin(self) -> None:

@@ -46,7 +46,7 @@ class Service:
         module: A key of the API table.
         parts: Objects whose methods do the work; those with the names of the table are published. One with an attribute
             `signals` publishes these libqi signals, by name; it has to keep them in `take_over(former)`. Of parts that
-            are made `Later` all of the table is published, and no signals.
+            are made `Later` all of the table is published, and the signals that they are given.
         broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
     """
 
@@ -66,15 +66,19 @@ class Service:
                     body[name if position == 0 else f"{name}_{position}"] = call
         body["pCall"] = self._published("pCall", inspect.getdoc(CommonModule.pCall), qi.Dynamic, qi.AnyArguments)
         self.object = type(module, (), body)()
-        for part in made(parts):
-            for name, signal in getattr(part, "signals", {}).items():
-                setattr(self.object, name, signal)
+        signals = [getattr(part, "signals", {}) for part in made(parts)]
+        if isinstance(parts, Later) and parts.signals is not None:
+            signals = [parts.signals.published]
+        for name, signal in (entry for one in signals for entry in one.items()):
+            setattr(self.object, name, signal)
 
     def rebind(self, parts: Sequence[Any]) -> Callable[[], None]:
         """Have other objects of the same kinds do the work from now on.
 
         What it returns is to be called when the former ones do nothing any more: it ends calls that wait for them.
         """
+        if isinstance(parts, Later) and isinstance(self._parts, Later) and parts.signals and self._parts.signals:
+            parts.signals.take_over(self._parts.signals)
         for part in made(parts):
             if hasattr(part, "take_over"):
                 part.take_over(next(former for former in self._parts if type(former) is type(part)))

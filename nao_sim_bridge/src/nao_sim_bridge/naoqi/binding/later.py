@@ -6,6 +6,8 @@ import threading
 from collections.abc import Sequence
 from typing import Any, Callable
 
+from nao_sim_bridge.naoqi.binding.signals import Signals
+
 
 class Later(Sequence):
     """The parts of a module, made when the first of its methods is called, in the thread of that call.
@@ -13,11 +15,15 @@ class Later(Sequence):
     The service of such a module publishes all methods of its table, as none of its parts is there to be looked at; they
     have to have them all.
 
+    Attributes:
+        signals: What the service publishes beside its methods, and the parts raise; None for nothing.
+
     Args:
         make: Makes the parts, once; when it raises, that call fails and the next one tries again.
     """
 
-    def __init__(self, make: Callable[[], Sequence[Any]]) -> None:
+    def __init__(self, make: Callable[[], Sequence[Any]], signals: Signals | None = None) -> None:
+        self.signals = signals
         self._make = make
         self._parts: Sequence[Any] | None = None
         self._lock = threading.RLock()

@@ -1,0 +1,93 @@
+"""ALResourceManager: programs agree on who has which part of the robot."""
+
+import pytest
+from simulator import PATIENCE
+
+MANAGER = "ALResourceManager"
+
+
+@pytest.fixture
+def manager(robot):
+    return robot.ALResourceManager
+
+
+def test_the_robot_has_resources_in_each_other(manager):
+    names = dict(manager.getResources())
+    assert [chain for chain, _ in names["Motors"]] == ["Head", "LArm", "LLeg", "RLeg", "RArm"]
+    assert manager.isInGroup("Motors", "HeadYaw") and manager.isInGroup("Audio", "Audio player")
+    assert manager.isInGroup("Audio", "HeadYaw") is False
+    manager.createResource("Ball", "")
+    manager.createResourcesList(["Red ball", "Blue ball"], "Ball")
+    assert manager.getResources()[-1] == ["Ball", [["Red ball", []], ["Blue ball", []]]]
+    manager.deleteResource("Ball", True)
+
+
+def test_a_resource_is_had_until_it_is_released(manager):
+    assert manager.areResourcesFree(["Head", "Leds"]) is True
+    manager.acquireResource("Head", "dance", "", 0)
+    assert manager.isResourceFree("HeadYaw") is False and manager.areResourcesOwnedBy(["HeadYaw"], "dance") is True
+    assert manager.ownersGet() == [["Head", "dance"]]
+    with pytest.raises(RuntimeError, match="acquireResourcesTree Head belongs to dance"):
+        manager.acquireResourcesTree(["Leds", "Motors"], "look", "", 0)
+    assert manager.areResourcesFree(["Leds"]) is True
+    manager.releaseResource("Head", "dance")
+    manager.acquireResourcesTree(["Leds", "Motors"], "look", "", 0)
+    assert manager.waitForOptionalResourcesTree(["Cameras"], "dance", "", 0, ["Leds", "Stiffness"]) == ["Stiffness"]
+    manager.releaseResources(["Leds", "Motors"], "look")
+
+
+def test_who_waits_gets_it_when_it_is_free_first_come_first_served(manager, robot, begin):
+    manager.acquireResource("Head", "dance", "", 0)
+    first, second = (begin(MANAGER, "acquireResource", "HeadYaw", owner, "", -1, after=0.1) for owner in "ab")
+    assert first.isRunning() and second.isRunning()
+    manager.releaseResource("Head", "dance")
+    assert robot.answer(first) is None and second.isRunning()
+    manager.releaseResource("HeadYaw", "a")
+    assert robot.answer(second) is None and manager.ownersGet() == [["HeadYaw", "b"]]
+
+
+def test_the_timeout_is_in_simulated_time_and_a_wait_can_be_cancelled(manager, robot, begin):
+    manager.acquireResource("Leds", "dance", "", 0)
+    waiting = begin(MANAGER, "acquireResource", "FaceLeds", "look", "", 2, after=1.9)
+    assert waiting.isRunning()
+    robot.advance(0.2)
+    with pytest.raises(RuntimeError, match="acquireResource Leds belongs to dance still after the timeout"):
+        robot.answer(waiting)
+    cancelled = begin(MANAGER, "acquireResource", "FaceLeds", "look", "", -1)
+    cancelled.cancel()
+    assert cancelled.wait(int(1000 * PATIENCE)) is not None and cancelled.isCanceled()
+    manager.releaseResource("Leds", "dance")
+    assert manager.ownersGet() == []
+
+
+def test_a_disabled_state_is_waited_for(manager, robot, begin):
+    manager.enableStateResource("Standing", False)
+    waiting = begin(MANAGER, "acquireResource", "Standing", "walk", "", -1, after=0.1)
+    assert waiting.isRunning() and manager.checkStateResourceFree(["Standing"]) is False
+    manager.enableStateResource("Standing", True)
+    assert robot.answer(waiting) is None
+
+
+def test_the_owner_is_asked_by_its_callback_and_may_release(manager, robot, listener, begin):
+    manager.acquireResource("Head", "Listener", "onConflict", 0)
+    waiting = begin(MANAGER, "acquireResource", "HeadYaw", "look", "", -1)
+    assert listener.conflicts.get(timeout=PATIENCE) == ("Head", "Listener")
+    manager.releaseResource("Head", "Listener")
+    assert robot.answer(waiting) is None
+
+
+def test_a_module_that_has_left_has_nothing(manager, robot, begin):
+    manager.acquireResource("Head", "dance", "", 0)
+    waiting = begin(MANAGER, "acquireResource", "HeadYaw", "look", "", -1)
+    robot.server._robot.client_gone("dance")
+    assert robot.answer(waiting) is None and manager.ownersGet() == [["HeadYaw", "look"]]
+
+
+def test_what_cannot_be_had_is_refused(refuses):
+    refuses(MANAGER, """
+        acquireResource('Hed', 'look', '', 0) -> unknown resource 'Hed': did you mean 'Head'
+        acquireResource('Head', '', '', 0) -> moduleName is '', allowed is the name of the module
+        releaseResource('Head', 'look') -> Head belongs to nobody, not to look
+        deleteResource('Head') -> Head comes with the robot
+        createResource('Head', '') -> resourceName is 'Head', allowed is a name that no resource has
+    """)  # fmt: skip
