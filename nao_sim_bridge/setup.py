@@ -16,7 +16,7 @@ setup(
     package_data={
         "nao_sim_bridge": [
             str(path.relative_to(PACKAGE))
-            for folder in ("config", "worlds", "sounds")
+            for folder in ("config", "worlds", "sounds", "robot_files")
             for path in sorted((PACKAGE / folder).rglob("*"))
             if path.is_file()
         ]

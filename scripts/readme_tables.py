@@ -26,6 +26,8 @@ from nao_library_modules.functions.describe import NO_UNIT, Described, Descripti
 from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_modules.functions.message_fields import read_fields
 from nao_library_modules.vision.capture.pictures import size_rows as sizes_of_pictures
+from nao_sim_bridge.base.config import robot_files_directory
+from nao_sim_bridge.base.record_dir import load_places
 from nao_sim_bridge.base.sizes import size_rows as sizes_of_simulator
 from nao_sim_bridge.naoqi.binding.binding import offered
 from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
@@ -284,6 +286,18 @@ def simulator_only() -> str:
     return table(("method", "what it does"), rows)
 
 
+def robot_files() -> str:
+    """The robot's places, where they are in `record_dir`, and what comes along in them."""
+    rows = []
+    for place in load_places():
+        folder = robot_files_directory() / place.path.lstrip("/")
+        ours = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+        there = "" if place.folder == "." else f"/{place.folder}"
+        names = places(place.other_names) if place.other_names else ""
+        rows.append((code(place.path), names, code(f"record_dir{there}"), places(ours) if ours else ""))
+    return table(("on the robot", "also called", "on this computer", "comes along"), rows)
+
+
 def naoqi_methods() -> str:
     """How many methods of each of NAOqi's modules the simulator answers."""
     server = SimulatorServer(ServerOptions(port=0))
@@ -343,6 +357,7 @@ def all_tables() -> dict[str, str]:
         "sizes": sizes(),
         "simulator options": simulator_options(),
         "simulator only": simulator_only(),
+        "robot files": robot_files(),
         "naoqi": naoqi_methods(),
     }
 

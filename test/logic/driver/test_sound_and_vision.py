@@ -37,6 +37,8 @@ def refused(words, function, *arguments, error=NaoError, **more):
 def test_a_recording_in_the_words_of_naoqi_and_files_are_in_the_home_of_the_robot():
     for name in ("music/rock.ogg", "/music/rock.ogg", "/home/nao/music/rock.ogg", "music/../music/rock.ogg"):
         assert file_on_robot(name) == "/home/nao/music/rock.ogg"
+    for name in ("/usr/share/naoqi/wav/random.wav", "/tmp/a.wav"):
+        assert file_on_robot(name) == name
     for name in ("", "../etc/passwd", "/home/nao/../root/a/../../..", "a/", "a\0b"):
         refused("file_path", file_on_robot, name, error=BadGoal)
     request = read_recording("day/one", 5, 1, (False, False, True, False), 16000)
@@ -53,6 +55,7 @@ def test_a_recording_in_the_words_of_naoqi_and_files_are_in_the_home_of_the_robo
     ):
         refused(field, read_recording, "a.wav", error=BadGoal, **{**good, **change})
     refused("secs", read_recording, "a.wav", error=BadGoal, **{**good, "seconds": 3601})
+    assert read_recording("/usr/share/naoqi/a.wav", **good).file == "/home/nao/usr/share/naoqi/a.wav"
     refused("master_volume", read_volume, 101, error=BadGoal)
 
 

@@ -33,9 +33,15 @@ def photos(robot):
 
 
 @pytest.fixture
-def take(robot, photos):
-    """Takes a picture of a name; its path."""
-    return lambda name, after=0.2: robot.finish("ALPhotoCapture", "takePicture", "photos", name, after=after)[0]
+def here(robot):
+    """Path on this computer of a file whose path on the robot was answered, as text."""
+    return lambda answered: str(robot.server.files.to_read(answered))
+
+
+@pytest.fixture
+def take(robot, photos, here):
+    """Takes a picture of a name; its path here."""
+    return lambda name, after=0.2: here(robot.finish("ALPhotoCapture", "takePicture", "photos", name, after=after)[0])
 
 
 def test_pictures_have_the_size_that_was_set_and_show_what_the_cameras_see(photos, take, folder):
@@ -71,10 +77,10 @@ def test_a_series_takes_its_time_and_is_numbered(robot, photos, folder):
     robot.advance(0.59)
     assert future.isRunning()
     robot.advance(0.05)
-    assert robot.answer(future) == [[str(folder / "series" / f"day_{number}.jpg") for number in range(3)]]
+    assert robot.answer(future) == [[f"/home/nao/series/day_{number}.jpg" for number in range(3)]]
     assert sorted(path.name for path in (folder / "series").iterdir()) == ["day_0.jpg", "day_1.jpg", "day_2.jpg"]
     alone = robot.finish("ALPhotoCapture", "takePictures", 1, "", "alone.jpg", after=0.1)
-    assert alone == [[str(folder / "alone.jpg")]]
+    assert alone == [["/home/nao/alone.jpg"]]
 
 
 def test_what_is_there_already_is_kept_when_it_must_not_be_overwritten(robot, photos, folder):
@@ -138,7 +144,7 @@ def read(path):
     [("MJPG", 1, 30, 0, ("mjpeg", (320, 240), 30, 30)), ("IYUV", 0, 10, 13, ("rawvideo", (160, 120), 10, 10))]
     + [("MJPG", 0, 4.5, 13, ("mjpeg", (160, 120), 4.5, 5)), ("MJPG", 2, 30, 13, ("mjpeg", (640, 480), 15, 15))],
 )
-def test_a_film_has_a_frame_for_each_period_that_it_lasted(robot, films, kind, resolution, rate, space, recorded):
+def test_a_film_has_a_frame_for_each_period_that_it_lasted(robot, films, kind, resolution, rate, space, recorded, here):
     films.setVideoFormat(kind)
     films.setResolution(resolution)
     films.setColorSpace(space)
@@ -149,11 +155,11 @@ def test_a_film_has_a_frame_for_each_period_that_it_lasted(robot, films, kind, r
     robot.advance(1.0)
     frames, path = films.stopRecording()
     assert not films.isRecording()
-    assert path == str(robot.server.files.folder / "films" / "one.avi")
-    assert read(path) == recorded and frames == recorded[3]
+    assert path == "/home/nao/films/one.avi"
+    assert read(here(path)) == recorded and frames == recorded[3]
 
 
-def test_a_recording_goes_through_a_reset_and_there_is_one_at_a_time(robot, films, folder):
+def test_a_recording_goes_through_a_reset_and_there_is_one_at_a_time(robot, films, folder, here):
     films.startRecording("films", "first")
     with pytest.raises(RuntimeError, match="first.avi' is under way; stop it first"):
         films.startRecording("films", "second")
@@ -162,11 +168,11 @@ def test_a_recording_goes_through_a_reset_and_there_is_one_at_a_time(robot, film
     robot.NaoSimulation.reset()
     robot.advance(0.2)
     frames, path = films.stopRecording()
-    assert (frames, read(path)[3]) == (6, 6)
+    assert (frames, read(here(path))[3]) == (6, 6)
     assert films.stopRecording() == [0, ""]
 
 
-def test_a_film_that_is_there_is_kept_when_it_must_not_be_overwritten(robot, films, folder):
+def test_a_film_that_is_there_is_kept_when_it_must_not_be_overwritten(robot, films, folder, here):
     path = folder / "kept.avi"
     path.write_bytes(b"old")
     with pytest.raises(RuntimeError, match="kept.avi' exists already, and is not to be overwritten"):
@@ -174,7 +180,7 @@ def test_a_film_that_is_there_is_kept_when_it_must_not_be_overwritten(robot, fil
     assert path.read_bytes() == b"old"
     films.startRecording("", "kept", True)
     robot.advance(0.2)
-    assert read(films.stopRecording()[1])[3] == 3
+    assert read(here(films.stopRecording()[1]))[3] == 3
 
 
 def test_what_films_cannot_be_is_refused_with_what_they_can(films):

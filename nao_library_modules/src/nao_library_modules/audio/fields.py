@@ -9,6 +9,7 @@ from typing import List
 from ..base.errors import BadGoal
 from ..base.field_checks import CONTROL, LONGEST_NAME, require_known, require_text
 from ..functions.fields import Annotated, Field, flag, free, whole, word
+from ..nao.robot_files import READ, is_in
 
 OUTPUT_RATES = (16000, 22050, 44100, 48000)
 RATES = f"one of {', '.join(map(str, OUTPUT_RATES))} (Hz)"
@@ -18,20 +19,24 @@ SET_PARAMETERS = DEVICE_PARAMETERS[:1]
 SETTABLE = "parameter of ALAudioDevice that can be set"
 SOUND_FILES = (".wav", ".ogg", ".flac", ".mp3")
 """What the robot plays."""
-HOME = "/home/nao/"
-"""Folder of the robot's user: absolute file names lead there."""
 
 
-def require_file(field: str, name: str, suffixes: Sequence[str]) -> str:
-    """Name of a file on the robot: relative, or in the home folder of its user; whether it is there the robot knows.
+def require_file(field: str, name: str, suffixes: Sequence[str], folders: Sequence[str] = READ) -> str:
+    """Name of a file on the robot: relative to the home of its user, or in one of the folders; the robot knows it.
 
-    `suffixes`: allowed ends of the name, in lower case: ".wav". Returns the name without blanks around it.
+    Args:
+        field: Of the message, for refusals.
+        name: As it was given.
+        suffixes: Allowed ends of the name, in lower case: ".wav".
+        folders: Where absolute names may lead.
+
+    Returns the name without blanks around it.
     """
     path = require_text(field, name, "the name of a file")
-    allowed = allowed_files(suffixes)
+    allowed = allowed_files(suffixes, folders)
     if CONTROL.search(path):
         raise BadGoal(field, name, allowed, problem=f"{name!r} has characters that names do not have")
-    if ".." in PurePosixPath(path).parts or (path.startswith("/") and not path.startswith(HOME)):
+    if ".." in PurePosixPath(path).parts or (path.startswith("/") and not is_in(path, folders)):
         raise BadGoal(field, name, allowed, problem=f"{name!r} leads out of the folder for sounds")
     if path.startswith("~") or "\\" in path:
         raise BadGoal(field, name, allowed, problem=f"{name!r} is not the name of a file")
@@ -42,9 +47,9 @@ def require_file(field: str, name: str, suffixes: Sequence[str]) -> str:
     return path
 
 
-def allowed_files(suffixes: Sequence[str]) -> str:
+def allowed_files(suffixes: Sequence[str], folders: Sequence[str] = READ) -> str:
     """What `require_file` takes, in words."""
-    return f"a relative name or one in {HOME}, without '..', that ends in {', '.join(suffixes)}"
+    return f"a relative name or one in {' or '.join(folders)}, without '..', that ends in {', '.join(suffixes)}"
 
 
 def require_rate(field: str, values: Sequence[float]) -> None:
@@ -59,9 +64,10 @@ def check_device_setting(str_param: str, values: Sequence[float]) -> None:
     require_rate("values", values)
 
 
-def file_of_kind(suffixes: Sequence[str], meaning: str) -> Field:
+def file_of_kind(suffixes: Sequence[str], meaning: str, folders: Sequence[str] = READ) -> Field:
     """Name of a file on the robot, as `require_file` takes it."""
-    return free(meaning, allowed=allowed_files(suffixes), check=lambda name, value: require_file(name, value, suffixes))
+    allowed = allowed_files(suffixes, folders)
+    return free(meaning, allowed=allowed, check=lambda name, value: require_file(name, value, suffixes, folders))
 
 
 OutputVolume = Annotated[float, whole(0, 100, "volume of everything that sounds", "(%)").but(unit="%")]

@@ -14,6 +14,7 @@ from ..base.field_checks import require_known
 from ..base.limits import limit
 from ..functions.describe_choices import HEARD_LANGUAGES
 from ..functions.fields import Annotated, Field, flag, free, number, numbers, text, word
+from ..nao.robot_files import WRITTEN
 
 MICROPHONES = ("left", "right", "front", "rear")
 """In the order in which NAOqi has them in recordings."""
@@ -152,7 +153,7 @@ _WAITS = f"up to {limit('timeout').highest:g} s, or 0 for the default"
 _TIME = number("timeout", "time of the mean; 0: the latest value")
 
 # Recordings
-RecordingFile = Annotated[str, file_of_kind([f".{kind}" for kind in FILE_TYPES], "file to write")]
+RecordingFile = Annotated[str, file_of_kind([f".{kind}" for kind in FILE_TYPES], "file to write", WRITTEN)]
 HeardFile = Annotated[str, file_of_kind(SOUND_FILES, "file to hear")]
 RecordingRate = Annotated[
     int, free("sample rate; 0: as the channels need", "Hz", allowed=RECORDING_RATES, check=_require_rate)

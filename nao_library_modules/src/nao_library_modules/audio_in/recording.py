@@ -15,11 +15,11 @@ import soundfile
 from nao_library_msgs.msg import RecordedFile
 from naoqi.errors import NaoError, RobotError
 
-from ..audio.fields import HOME
 from ..audio.sound_card import NaoAudio
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by
 from ..functions.parts import Part
+from ..nao.robot_files import HOME, full_path, is_in
 from ..server.nao_basic import NaoBasic
 from .fields import (
     MICROPHONES,
@@ -42,11 +42,6 @@ RECORDING = "recording"
 """Status in the feedback."""
 
 
-def robot_path(name: str) -> str:
-    """Path of a file on the robot: relative names are in the home folder of its user."""
-    return name if name.startswith("/") else HOME + name
-
-
 def _further(path: PurePosixPath) -> PurePosixPath:
     """Name of the file that a recording goes on in."""
     return path.with_name(f"{path.stem}-2{path.suffix}")
@@ -55,7 +50,7 @@ def _further(path: PurePosixPath) -> PurePosixPath:
 def _arguments(recording: Recording) -> list[Any]:
     """Arguments of `ALAudioRecorder.startMicrophonesRecording`."""
     flags = [int(microphone in recording.channels) for microphone in MICROPHONES]
-    return [robot_path(recording.path), recording.file_type, recording.rate, flags]
+    return [full_path(recording.path), recording.file_type, recording.rate, flags]
 
 
 def length_of(file: Path) -> float | None:
@@ -142,7 +137,7 @@ class SoundRecordingFunctions(Part):
 
     def set_file_as_input(self, str_param: HeardFile) -> None:
         """Have the robot hear a file instead of its microphones."""
-        self._card.device("setFileAsInput", robot_path(str_param.strip()))
+        self._card.device("setFileAsInput", full_path(str_param.strip()))
 
     def drop(self) -> None:
         """End the recording that runs, if one does; raises nothing."""
@@ -180,10 +175,9 @@ class SoundRecordingFunctions(Part):
 
     def _file_here(self, path: str) -> Path | None:
         """A file of the robot as this computer has it; None where it has none of them, or not those of that folder."""
-        full = robot_path(path)
-        if self._robot_home is None or not full.startswith(HOME):
+        if self._robot_home is None or not is_in(path, [HOME]):
             return None
-        return self._robot_home / PurePosixPath(full).relative_to(HOME)
+        return self._robot_home / PurePosixPath(full_path(path)).relative_to(HOME)
 
     def _begin_recording(self, name: str, rate: int, channels: Sequence[str], file_type: str, overwrite: bool) -> None:
         path, kind = recording_file(name, file_type)

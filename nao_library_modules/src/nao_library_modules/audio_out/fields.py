@@ -12,6 +12,7 @@ from ..base.field_checks import CONTROL, require_known, require_text
 from ..base.limits import limit
 from ..functions.describe_choices import LANGUAGES, VOICES
 from ..functions.fields import Annotated, flag, free, number, text, whole, word
+from ..nao.robot_files import WRITTEN
 
 STREAMS = ("http", "https")
 SIDES = (-1.0, 0.0, 1.0)
@@ -118,7 +119,7 @@ TextPitch = Annotated[
     float, number("speech pitch", "pitch of this text only; 100 is normal", zero=" for the robot's own")
 ]
 Background = Annotated[bool, flag("whether the next function begins at once, and the sound goes on beyond the goal")]
-WrittenFile = Annotated[str, file_of_kind((".wav",), "file to write")]
+WrittenFile = Annotated[str, file_of_kind((".wav",), "file to write", WRITTEN)]
 Overwrite = Annotated[bool, flag("whether a file that is there may be replaced")]
 TextGestures = Annotated[str, word(BODY_LANGUAGE, "gestures with this text", empty="those of the mode that is set")]
 Gestures = Annotated[str, word(BODY_LANGUAGE, "gestures with texts from now on")]

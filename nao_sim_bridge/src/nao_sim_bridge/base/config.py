@@ -32,6 +32,11 @@ def sounds_directory() -> Path:
     return _PACKAGE / "sounds"
 
 
+def robot_files_directory() -> Path:
+    """Directory that is the root of those files of the robot that come with the package."""
+    return _PACKAGE / "robot_files"
+
+
 class TooLarge(ValueError):
     """A file that is larger than what is allowed; the text says what is."""
 

@@ -101,6 +101,7 @@ class SimulatorServer:
     hands = property(attrgetter("_robot.hands"))
     health = property(attrgetter("_robot.health"))
     film = property(attrgetter("_robot.film"))
+    file_access = property(attrgetter("_robot.file_access"))
     began = property(attrgetter("_robot.began"))
     sound_reader = property(attrgetter("_workers.sounds"), doc="What reads sound files.")
 

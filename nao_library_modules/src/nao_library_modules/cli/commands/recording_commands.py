@@ -120,7 +120,7 @@ def sound(context: click.Context, file: str, seconds: float | None, channels: st
     A real robot keeps it there in any case.
     """
     from ...audio_in.fields import FILE_TYPES
-    from ...audio_in.recording import robot_path
+    from ...nao.robot_files import full_path
 
     settings = settings_of(context)
     target = wanted_file(file, overwrite, FILE_TYPES)
@@ -143,7 +143,7 @@ def sound(context: click.Context, file: str, seconds: float | None, channels: st
 
     def place(file: dict[str, Any]) -> str:
         written = file["file"]  # on this computer, if the server can read it
-        file["path"] = bring(written, target, overwrite) if written else f"{robot_path(name)}, on the robot"
+        file["path"] = bring(written, target, overwrite) if written else f"{full_path(name)}, on the robot"
         return f"{file['path']}: {file['duration']:.2f} s"
 
     _hand_over(settings, recorded, "files", place)

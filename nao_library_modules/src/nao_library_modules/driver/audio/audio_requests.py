@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...base.errors import BadGoal
+from ...nao.robot_files import READ, WRITTEN, full_path, is_in
 
-HOME = "/home/nao"
-"""Home of the robot's user, which file names are relative to; the simulator keeps these files in its `record_dir`."""
 KINDS = {0: "wav", 1: "ogg"}
 RATES = (16000, 48000)
 LONGEST = 3600
@@ -17,18 +16,17 @@ LONGEST = 3600
 CHANNELS = ("left", "right", "front", "rear")
 
 
-def file_on_robot(name: str) -> str:
+def file_on_robot(name: str, folders: Sequence[str] = READ) -> str:
     """Full name of a file on the robot, from one that is absolute or relative to the home of its user.
 
-    Raises BadGoal if it leads out of that home.
+    Raises BadGoal if it leads out of the folders.
     """
-    allowed = f"a name inside {HOME}"
+    allowed = f"a name inside {' or '.join(folders)}"
     if not name.strip() or "\0" in name or name.endswith("/"):
         raise BadGoal("file_path", name, allowed)
     # Many a client writes "/music/a.ogg" for a file in the home, because that was put before the name as it is.
-    inside = name if posixpath.normpath(name).startswith(HOME + "/") else f"{HOME}/{name.lstrip('/')}"
-    full = posixpath.normpath(inside)
-    if not full.startswith(HOME + "/"):
+    full = full_path(name if is_in(name, folders) else name.lstrip("/"))
+    if not is_in(full, folders):
         raise BadGoal("file_path", name, allowed, f"{name!r} leads out of it")
     return full
 
@@ -65,7 +63,7 @@ def read_recording(file: str, seconds: int, kind: int, channels: Sequence[bool],
         raise BadGoal("samplerate", rate, "16000 (one channel) or 48000 (all four)")
     if not any(channels):
         raise BadGoal("channels", list(channels), f"at least one of {', '.join(CHANNELS)}", "none is chosen")
-    full = file_on_robot(file)
+    full = file_on_robot(file, WRITTEN)
     if not posixpath.splitext(full)[1]:
         full = f"{full}.{KINDS[kind]}"
     return RecordingRequest(full, seconds, KINDS[kind], rate, tuple(int(flag) for flag in channels))

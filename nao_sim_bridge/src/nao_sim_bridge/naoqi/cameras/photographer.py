@@ -81,7 +81,7 @@ class Photographer:
             self.release()
 
     def take(self, paths: Sequence[Path], settings: PhotoSettings) -> Task:
-        """Take one picture for each path; the task ends with the paths, as text, when all are written.
+        """Take one picture for each path; the task ends with the paths when all are written.
 
         When the task is killed, what has been taken stays. A BadValue when too many are being taken already.
         """
@@ -166,7 +166,7 @@ class _Series:
                 log.exception("a series of pictures failed")
             self.task.finish(error=error)
         else:
-            self.task.finish([str(path) for path in self._paths])
+            self.task.finish(self._paths)
         finally:
             self.end()
 
@@ -203,15 +203,15 @@ def picture_files(files: ClientFiles, folder: str, name: str, kind: str, count: 
         raise BadValue("fileName", name, "the name of a file")
     names = [stem] if count == 1 else [f"{stem}_{number}" for number in range(count)]
     paths = [files.to_write(posixpath.join(folder, one + ending)) for one in names]
-    check_new(paths, overwrite)
+    check_new(files, paths, overwrite)
     return paths
 
 
-def check_new(paths: Sequence[Path], overwrite: bool) -> None:
+def check_new(files: ClientFiles, paths: Sequence[Path], overwrite: bool) -> None:
     """Refuse to overwrite a file, unless that is wanted."""
     there = next((path for path in paths if path.exists()), None)
     if there is not None and not overwrite:
-        raise NaoqiError(f"file {str(there)!r} exists already, and is not to be overwritten")
+        raise NaoqiError(f"file {files.to_robot(there)!r} exists already, and is not to be overwritten")
 
 
 def encoded(picture: np.ndarray, kind: str) -> bytes:

@@ -66,7 +66,7 @@ class ALPhotoCapture(PictureSettings):
 
     def takePicture(self, folder: str, name: str, overwrite: bool = True) -> Task:
         """Take one picture; the answer is [path]."""
-        return self._take(1, folder, name, overwrite).then(lambda paths: paths)
+        return self._take(1, folder, name, overwrite)
 
     def takePictures(self, count: int, folder: str, name: str, overwrite: bool = True) -> Task:
         """Take pictures at the capture interval; the answer comes after the last one and is [[path, ...]]."""
@@ -109,7 +109,8 @@ class ALPhotoCapture(PictureSettings):
         text(folder, "folderPath", LONGEST_PATH)
         text(name, "fileName", LONGEST_PATH)
         paths = picture_files(self._files, folder, name, self._format, count, overwrite)
-        return self._photographer.take(paths, self._settings)
+        taking = self._photographer.take(paths, self._settings)
+        return taking.then(lambda taken: [self._files.to_robot(path) for path in taken or ()])
 
 
 class ALVideoRecorder(PictureSettings):
@@ -131,15 +132,19 @@ class ALVideoRecorder(PictureSettings):
         if not posixpath.basename(name):
             raise BadValue("fileName", name, "the name of a file")
         path = self._files.to_write(posixpath.join(folder, name if name.endswith(ENDING) else name + ENDING))
-        check_new([path], overwrite)
+        check_new(self._files, [path], overwrite)
         return self._recorder.start(path, settings)
 
     def stopRecording(self) -> Task:
         """End the recording; the answer is [number of frames, path]."""
-        return self._recorder.stop()
+        return self._recorder.stop().then(self._on_robot)
 
     def isRecording(self) -> bool:
         return self._recorder.records
+
+    def _on_robot(self, film: list[Any]) -> list[Any]:
+        frames, path = film
+        return [frames, self._files.to_robot(path) if path else ""]
 
     def setResolution(self, resolution: int) -> None:
         if resolution not in FILM_RESOLUTIONS:

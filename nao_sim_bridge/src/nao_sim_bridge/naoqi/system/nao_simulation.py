@@ -18,8 +18,8 @@ NAME = "NaoSimulation"
 class NaoSimulation:
     """Control of the simulation over libqi; a real robot has no such service.
 
-    The host is the server: its `broker`, `runner`, `sounds`, `things`, `hands`, `film`, `health`, `files`, `options`,
-    and its methods `push`, `press`, `picture`, `reset_task`, `factory_reset_task`.
+    The host is the server: its `broker`, `runner`, `sounds`, `things`, `hands`, `film`, `health`, `files`,
+    `file_access`, `options`, and its methods `push`, `press`, `picture`, `reset_task`, `factory_reset_task`.
     """
 
     def __init__(self, host: Any) -> None:
@@ -134,6 +134,21 @@ class NaoSimulation:
     def stopFilm(self) -> Any:
         """End the film; returns its path, frames, duration in s, and frames left_out, when the file is complete."""
         return self._host.film.stop().then(lambda film: {**vars(film), "path": str(film.path)})
+
+    @typed(NAME, qi.Map(qi.String, qi.Int64), [qi.String])
+    def listFiles(self, folder: str) -> dict[str, int]:
+        """Bytes of the files in a folder of the robot ("~", "/tmp"...), by name; names of folders end with a slash."""
+        return self._host.file_access.listed(folder)
+
+    @typed(NAME, "r", [qi.String, qi.Int64])
+    def readFile(self, path: str, offset: int) -> bytes:
+        """A piece of a file of the robot, from the byte `offset` on; empty at its end."""
+        return self._host.file_access.read(path, offset)
+
+    @typed(NAME, qi.String, [qi.String, qi.Int64, "r", qi.Bool])
+    def writeFile(self, path: str, offset: int, piece: bytes, last: bool) -> str:
+        """Write the next piece of a file of the robot, the first at 0; with the last it is there. Returns its path."""
+        return self._host.file_access.write(path, offset, piece, last)
 
     @typed(NAME, qi.Void, [qi.Bool])
     def plugCharger(self, plugged: bool) -> Any:
