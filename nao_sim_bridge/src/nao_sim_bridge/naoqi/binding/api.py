@@ -134,7 +134,10 @@ def _overload(takes: Sequence[str]) -> Overload:
 def _older(table: Mapping[str, Any], entry: Mapping[str, Any]) -> str:
     if "_last" in table:
         return f"of a module of NAOqi {table['_last']} and before; today there is {table['_now']}"
-    return DEPRECATED.search(entry["summary"])[0].strip() if entry.get("deprecated") else ""
+    if not entry.get("deprecated"):
+        return ""
+    told = DEPRECATED.search(entry["summary"])
+    return told[0].strip() if told else "deprecated"
 
 
 def _split(text: str) -> list[str]:

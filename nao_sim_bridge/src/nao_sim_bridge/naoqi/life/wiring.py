@@ -39,7 +39,7 @@ STAND, STAND_SPEED = "Stand", 0.8
 
 
 class LifeModules:
-    """ALAutonomousLife, the modules of its abilities, ALAutonomousMoves, ALTracker and the older trackers of one robot."""
+    """ALAutonomousLife, its abilities' modules, ALAutonomousMoves, ALTracker and the older trackers of one robot."""
 
     def __init__(
         self,
