@@ -242,6 +242,18 @@ class CommandLine(unittest.TestCase):
         wait_until(lambda: self.robot.value(SENSOR) == 0.0, 10.0, "the finger to go away")
         self.assertEqual(nao(f"watch {SENSOR} --timeout 0.5").status, 0)
 
+    def test_files_go_to_the_robot_and_come_back(self):
+        there, back = "/home/nao/command/note.txt", self.folder / "back.txt"
+        note = self.folder / "note.txt"
+        note.write_text("hello")
+        self.assertEqual(self.ok(f"files put {note} ~/command/").out, f"{there}\n")
+        self.assertEqual(self.ok("files list command --json").json["files"][0]["size"], 5)
+        self.assertEqual(nao(f"files put {note} {there}").status, 1)
+        self.assertEqual(self.ok(f"files get {there} {back}").out, f"{back}\n")
+        self.assertEqual(back.read_text(), "hello")
+        self.assertIn("random.wav", self.ok("files list /usr/share/naoqi/wav").out)
+        self.assertIn("is not inside the robot's places", nao("files list /etc").err)
+
     # Asking
 
     def test_status_tells_robot_and_servers(self):

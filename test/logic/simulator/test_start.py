@@ -209,6 +209,7 @@ def test_a_client_has_worlds_by_name_from_its_folder_and_from_where_the_first_on
     files = ClientFiles(mine.parent)
     for name, world in (
         ("", ""), ("lab", "lab"), (str(first), str(first)), ("a.yaml", str(mine)), (str(mine), str(mine)),
+        ("/home/nao/a.yaml", str(mine)), ("~/a.yaml", str(mine)),
         ("second.yml", str(beside)), (str(beside), str(beside)),
     ):  # fmt: skip
         assert world_of_client(name, files, str(first)) == world

@@ -6,6 +6,10 @@ import cv2
 import pytest
 from sounds import RATE, loudness, played, tone, write
 
+from nao_library_modules.cli.errors import CommandFailed
+from nao_library_modules.cli.robot_files import Entry, files_of
+from nao_library_modules.cli.robot_link import DirectRobot
+
 RANDOM = "/usr/share/naoqi/wav/random.wav"
 FRONT = [0, 0, 1, 0]
 BEHAVIOR = "behaviors: {mine/wait: {do: [{wait: 0.1}]}}"
@@ -120,3 +124,25 @@ def test_who_runs_the_simulator_has_the_files_in_pieces(robot, here):
     assert "own.wav" in files.listFiles("/opt/aldebaran/share/naoqi/wav") and robot.ALAudioPlayer.loadFile(
         "/usr/share/naoqi/wav/own.wav"
     )
+
+
+def test_the_command_line_has_the_files_of_a_simulated_robot(robot, here, tmp_path):
+    (tmp_path / "empty").touch()
+    (tmp_path / "large").write_bytes(bytes(range(256)) * 5000)
+    with DirectRobot(robot.address) as link:
+        files = files_of(link, "127.0.0.1", None, False)
+        for name, remote, path in (("large", "~/day/", "/home/nao/day/large"), ("empty", "/tmp", "/tmp/empty")):
+            assert files.place(remote, name) == (path, False)
+            files.put(tmp_path / name, path)
+            assert files.place(remote, name) == (path, True)
+            files.get(path, tmp_path / "back")
+            assert (tmp_path / "back").read_bytes() == (tmp_path / name).read_bytes()
+        assert here("day/large").is_file() and files.place("day/other", "large") == ("/home/nao/day/other", False)
+        assert files.listed("~") == [Entry("day", 0, True)] and files.listed("/tmp") == [Entry("empty", 0, False)]
+        with pytest.raises(CommandFailed, match="/home/nao/day is a folder on the robot"):
+            files.place("/home/nao/", "day")
+        assert files.place("/etc/passwd", "large") == ("/etc/passwd", False)
+        with pytest.raises(CommandFailed, match="is not inside the robot's places /home/nao"):
+            files.put(tmp_path / "empty", "/etc/passwd")
+        with pytest.raises(CommandFailed, match="no file 'missing'"):
+            files.get("missing", tmp_path / "back")

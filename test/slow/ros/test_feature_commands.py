@@ -52,6 +52,7 @@ ANSWERS = {
     "/tactile_touch": r"button: 2",
     "getPosture": r"Stand",
     "get Mine/Answer": r"42",
+    "files list music": r"bip_gentle\.wav",
     "setColour": r"did you mean 'setColor'",
     "dry_run": r"2\.",
 }

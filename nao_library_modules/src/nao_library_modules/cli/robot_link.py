@@ -41,6 +41,15 @@ class DirectRobot:
     def __exit__(self, *_: object) -> None:
         self._proxies.clear()
 
+    def has(self, module: str) -> bool:
+        """Whether the robot has a module of this name."""
+        import naoqi
+
+        try:
+            return module in naoqi.connection(*self._address).module_names()
+        except NaoError as error:
+            raise StackMissing(str(error)) from None
+
     def call(self, module: str, method: str, *arguments: Any) -> Any:
         """Call a method. Raises CommandFailed if the robot refuses."""
         try:

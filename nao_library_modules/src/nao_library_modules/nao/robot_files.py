@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 HOME = "/home/nao"
 """Home of the robot's user, where relative names begin. The simulator keeps it in its `record_dir`."""
-WRITTEN = (HOME, "/tmp")  # noqa: S108  on the robot
+WRITTEN = (HOME, "/tmp")
 """Where programs leave files."""
 READ = (*WRITTEN, "/usr/share/naoqi", "/opt/aldebaran/share/naoqi")
 """Where they find some: the last two have the sounds of the robot, up to V5 and on V6."""

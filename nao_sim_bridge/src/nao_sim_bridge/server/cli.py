@@ -61,7 +61,10 @@ def parser(prog: str) -> argparse.ArgumentParser:
     )
     options.add_argument("--charger", action="store_true", help="the charger is plugged in from the start")
     options.add_argument(
-        "--record-dir", type=Path, default=DEFAULT_RECORD_DIR, help="folder for pictures, recordings and other files"
+        "--record-dir",
+        type=Path,
+        default=DEFAULT_RECORD_DIR,
+        help="folder of the robot's files, its /home/nao: recordings, pictures and others",
     )
     options.add_argument(
         "--sound-file",
