@@ -20,6 +20,8 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from compatibility_tables import compatibility
+from markdown_tables import code, table
 
 from nao_library_modules.base.limits import table as limits_of_modules
 from nao_library_modules.functions.describe import NO_UNIT, Described, Description
@@ -107,17 +109,6 @@ def untold(texts: Iterable[str], tables: Iterable[str]) -> list[str]:
     """Names of the tables that no text has marks for."""
     marks = {match["name"] for text in texts for match in MARKED.finditer(text)}
     return [name for name in tables if name not in marks]
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(cell.replace("|", r"\|") for cell in line) + " |" for line in lines)
-
-
-def code(text: object) -> str:
-    """Text in code type; a dash for nothing."""
-    return f"`{text}`" if str(text) else "–"
 
 
 def first_line(thing: Any) -> str:
@@ -298,17 +289,18 @@ def robot_files() -> str:
     return table(("on the robot", "also called", "on this computer", "comes along"), rows)
 
 
-def naoqi_methods() -> str:
-    """How many methods of each of NAOqi's modules the simulator answers."""
+def of_naoqi() -> dict[str, str]:
+    """What the simulator answers of NAOqi: how many methods of each module, and the tables of docs/compatibility.md."""
     server = SimulatorServer(ServerOptions(port=0))
     try:
         rows = []
         for module, parts in sorted(server.modules().items()):
             answered, open_ = offered(module, parts)
             rows.append((code(module), str(len(answered)), str(len(answered) + len(open_))))
+        tables = compatibility(server.modules())
     finally:
         server.simulation.close()
-    return table(("module", "methods answered", "methods of the robot"), rows)
+    return {"naoqi": table(("module", "methods answered", "methods of the robot"), rows), **tables}
 
 
 def limits() -> str:
@@ -358,7 +350,7 @@ def all_tables() -> dict[str, str]:
         "simulator options": simulator_options(),
         "simulator only": simulator_only(),
         "robot files": robot_files(),
-        "naoqi": naoqi_methods(),
+        **of_naoqi(),
     }
 
 

@@ -114,6 +114,11 @@ def module_methods(module: str) -> Mapping[str, Method]:
     return methods
 
 
+def own_methods(module: str) -> list[str]:
+    """Names of the methods of a module that are in no table it shares with others."""
+    return [name for name in _tables()[module] if not name.startswith("_")]
+
+
 def make_method(name: str, entry: Mapping[str, Any], older: str = "") -> Method:
     """The method of an entry of one of the two files."""
     if "ways" in entry:

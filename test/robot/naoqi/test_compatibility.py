@@ -1,0 +1,15 @@
+"""What docs/compatibility.md says is refused is refused with these words."""
+
+import re
+
+import pytest
+from compatibility_tables import known
+
+CALLS = [(module, call, why) for module, calls in known()["refused"].items() for call, why in calls.items()]
+
+
+@pytest.mark.parametrize("module, call, why", CALLS, ids=[f"{module}.{call}" for module, call, _ in CALLS])
+def test_a_method_that_always_refuses_says_why(robot, module, call, why):
+    method, arguments = re.fullmatch(r"(\w+)\((.*)\)", call).groups()
+    with pytest.raises(RuntimeError, match=re.escape(why)):
+        getattr(robot, module).call(method, *eval(f"({arguments},)"))
