@@ -37,6 +37,7 @@ from nao_sim_bridge.naoqi.speech.speech_recognition import ALSpeechRecognition
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.system.wiring import SystemModules
+from nao_sim_bridge.naoqi.users.wiring import UserModules
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
 from nao_sim_bridge.server.film import END_LIMIT
 from nao_sim_bridge.server.film_control import FilmControl
@@ -132,6 +133,7 @@ class RobotModules:
             FILMS: [ALVideoRecorder(self._recorder, files, cameras.tables)],
             **self._body.modules,
             "ALSystem": [system(memory, zone)],
+            **UserModules(simulation, memory, files, zone, self.vision.people).modules,
             **SystemModules(simulation, broker, files, memory, self.speech.say).modules,
         }
 
