@@ -24,6 +24,9 @@ ELSEWHERE = {
     "removeWordListFromSlot setContextParam",
     "ALPreferenceManager": "importPrefFile update",
     "ALLogger": "logInForwarder logInSys",
+    "ALUserSession": "getCurrentEncounterDate getFirstEncounterDate getLastEncounterDate getSecondsSinceLastEncounter "
+    "getUserBinding getUserBindings getUserCreationDate getUserData setUserData",
+    "ALUserInfo": "get getType has remove removeUser set",
     "ALSystem": "changePassword factoryReset setRobotIcon shutdown upgrade",
     "DCM": "calibration special",
     "ALVideoDevice": "getDirectRawImageLocal getDirectRawImagesLocal getImageLocal getImagesLocal",

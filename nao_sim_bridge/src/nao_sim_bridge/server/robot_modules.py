@@ -39,6 +39,7 @@ from nao_sim_bridge.naoqi.system import sentinel
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.system.wiring import SystemModules
+from nao_sim_bridge.naoqi.users.wiring import UserModules
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
 from nao_sim_bridge.server.files_control import FilesControl
 from nao_sim_bridge.server.film import END_LIMIT
@@ -145,6 +146,7 @@ class RobotModules:
                 ]
             ),
             "ALSystem": [of_robot],
+            **UserModules(simulation, memory, files, zone, self.vision.people).modules,
             **SystemModules(simulation, broker, files, memory, self.speech.say).modules,
         }
 

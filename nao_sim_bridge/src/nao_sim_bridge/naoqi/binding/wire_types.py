@@ -100,6 +100,7 @@ _TYPES: Mapping[str, tuple[str, Test]] = {
     "float": ("a number", _is_number),
     TEXTS: ("a list of texts", _list_of(_is_text)),
     "list<float>": ("a list of numbers", _list_of(_is_number)),
+    "list<int>": ("a list of whole numbers", _list_of(_is_int)),
     "map<string,string>": ("texts by texts", _map_to(_is_text)),
     "TagForAnimations": ("lists of texts by texts", _map_to(_list_of(_is_text))),
 }

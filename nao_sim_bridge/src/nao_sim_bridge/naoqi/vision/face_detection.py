@@ -42,7 +42,7 @@ MOST_WAITING = load_sizes().clients.faces
 
 
 class ALFaceDetection:
-    """Tells which faces are where, and whose they are. Only NAOqi methods are public, `watching` and `learner`.
+    """Tells which faces are where, and whose they are. Public are NAOqi methods, `watching`, `learner` and `people`.
 
     The event `FaceDetected` is raised with each picture in which there is a face, as `faces_value` says, and once with
     an empty list when the last one has gone. Learning takes five pictures in a row; each has to show exactly one face.
@@ -50,7 +50,7 @@ class ALFaceDetection:
 
     def __init__(self, simulation: Simulation, memory: MemoryStore, vision: VisionProcess, files: ClientFiles) -> None:
         self._sight = Sight(memory, EVENT, tell_end=True)
-        self._people = KnownPeople(files)
+        self.people = KnownPeople(files)
         self._names = NamesOnce()
         self._recognition = self._tracking = True
         self._threshold = DEFAULT_THRESHOLD
@@ -69,31 +69,31 @@ class ALFaceDetection:
     def learnFace(self, name: str) -> Task:
         """Learn the face in view; False when there is none or more than one, or ten pictures of the person."""
         known_as = _checked(name)
-        return self.learner.look(lambda description: self._people.learn(known_as, description))
+        return self.learner.look(lambda description: self.people.learn(known_as, description))
 
     def reLearnFace(self, name: str) -> Task:
         """Learn one more picture of somebody who is known; False also when nobody of the name is."""
-        if _checked(name) not in self._people.names:
+        if _checked(name) not in self.people.names:
             nothing = Task("learnFace", 0)
             nothing.finish(False)
             return nothing
         return self.learnFace(name)
 
     def forgetPerson(self, name: str) -> bool:
-        return self._people.forget(name)
+        return self.people.forget(name)
 
     def clearDatabase(self) -> bool:
-        self._people.clear()
+        self.people.clear()
         return True
 
     def getLearnedFacesList(self) -> list[str]:
-        return self._people.names
+        return self.people.names
 
     def importOldDatabase(self, policy: str) -> bool:
         """Take people in from the file of another robot; False when there is none. See `KnownPeople.take_over`."""
         if policy not in POLICIES:
             raise BadValue("policy", policy, " or ".join(POLICIES))
-        return self._people.take_over(policy)
+        return self.people.take_over(policy)
 
     def setRecognitionConfidenceThreshold(self, threshold: float) -> None:
         self._threshold = number(threshold, "threshold", 0.0, 1.0)
@@ -131,7 +131,7 @@ class ALFaceDetection:
     def _named(self, face: SeenFace) -> NamedFace:
         name, score = "", 0.0
         if face.description is not None:
-            name, score = self._people.recognise(face.description)
+            name, score = self.people.recognise(face.description)
         return NamedFace(face, name if score >= self._threshold else "", score)
 
     def _nothing(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 
@@ -20,9 +20,13 @@ class KnownPeople:
     """Known people; what changes is on the disk before it counts. Any thread.
 
     A file that cannot be read is put aside, as "faces.npz.broken".
+
+    Attributes:
+        changed: Called when somebody has been learnt or forgotten.
     """
 
     def __init__(self, files: ClientFiles) -> None:
+        self.changed: list[Callable[[], Any]] = []
         self._files = files
         self._lock = threading.Lock()
         self._memory: FaceMemory | None = None
@@ -75,7 +79,9 @@ class KnownPeople:
             if done:
                 changed.save(self._files.to_write(FILE))
                 self._memory = changed
-            return done
+        for call in list(self.changed) if done else ():
+            call()
+        return done
 
     def _known(self) -> FaceMemory:
         """The people, read from the file when they are wanted first; with the lock held."""

@@ -130,6 +130,7 @@ class VisionModules:
     def __init__(self, simulation: Simulation, memory: MemoryStore, files: ClientFiles, process: VisionProcess) -> None:
         faces = face_detection.ALFaceDetection(simulation, memory, process, files)
         movement = movement_detection.ALMovementDetection(simulation, memory, process)
+        self.people = faces.people
         self._learner = faces.learner
         self._watchings: list[Watching] = []
         self.modules: dict[str, Sequence[Any]] = {}

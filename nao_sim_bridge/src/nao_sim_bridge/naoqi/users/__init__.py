@@ -1,0 +1,1 @@
+"""Whom the robot knows and is with: ALUserSession and ALUserInfo."""

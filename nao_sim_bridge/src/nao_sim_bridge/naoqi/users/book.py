@@ -1,0 +1,243 @@
+"""Users of the robot, and whose session is open. No libqi; times and dates are passed in."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from datetime import datetime
+from enum import Enum
+from typing import Any, Callable, Iterable, Mapping, Sequence
+
+from nao_sim_bridge.base.errors import UnknownName
+from nao_sim_bridge.base.sizes import load_sizes
+
+NOBODY = -1
+UNSEEN_S = 2.0
+"""After so long without being seen, a session is closed, s of simulated time."""
+FORGOTTEN_S = 600.0
+"""After so long without a session, whoever is not known by name is forgotten, s of simulated time."""
+
+
+class News(Enum):
+    """What changes, with the numbers of users or a truth value."""
+
+    CREATED = "created"
+    DELETED = "deleted"
+    OPENED = "opened"
+    CLOSED = "closed"
+    KNOWN = "known"  # permanent from now on
+    UNKNOWN = "unknown"  # permanent no more
+    FOCUSED = "focused"
+    NOBODY_HERE = "nobody here"
+
+
+@dataclass
+class User:
+    """Somebody.
+
+    Attributes:
+        number: The UserSession ID.
+        name: Of the face that has been learnt; empty for who is not permanent.
+        created: When the robot has made the user.
+        first: When the first session began, None before it; the next ones alike.
+        current: When the session began that is open.
+        last: When the last session ended.
+        away: Simulated time of that, or of the creation, s.
+    """
+
+    number: int
+    name: str
+    created: datetime
+    first: datetime | None = None
+    current: datetime | None = None
+    last: datetime | None = None
+    away: float = 0.0
+
+    @property
+    def permanent(self) -> bool:
+        return bool(self.name)
+
+
+@dataclass
+class _Face:
+    """A face that the cameras see, by the number of it: whose it may be, and when it was seen last, s."""
+
+    name: str
+    seen: float
+    user: int = NOBODY  # whose session is open because of it
+
+
+class UserBook:
+    """Who there is, who is here, and whom the robot looks at. Not thread-safe.
+
+    `date` says what date it is, with the zone.
+    """
+
+    def __init__(self, date: Callable[[], datetime]) -> None:
+        self.focused = NOBODY
+        self._date = date
+        self._users: dict[int, User] = {}
+        self._next = 1
+        self._faces: dict[int, _Face] = {}
+        self._news: dict[News, list[int]] = defaultdict(list)
+        self._told: tuple[int, bool] = (NOBODY, True)  # who was focused, and whether nobody was here, when it was told
+
+    # --- to and from a file ------------------------------------------------------------------------------------------
+
+    def content(self) -> dict[str, Any]:
+        """What outlasts a run: who is known by name."""
+        dates = ("created", "first", "last")
+        rows = [
+            {
+                "number": u.number,
+                "name": u.name,
+                **{d: v.isoformat() for d in dates if (v := getattr(u, d)) is not None},
+            }
+            for u in self._users.values()
+            if u.permanent
+        ]
+        return {"next": self._next, "users": rows}
+
+    def restore(self, content: Mapping[str, Any]) -> None:
+        """Know whom a file tells of; what is no user in it is left out."""
+        rows = content.get("users", [])
+        for row in rows if isinstance(rows, list) else []:
+            try:
+                dates = {d: datetime.fromisoformat(row[d]) for d in ("created", "first", "last") if d in row}
+                user = User(int(row["number"]), str(row["name"]), **dates)
+            except (TypeError, KeyError, ValueError):
+                continue
+            self._users[user.number] = user
+        self._next = max([*self._users, 0]) + 1
+        if isinstance(content.get("next"), int):
+            self._next = max(self._next, content["next"])
+
+    # --- who there is ------------------------------------------------------------------------------------------------
+
+    @property
+    def numbers(self) -> list[int]:
+        return sorted(self._users)
+
+    @property
+    def open(self) -> list[int]:
+        """Whose session is open."""
+        return sorted(user.number for user in self._users.values() if user.current is not None)
+
+    @property
+    def permanent(self) -> list[int]:
+        return sorted(user.number for user in self._users.values() if user.permanent)
+
+    def user(self, number: int) -> User:
+        """An UnknownName when there is no such user."""
+        if number not in self._users:
+            raise UnknownName("user", number, map(str, self._users))
+        return self._users[number]
+
+    def of_name(self, name: str) -> User | None:
+        return next((user for user in self._users.values() if name and user.name == name), None)
+
+    def user_of_face(self, face: int) -> int:
+        return self._faces[face].user if face in self._faces else NOBODY
+
+    def face_of_user(self, number: int) -> int:
+        return next((face for face, entry in self._faces.items() if entry.user == number != NOBODY), NOBODY)
+
+    # --- what happens ------------------------------------------------------------------------------------------------
+
+    def learn(self, names: Sequence[str], time: float) -> None:
+        """These are the people whose faces are known. Who is here alone when a face is learnt is its owner."""
+        for user in [user for user in self._users.values() if user.permanent and user.name not in names]:
+            self._delete(user)
+        for name in names:
+            if self.of_name(name) is None:
+                here = [self._users[number] for number in self.open]
+                if len(here) == 1 and not here[0].permanent:
+                    here[0].name = name
+                    self._news[News.KNOWN].append(here[0].number)
+                else:
+                    self._create(name, time)
+
+    def see(self, faces: Mapping[int, str], time: float) -> None:
+        """A picture shows these faces: number -> name, empty for who is not recognised."""
+        for number, name in faces.items():
+            face = self._faces.setdefault(number, _Face(name, time))
+            face.seen, face.name = time, name or face.name
+            known = self.of_name(face.name)
+            if face.user != NOBODY and known is not None and known.number != face.user:
+                was, face.user = face.user, known.number
+                if self.focused == was:
+                    self.focused = known.number
+                self._open(known)
+                self._close_unseen([was], time)
+
+    def track(self, face: int, time: float) -> None:
+        """The robot looks at this face from now on, or at nobody."""
+        if face == NOBODY:
+            self.focused = NOBODY
+            return
+        entry = self._faces.setdefault(face, _Face("", time))
+        entry.seen = time
+        if entry.user == NOBODY:
+            user = self.of_name(entry.name) or self._create("", time)
+            entry.user = user.number
+            self._open(user)
+        self.focused = entry.user
+
+    def pass_time(self, time: float) -> None:
+        """Close sessions of those who have not been seen, and forget those who have been away for long."""
+        gone = [face for face, entry in self._faces.items() if time - entry.seen > UNSEEN_S]
+        users = [self._faces.pop(face).user for face in gone]
+        self._close_unseen(users, time)
+        for user in list(self._users.values()):
+            if not user.permanent and user.current is None and time - user.away > FORGOTTEN_S:
+                self._delete(user)
+
+    def news(self) -> list[tuple[News, Any]]:
+        """What has changed since this was asked last."""
+        found: list[tuple[News, Any]] = [(kind, self._news[kind]) for kind in News if self._news.get(kind)]
+        self._news = defaultdict(list)
+        focused, nobody = self._told
+        if self.focused != focused:
+            found.append((News.FOCUSED, self.focused))
+        if (not self.open) != nobody:
+            found.append((News.NOBODY_HERE, not self.open))
+        self._told = (self.focused, not self.open)
+        return found
+
+    def _create(self, name: str, time: float) -> User:
+        if len(self._users) >= load_sizes().kept.users:
+            away = [user for user in self._users.values() if user.current is None and not user.permanent]
+            for user in sorted(away, key=lambda one: one.away)[:1]:
+                self._delete(user)
+        user = self._users[self._next] = User(self._next, name, self._date(), away=time)
+        self._next += 1
+        self._news[News.CREATED].append(user.number)
+        if name:
+            self._news[News.KNOWN].append(user.number)
+        return user
+
+    def _open(self, user: User) -> None:
+        if user.current is None:
+            user.current = self._date()
+            user.first = user.first or user.current
+            self._news[News.OPENED].append(user.number)
+
+    def _close_unseen(self, numbers: Iterable[int], time: float) -> None:
+        """Close the sessions of those of whom no face is seen."""
+        for number in numbers:
+            user = self._users.get(number)
+            if user is not None and user.current is not None and self.face_of_user(number) == NOBODY:
+                user.current, user.last, user.away = None, self._date(), time
+                self._news[News.CLOSED].append(number)
+                if self.focused == number:
+                    self.focused = NOBODY
+
+    def _delete(self, user: User) -> None:
+        for entry in self._faces.values():
+            if entry.user == user.number:
+                entry.user, entry.name = NOBODY, ""
+        self._close_unseen([user.number], user.away)
+        del self._users[user.number]
+        self._news[News.DELETED].append(user.number)
+        if user.permanent:
+            self._news[News.UNKNOWN].append(user.number)

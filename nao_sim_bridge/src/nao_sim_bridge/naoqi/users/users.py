@@ -1,0 +1,184 @@
+"""What ALUserSession and ALUserInfo have in common: users, data about them, and who is told of changes."""
+
+from __future__ import annotations
+
+import threading
+from typing import Any, Callable
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.system.robot_file import RobotFile
+from nao_sim_bridge.naoqi.system.time_zone import TimeZone
+from nao_sim_bridge.naoqi.users.book import News, UserBook
+from nao_sim_bridge.naoqi.vision import face_detection
+from nao_sim_bridge.naoqi.vision.face_detection_people import KnownPeople
+
+USERS_FILE, DATA_FILE = ".local/share/ALUserSession/users.json", ".local/share/ALUserInfo/data.json"
+PERIOD = 0.5
+"""Between two looks for who has gone, s of simulated time."""
+OPEN_SESSIONS = "UserSession/OpenSessions"
+EVENTS = {
+    News.CREATED: "UserSession/CreatedUsers",
+    News.DELETED: "UserSession/DeletedUsers",
+    News.OPENED: "UserSession/SessionsOpened",
+    News.CLOSED: "UserSession/SessionsClosed",
+    News.FOCUSED: "UserSession/FocusedUser",
+    News.NOBODY_HERE: "UserSession/NoOpenSessions",
+}
+SHOULD_EXIT = "UserSession/ShouldExitInteractiveActivity"
+SIGNALS = {
+    News.CREATED: "createdUsers",
+    News.DELETED: "deletedUsers",
+    News.OPENED: "openedSessions",
+    News.CLOSED: "closedSessions",
+    News.KNOWN: "addedPermanentUsers",
+    News.UNKNOWN: "removedPermanentUsers",
+    News.FOCUSED: "focusedUser",
+    News.NOBODY_HERE: "noOpenSession",
+}
+TYPES = {bool: "bool", int: "int", str: "string"}
+"""Of data about users: Python's types -> NAOqi's words."""
+
+Data = dict  # domain -> number of the user as a text -> name -> value
+
+
+class Users:
+    """Users and data about them, kept in files of the robot as far as they outlast a run. Any thread.
+
+    Basic awareness and face detection say who is here. Events and signals tell of changes when they are in the file.
+    """
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        memory: MemoryStore,
+        files: ClientFiles,
+        zone: TimeZone,
+        people: KnownPeople,
+        signals: Callable[..., None],
+    ) -> None:
+        self._simulation = simulation
+        self._memory = memory
+        self._people = people
+        self._signals = signals
+        self._lock = threading.RLock()
+        self._next_look = 0.0
+        self._users_file, self._data_file = RobotFile(files, USERS_FILE), RobotFile(files, DATA_FILE)
+        self.book = UserBook(zone.now)
+        self.book.restore(self._users_file.load())
+        self._kept = self.book.content()
+        self._data: Data = self._read_data()
+        for event in (*EVENTS.values(), SHOULD_EXIT):
+            memory.declare_event(event, "ALUserSession")
+        memory.put_quietly(OPEN_SESSIONS, [])
+        people.changed.append(self._learn)
+        memory.listen(face_detection.EVENT, self._see, declare=False)
+        simulation.after_tick.append(self._tick)
+        self._learn()
+
+    def track(self, face: int) -> None:
+        """Basic awareness follows this face, or nobody (-1)."""
+        names = self._faces(self._memory.get_many([face_detection.EVENT])[0])
+        self._change(lambda book, time: (book.see(names, time), book.track(face, time)))
+
+    # --- data --------------------------------------------------------------------------------------------------------
+
+    @property
+    def domains(self) -> list[str]:
+        return sorted(self._data)
+
+    def values(self, domain: str, number: int) -> dict[str, Any]:
+        """Data about a user in a domain, by name; an UnknownName when there is no such user."""
+        self.book.user(number)
+        return dict(self._data.get(domain, {}).get(str(number), {}))
+
+    def put(self, domain: str, number: int, name: str, value: Any) -> None:
+        """Keep something about a user; a BadValue when it is neither a text, nor a whole number, nor true or false."""
+        self.book.user(number)
+        if type(value) not in TYPES:
+            raise BadValue("value", value, "a text, a whole number, true or false")
+        self._keep(domain, number, {**self.values(domain, number), name: value})
+
+    def drop(self, domain: str, number: int, name: str | None = None) -> bool:
+        """Forget something about a user, or all in a domain; False when there is nothing."""
+        values = self.values(domain, number)
+        if not values or (name is not None and name not in values):
+            return False
+        self._keep(domain, number, {key: value for key, value in values.items() if key != name and name is not None})
+        return True
+
+    def _keep(self, domain: str, number: int, values: dict[str, Any]) -> None:
+        with self._lock:
+            others = {key: one for key, one in self._data.get(domain, {}).items() if key != str(number)}
+            entries = {**others, **({str(number): values} if values else {})}
+            data = {key: one for key, one in {**self._data, domain: entries}.items() if one}
+            self._data_file.save(data)
+            self._data = data
+
+    def _read_data(self) -> Data:
+        found: Data = {}
+        for domain, entries in self._data_file.load().items():
+            for number, values in entries.items() if isinstance(entries, dict) else ():
+                if number in map(str, self.book.numbers) and isinstance(values, dict):
+                    good = {name: value for name, value in values.items() if type(value) in TYPES}
+                    found.setdefault(domain, {})[number] = good
+        return found
+
+    # --- what happens ------------------------------------------------------------------------------------------------
+
+    def _learn(self) -> None:
+        names = self._people.names
+        self._change(lambda book, time: book.learn(names, time))
+
+    def _see(self, value: Any) -> None:
+        names = self._faces(value)
+        self._change(lambda book, time: book.see(names, time))
+
+    def _tick(self, snapshot: Snapshot) -> None:
+        if snapshot.time >= self._next_look:
+            self._next_look = snapshot.time + PERIOD
+            self._change(lambda book, time: book.pass_time(time))
+
+    def _faces(self, value: Any) -> dict[int, str]:
+        """Name by number of the faces in a value of `FaceDetected`; the last of them is what is new about names."""
+        return {int(face[1][0]): str(face[1][2]) for face in value[1][:-1]} if value else {}
+
+    def _change(self, change: Callable[[UserBook, float], Any]) -> None:
+        with self._lock:
+            change(self.book, self._simulation.snapshot.time)
+            news = self.book.news()
+            content = self.book.content() if news else self._kept
+            if content != self._kept:
+                self._users_file.save(content)
+                self._kept = content
+            for kind, value in news:
+                if kind is News.DELETED:
+                    self._forget(value)
+            sessions = self.book.open
+        for kind, value in news:
+            if kind in EVENTS:
+                self._memory.raise_event(EVENTS[kind], value)
+            self._signals(SIGNALS[kind], value)
+            if kind is News.NOBODY_HERE:
+                self._memory.put_quietly(OPEN_SESSIONS, sessions)
+                if value:
+                    self._memory.raise_event(SHOULD_EXIT, True)
+            elif kind in (News.OPENED, News.CLOSED):
+                self._memory.put_quietly(OPEN_SESSIONS, sessions)
+
+    def _forget(self, numbers: list[int]) -> None:
+        """Drop all data about users who are no more."""
+        gone = set(map(str, numbers))
+        left = {d: {n: v for n, v in entries.items() if n not in gone} for d, entries in self._data.items()}
+        left = {domain: entries for domain, entries in left.items() if entries}
+        if left != self._data:
+            self._data_file.save(left)
+            self._data = left
+
+
+def nobody_focused() -> NaoqiError:
+    return NaoqiError("the robot looks at no user: give the userID, one of ALUserSession.getUserList")
