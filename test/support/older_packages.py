@@ -1,4 +1,4 @@
-"""The packages of the older stack, made of our definitions: naoqi_bridge_msgs and humanoid_nav_msgs, as genpy builds them."""
+"""The packages of the older stack, naoqi_bridge_msgs and humanoid_nav_msgs, made of our definitions as genpy does."""
 
 from __future__ import annotations
 
@@ -62,9 +62,8 @@ def _texts():
 def _text(own):
     """Kind and text of a definition; nothing for the halves of a service, which are in its file."""
     package, _, word = own.partition("/")
-    for kind in ("srv", "msg"):
-        module = importlib.import_module(f"{package}.{kind}") if (package, kind) != ("nao_library_actions", "srv") else None
-        found = getattr(module, word, None)
+    for kind in ("srv", "msg") if package == "nao_library_msgs" else ("msg",):
+        found = getattr(importlib.import_module(f"{package}.{kind}"), word, None)
         if found is None:
             continue
         if kind == "msg":

@@ -1,8 +1,8 @@
 """A driver that speaks the types of the older packages, and programs that know no others."""
 
 import os
-import subprocess
 import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -79,7 +79,8 @@ class OlderTypes(unittest.TestCase):
         with rosbag.Bag(str(bag), "w") as old:
             message = JointAnglesWithSpeed(joint_names=["HeadYaw"], joint_angles=[-0.3], speed=0.5)
             old.write("joint_angles", message, Time(1))
-        subprocess.run(["rosbag", "play", "-q", "-d", "2", str(bag), f"joint_angles:={topic}"], check=True, timeout=LIMIT)
+        play = ("rosbag", "play", "-q", "-d", "2", str(bag), f"joint_angles:={topic}")
+        subprocess.run(play, check=True, timeout=LIMIT)
         self.looks(-0.3)
 
     def test_their_service_is_answered_and_known_by_their_name(self):

@@ -137,7 +137,8 @@ def _problem(there: Mapping[str, Sequence[Path]]) -> str:
     missing = [name for name in wanted if name not in found]
     if missing:
         return f"{_some(missing)} {'is' if len(missing) == 1 else 'are'} not there: another version of the package"
-    wrong = [f"{name} has md5 sum {found[name]} instead of {wanted[name]}" for name in wanted if found[name] != wanted[name]]
+    other = [name for name, value in wanted.items() if found[name] != value]
+    wrong = [f"{name} has md5 sum {found[name]} instead of {wanted[name]}" for name in other]
     return f"{_some(wrong)}: another version of the package" if wrong else ""
 
 

@@ -1,6 +1,6 @@
 """The types that the driver and its clients speak: those of this library, or the same by their names in older packages.
 
-What goes over a topic is the same in both, but for the few types of which the older packages have other fields. So nodes
+What goes over a topic is the same in both, but for few types of which the older packages have other fields. So nodes
 and clients use the messages of this library; `spoken` gives them the names that others know, at the one place where a
 topic, a service or an action is made.
 

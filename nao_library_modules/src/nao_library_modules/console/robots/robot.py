@@ -132,7 +132,9 @@ class RobotClient:
     def topic(self, name: str, kind: type, callback: Callable[[Any], None], queue_size: int = 1) -> Callable[[], None]:
         """Listen to a topic of this robot, or to one by its full name; what comes back ends that."""
         full = name if name.startswith("/") else self.namespace + name
-        subscriber = rospy.Subscriber(full, spoken(kind, self.namespace), callback, queue_size=queue_size, tcp_nodelay=True)
+        subscriber = rospy.Subscriber(
+            full, spoken(kind, self.namespace), callback, queue_size=queue_size, tcp_nodelay=True
+        )
         return subscriber.unregister
 
     # --- goals ----------------------------------------------------------------------------------------------------
