@@ -1,7 +1,8 @@
 """Bags whose types of nao_robot's interface get the names of the older packages, or the other way round.
 
-A rosbag is converted as it is: bytes of messages, times and publishers stay. rosbag's own way, a rule of migration for
-`rosbag fix`, would want both definitions of each type written down, and a function that copies each field of messages.
+A rosbag is converted as it is: bytes of messages and times stay, and of each topic the first publisher. rosbag's own
+way, a rule of migration for `rosbag fix`, would want both definitions of each type written down, and a function that
+copies each field of messages.
 """
 
 from __future__ import annotations
