@@ -14,6 +14,7 @@ from actionlib import SimpleActionClient
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import ExecFootstepsAction, ExecFootstepsFeedback, ExecFootstepsGoal
+from nao_library_modules.ros.driver_types import spoken
 from nao_library_msgs.msg import StepTarget
 
 LIMIT = rospy.Duration(20)
@@ -47,7 +48,7 @@ def main() -> int:
     """Make them; the exit status tells whether all are made."""
     rospy.init_node("footsteps", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    client = SimpleActionClient("footsteps_execution", ExecFootstepsAction)
+    client = SimpleActionClient("footsteps_execution", spoken(ExecFootstepsAction))
     if not client.wait_for_server(LIMIT):
         print("there is no nao_footsteps: start it with roslaunch nao_library nao_sim.launch")
         return 1

@@ -15,6 +15,7 @@ from std_srvs.srv import Empty
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
+from nao_library_modules.ros.driver_types import spoken
 
 LIMIT = rospy.Duration(20)
 ARMS = ["LShoulderPitch", "LShoulderRoll", "RShoulderPitch", "RShoulderRoll"]
@@ -46,7 +47,7 @@ def main() -> int:
     """Play the goals one after the other; the exit status tells whether all succeeded."""
     rospy.init_node("joint_trajectory_client", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    client = SimpleActionClient("joint_trajectory", JointTrajectoryAction)
+    client = SimpleActionClient("joint_trajectory", spoken(JointTrajectoryAction))
     if not client.wait_for_server(LIMIT):
         print("there is no server joint_trajectory: start one with roslaunch nao_library nao_sim.launch")
         return 1

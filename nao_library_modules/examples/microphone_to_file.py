@@ -18,6 +18,7 @@ from pathlib import Path
 import rospy
 from dynamic_reconfigure.client import Client
 
+from nao_library_modules.ros.driver_types import spoken
 from nao_library_modules.whole_file import NoPlaceForFile, WholeFile, require_new
 from nao_library_msgs.msg import AudioBuffer
 
@@ -91,7 +92,7 @@ def main() -> int:
         print(f"there is no {MICROPHONE}: start it with roslaunch nao_library nao_sim.launch")
         return 1
     recording = Recording(options.seconds, options.frequency)
-    rospy.Subscriber(f"{MICROPHONE}/audio_raw", AudioBuffer, recording.take, queue_size=100)
+    rospy.Subscriber(f"{MICROPHONE}/audio_raw", spoken(AudioBuffer), recording.take, queue_size=100)
     rospy.on_shutdown(recording.complete.set)
     whole = recording.complete.wait(options.seconds + LIMIT) and not rospy.is_shutdown()
     if not whole:

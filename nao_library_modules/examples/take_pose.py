@@ -19,6 +19,7 @@ from nao_library_actions.msg import (
     BodyPoseWithSpeedAction,
     BodyPoseWithSpeedGoal,
 )
+from nao_library_modules.ros.driver_types import spoken
 
 LIMIT = rospy.Duration(20)
 
@@ -32,10 +33,10 @@ def main() -> int:
     rospy.init_node("take_pose", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
     if options.speed is None:
-        client = SimpleActionClient("body_pose", BodyPoseAction)
+        client = SimpleActionClient("body_pose", spoken(BodyPoseAction))
         goal = BodyPoseGoal(options.name)
     else:
-        client = SimpleActionClient("body_pose_naoqi", BodyPoseWithSpeedAction)
+        client = SimpleActionClient("body_pose_naoqi", spoken(BodyPoseWithSpeedAction))
         goal = BodyPoseWithSpeedGoal(options.name, options.speed)
     if not client.wait_for_server(LIMIT):
         print("there is no pose_manager: start it with roslaunch nao_library nao_sim.launch")

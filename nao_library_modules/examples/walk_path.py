@@ -18,6 +18,7 @@ from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
 
 from nao_library_actions.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal
+from nao_library_modules.ros.driver_types import spoken
 
 LIMIT = rospy.Duration(20)
 WALK_LIMIT = rospy.Duration(300)
@@ -56,7 +57,7 @@ def main() -> int:
     points = shapes[options.shape](options.size)
     rospy.init_node("walk_path", anonymous=True)
     rospy.sleep(0.0)  # simulated time begins at zero and jumps with the first message of /clock
-    client = SimpleActionClient("walk_path", FollowPathAction)
+    client = SimpleActionClient("walk_path", spoken(FollowPathAction))
     if not client.wait_for_server(LIMIT):
         print("there is no nao_path_follower: start it with roslaunch nao_library nao_sim.launch")
         return 1

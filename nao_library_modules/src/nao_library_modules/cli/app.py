@@ -37,6 +37,7 @@ COMMANDS = {
     "set": ("memory", "Write a value into the robot's memory."),
     "watch": ("memory", "Events and values of the robot's memory as they come."),
     "files": ("files", "Files on the robot: list them, get one, put one."),
+    "bag": ("bag", "Rosbags whose types have the names of the older packages, and back."),
     "console": ("console", "Pages in a browser for the person who runs a study."),
     "new": ("new", "Write a skeleton: a package for a study of one's own."),
     "sim": ("simulator", "Touch, push and picture a simulated robot, and rule its time."),

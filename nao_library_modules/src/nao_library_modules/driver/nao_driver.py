@@ -12,6 +12,7 @@ import rospy
 from naoqi.errors import NaoError
 
 from ..robot.robot import Robot
+from ..ros.driver_types import require_types
 from ..ros.health import Level, Report, connection_report
 from ..ros.node import own_as_node, robot_address, start_node
 from ..ros.node_interface import NodeInterface
@@ -111,13 +112,15 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
     A launched node whose name another node takes comes back when that one has ended.
 
     ROS API:
-        Parameters `~pip`, `~pport`: the robot; `~parts` ("all"): words of `PARTS`; `~watches` (false): whether the node
+        Parameters `~pip`, `~pport`: the robot; `nao_driver/messages`, see `driver_types`; `~parts` ("all"): words of
+        `PARTS`; `~watches` (false): whether the node
         stops what others leave going that die, for one whose parts set nothing going themselves. Publishes
         `/diagnostics`. Each part has the topics, services, actions and parameters that it has as a node of its own,
         under the same names.
     """
     options = start_node(NAME, description, argv)
     try:
+        require_types()
         ip, port = robot_address(options, rospy.get_param)
         words = chosen(rospy.get_param("~parts", ALL))
     except NaoError as error:

@@ -15,6 +15,7 @@ import rospy
 
 from naoqi.errors import NaoError
 
+from .driver_types import spoken
 from .goal_tracker import GoalTracker, server_connection
 
 LOOK_PERIOD = 0.005
@@ -150,7 +151,7 @@ class DriverAction(rospy.SubscribeListener):
     def __init__(self, name: str, action: type) -> None:
         super().__init__()
         self.name = rospy.resolve_name(name)
-        self.client = actionlib.ActionClient(name, action)
+        self.client = actionlib.ActionClient(name, spoken(action))
         self._lock = threading.Lock()
         self._running: list[GoalCall] = []
         self.client.pub_goal.impl.add_subscriber_listener(self)

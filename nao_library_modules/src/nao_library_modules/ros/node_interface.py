@@ -14,6 +14,7 @@ from naoqi.errors import NaoError
 from ..base.errors import Preempted
 from ..processes.closing import close_all
 from .action_server import ActionServer
+from .driver_types import spoken
 
 PROBE_LIMIT = 1.0
 """s that a node may take to take a connection, to count as alive."""
@@ -29,7 +30,8 @@ class AlreadyOffered(NaoError):
 class NodeInterface:
     """The side to ROS of something that has a name of its own: a node, or one of several parts of a node.
 
-    Names are as everywhere in ROS: "speech" is relative to the namespace of the part, "~rate" is the part's own.
+    Names are as everywhere in ROS: "speech" is relative to the namespace of the part, "~rate" is the part's own. Types
+    are those of this library; others see the names that `driver_types.spoken` gives them.
     `name`: full name. `namespace`: that the name is in, with a slash at both ends.
     """
 
@@ -52,13 +54,13 @@ class NodeInterface:
 
     def publisher(self, name: str, kind: type, **options: Any) -> rospy.Publisher:
         """Publish on a topic; options as rospy.Publisher takes them."""
-        publisher = rospy.Publisher(self.resolve(name), kind, **options)
+        publisher = rospy.Publisher(self.resolve(name), spoken(kind), **options)
         self._ends.append(publisher.unregister)
         return publisher
 
     def subscriber(self, name: str, kind: type, callback: Callable[[Any], Any], **options: Any) -> rospy.Subscriber:
         """Have the messages of a topic; options as rospy.Subscriber takes them."""
-        subscriber = rospy.Subscriber(self.resolve(name), kind, callback, **options)
+        subscriber = rospy.Subscriber(self.resolve(name), spoken(kind), callback, **options)
         self._ends.append(subscriber.unregister)
         return subscriber
 
@@ -71,7 +73,7 @@ class NodeInterface:
         other = node_that_offers(self.resolve(name))
         if other:
             raise AlreadyOffered(self.resolve(name), other)
-        service = rospy.Service(self.resolve(name), kind, answer)
+        service = rospy.Service(self.resolve(name), spoken(kind), answer)
         self._ends.append(service.shutdown)
         return service
 
@@ -99,7 +101,7 @@ class NodeInterface:
 
     def action(self, name: str, kind: type, goals: Any) -> None:
         """Serve an action. `kind`: its type. `goals`: takes goals and cancels: a ConcurrentActionServer."""
-        server = ActionServer(self.resolve(name), kind, goals.on_goal, goals.on_cancel, auto_start=False)
+        server = ActionServer(self.resolve(name), spoken(kind), goals.on_goal, goals.on_cancel, auto_start=False)
         server.start()
         self._ends.append(server.stop)
 

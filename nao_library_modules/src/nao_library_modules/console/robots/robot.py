@@ -25,6 +25,7 @@ from ...cli.progress import progress_text
 from ...functions.server_types import DESCRIBE, ServerType
 from ...owners.line import OwnerLine
 from ...ros.check_client import NotAnswered, call_service
+from ...ros.driver_types import spoken
 from ...ros.goal_tracker import GoalTracker, server_connection
 from .commands import CommandGoal, RobotCommand, goal_of, type_of
 from .errors import NotThere, ServiceRefused, Stopped
@@ -131,7 +132,9 @@ class RobotClient:
     def topic(self, name: str, kind: type, callback: Callable[[Any], None], queue_size: int = 1) -> Callable[[], None]:
         """Listen to a topic of this robot, or to one by its full name; what comes back ends that."""
         full = name if name.startswith("/") else self.namespace + name
-        subscriber = rospy.Subscriber(full, kind, callback, queue_size=queue_size, tcp_nodelay=True)
+        subscriber = rospy.Subscriber(
+            full, spoken(kind, self.namespace), callback, queue_size=queue_size, tcp_nodelay=True
+        )
         return subscriber.unregister
 
     # --- goals ----------------------------------------------------------------------------------------------------

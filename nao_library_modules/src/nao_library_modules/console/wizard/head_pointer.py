@@ -14,6 +14,7 @@ from naoqi.errors import NaoError
 
 from ...nao.camera_facts import CAMERA_NAMES, CAMERAS
 from ...nao.gaze import load_head
+from ...ros.driver_types import spoken
 from .pointing import HEAD, Angles, CameraLens, dragged, looked_at
 
 ANGLES, STATES = "joint_angles", "joint_states"
@@ -97,7 +98,7 @@ class HeadPointer:
             connected = threading.Event()
             self._publisher = rospy.Publisher(
                 self._robot.namespace + ANGLES,
-                JointAnglesWithSpeed,
+                spoken(JointAnglesWithSpeed, self._robot.namespace),
                 subscriber_listener=_Connected(connected),
                 queue_size=1,
                 tcp_nodelay=True,

@@ -17,6 +17,7 @@ from ...processes.closing import close_all
 from ...robot.robot import Robot
 from ...ros.concurrent_action_server import ConcurrentActionServer
 from ...ros.diagnostics import DiagnosticsPublisher, Reports
+from ...ros.driver_types import require_types
 from ...ros.health import connection_report
 from ...ros.node import own_as_node, robot_address, start_node
 from ...ros.node_interface import AlreadyOffered, NodeInterface
@@ -47,10 +48,11 @@ def run_driver(
         watches: As `run_module` takes it.
 
     ROS API:
-        Parameters `~pip`, `~pport`: the robot. Publishes `/diagnostics`.
+        Parameters `~pip`, `~pport`: the robot; `nao_driver/messages`, see `driver_types`. Publishes `/diagnostics`.
     """
     options = start_node(name, description, argv)
     try:
+        require_types()
         ip, port = robot_address(options, rospy.get_param)
         robot = Robot(ip, port)
         node = _made(make, robot)

@@ -29,6 +29,7 @@ from ...nao.joint_names import MOTION
 from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
 from ...robot.robot_task import run_task
 from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
+from ...ros.driver_types import spoken
 from ...ros.goal_tracker import GoalTracker
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
@@ -148,7 +149,7 @@ class TrajectoryClient:
     """
 
     def __init__(self) -> None:
-        self._client = actionlib.ActionClient(ACTION, JointTrajectoryAction)
+        self._client = actionlib.ActionClient(ACTION, spoken(JointTrajectoryAction))
         self._clock = RosClock()
 
     def take(self, pose: Pose, interrupt: CancellationToken) -> None:

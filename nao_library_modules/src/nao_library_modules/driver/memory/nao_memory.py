@@ -34,6 +34,7 @@ from naoqi.errors import NaoError
 
 from ...base.answers import json_of
 from ...base.suggestion import did_you_mean
+from ...ros.driver_types import spoken
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
@@ -167,7 +168,7 @@ class MemoryTopic(LazyTopic):
         """Open the topic `name` below the node, of a kind in MESSAGES; `tell` gets whether it has subscribers."""
         self._kind = MESSAGES[kind]
         self._last: Any = None
-        self._topic = rospy.Publisher(node.resolve(f"~{name}"), self._kind, queue_size=QUEUE)
+        self._topic = rospy.Publisher(node.resolve(f"~{name}"), spoken(self._kind), queue_size=QUEUE)
         super().__init__(tell, self._topic)
 
     def publish(self, value: Any) -> None:

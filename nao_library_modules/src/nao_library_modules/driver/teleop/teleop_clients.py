@@ -15,6 +15,7 @@ from std_srvs.srv import Empty
 from nao_library_actions.msg import BodyPoseAction, BodyPoseGoal
 from nao_library_msgs.msg import JointAnglesWithSpeed
 
+from ...ros.driver_types import spoken
 from ...ros.simple_action_client import SimpleActionClient
 from ..walk.walk_commands import Velocity
 
@@ -42,9 +43,9 @@ class TeleopClients:
         """
         self._tell = tell
         self._cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
-        self._joint_angles = rospy.Publisher("joint_angles", JointAnglesWithSpeed, queue_size=1)
+        self._joint_angles = rospy.Publisher("joint_angles", spoken(JointAnglesWithSpeed), queue_size=1)
         self._speech = rospy.Publisher("speech", String, queue_size=10)
-        self._poses = SimpleActionClient("body_pose", BodyPoseAction)
+        self._poses = SimpleActionClient("body_pose", spoken(BodyPoseAction))
         self._jobs: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._run, name="teleoperation", daemon=True)
         self._thread.start()

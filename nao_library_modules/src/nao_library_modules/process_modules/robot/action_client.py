@@ -15,6 +15,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 
 from ...base.suggestion import of_those
+from ...ros.driver_types import spoken
 from ...ros.goal_tracker import GoalTracker, server_connection
 from ..language.control import Step, subtask
 from ..language.failures import ActionlibActionTimedOut, LowLevelFailure
@@ -57,7 +58,7 @@ class PlanActionClient:
     def __init__(self, name: str, action: type, timeout: float | None = None) -> None:
         self.name = name
         self.timeout = timeout
-        self._client = actionlib.ActionClient(name, action)
+        self._client = actionlib.ActionClient(name, spoken(action))
         self._there = Fluent(f"server of {name}", False)
         threading.Thread(target=self._look_for_server, name=f"server of {name}", daemon=True).start()
 

@@ -13,6 +13,7 @@ from sensor_msgs.msg import JointState
 
 from ...base.places import FOOTPRINT, Place, yaw_of_quaternion
 from ...base.rotations import rotate
+from ...ros.driver_types import spoken
 from ...ros.robot_frames import tf_prefix
 from ...ros.ros_clock import RosClock
 from ..language.failures import LowLevelFailure
@@ -37,7 +38,7 @@ class LatchedTopic:
     """Publishes when the listeners are connected, which takes a moment after the publisher has been made."""
 
     def __init__(self, topic: str, kind: type) -> None:
-        self._publisher = rospy.Publisher(topic, kind, queue_size=10)
+        self._publisher = rospy.Publisher(topic, spoken(kind), queue_size=10)
         self._settled = False
 
     def tell(self, message: Any, limit: float) -> bool:

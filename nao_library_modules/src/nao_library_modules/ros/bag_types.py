@@ -1,0 +1,138 @@
+"""Bags whose types of nao_robot's interface get the names of the older packages, or the other way round.
+
+A rosbag is converted as it is: bytes of messages and times stay, and of each topic the first publisher. rosbag's own
+way, a rule of migration for `rosbag fix`, would want both definitions of each type written down, and a function that
+copies each field of messages.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections import Counter
+from dataclasses import dataclass, field
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import genpy
+import rosbag
+
+from naoqi.errors import NaoError
+
+from ..base.whole_file import move_whole, require_new
+from ..nao.type_names import OURS, type_names
+from .driver_types import as_theirs
+
+
+@dataclass
+class Conversion:
+    """What became of a bag; numbers of messages by the name of the type that they had.
+
+    Attributes:
+        renamed: Those that only have another name now.
+        refilled: Those that have other fields now: what both have was kept.
+        kept: Those of other types, as they were.
+        foreign: Those whose type is called as one of the table and has other fields, as they were; with the sum.
+    """
+
+    renamed: Counter[str] = field(default_factory=Counter)
+    refilled: Counter[str] = field(default_factory=Counter)
+    kept: Counter[str] = field(default_factory=Counter)
+    foreign: Counter[str] = field(default_factory=Counter)
+
+
+def convert_bag(source: Path, target: Path, names: str, overwrite: bool = False) -> Conversion:
+    """Write a bag with other names of types.
+
+    Args:
+        source: A bag.
+        target: Where to; it is there only when it is whole.
+        names: Which names its types are to have, OURS or THEIRS of `type_names`.
+        overwrite: Whether `target` may be there.
+
+    Raises:
+        NaoError: `source` is no bag that can be read, or `target` cannot be written.
+    """
+    target = require_new(target, overwrite)
+    if target.exists() and source.exists() and target.samefile(source):
+        raise NaoError(f"{target} is the bag itself: another name for the new one")
+    part = target.with_name(f"{target.name}.part")
+    done = Conversion()
+    try:
+        with rosbag.Bag(str(source)) as old:
+            compression = old.get_compression_info().compression
+            with rosbag.Bag(str(part), "w", compression=compression) as new:
+                _copy(old, new, _Names(names), done)
+        move_whole(part, target, overwrite)
+    except rosbag.ROSBagUnindexedException:
+        raise NaoError(f"{source} has no index, as one whose recording was cut off: rosbag reindex it first") from None
+    except (rosbag.ROSBagException, OSError, genpy.MessageException) as error:
+        raise NaoError(f"{source} cannot be converted: {error}") from error
+    finally:
+        part.unlink(missing_ok=True)
+    return done
+
+
+class _Names:
+    """The new class of each type."""
+
+    def __init__(self, names: str) -> None:
+        table = type_names()
+        self._to_ours = names == OURS
+        self._names = table.ours if self._to_ours else table.theirs
+        self._classes: dict[str, Any] = {}
+
+    def classes(self, name: str) -> tuple[Any, Any] | None:
+        """The class of a type and the one that takes its place; None for a type that keeps its name."""
+        if name not in self._names:
+            return None
+        if name not in self._classes:
+            package, _, word = (self._names[name] if self._to_ours else name).partition("/")
+            ours = getattr(importlib.import_module(f"{package}.msg"), word)
+            pair = (ours, as_theirs(ours))
+            self._classes[name] = pair[::-1] if self._to_ours else pair
+        return self._classes[name]
+
+
+def _copy(old: Any, new: Any, names: _Names, done: Conversion) -> None:
+    sums: dict[str, tuple[str, str]] = {}
+    for topic, raw, time, header in old.read_messages(raw=True, return_connection_header=True):
+        name, content, md5sum = raw[:3]
+        known = sums.setdefault(topic, (name, md5sum))
+        if known[1] != md5sum:  # rosbag writes one connection for each topic
+            raise rosbag.ROSBagException(f"{topic} has messages of {known[0]} and of {name}: rosbag filter one of them")
+        pair = names.classes(name)
+        if pair is None:
+            done.kept[name] += 1
+            new.write(topic, raw, time, raw=True, connection_header=header)
+            continue
+        before, after = pair
+        if md5sum != before._md5sum:
+            done.foreign[f"{name} ({md5sum})"] += 1
+            new.write(topic, raw, time, raw=True, connection_header=header)
+            continue
+        if before._md5sum == after._md5sum:
+            done.renamed[name] += 1
+        else:
+            content = _refilled(before().deserialize(content), after)
+            done.refilled[name] += 1
+        new_header = {**header, **_described(after)}
+        new.write(topic, (after._type, content, after._md5sum, after), time, raw=True, connection_header=new_header)
+
+
+def _described(kind: Any) -> dict[str, str]:
+    return {"type": kind._type, "md5sum": kind._md5sum, "message_definition": kind._full_text}
+
+
+def _refilled(message: Any, kind: Any) -> bytes:
+    buffer = BytesIO()
+    _filled(kind(), message).serialize(buffer)
+    return buffer.getvalue()
+
+
+def _filled(empty: Any, message: Any) -> Any:
+    """An empty message with all that another one has by the same names, through all messages in it."""
+    for name in set(empty.__slots__) & set(message.__slots__):
+        value, own = getattr(message, name), getattr(empty, name)
+        setattr(empty, name, _filled(own, value) if isinstance(own, genpy.Message) else value)
+    return empty

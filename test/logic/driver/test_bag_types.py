@@ -1,0 +1,124 @@
+"""Bags of the older stack, converted to the types of this library and back."""
+
+import json
+
+import pytest
+import rosbag
+from click.testing import CliRunner
+from genpy import Time
+from std_msgs.msg import String
+
+from nao_library_actions.msg import JointTrajectoryActionFeedback
+from nao_library_modules.cli.app import nao
+from nao_library_modules.nao.type_names import OURS, THEIRS
+from nao_library_modules.ros.bag_types import convert_bag
+from nao_library_modules.ros.driver_types import as_theirs
+from nao_library_msgs.msg import Bumper, JointAnglesWithSpeed
+from naoqi.errors import NaoError
+
+
+def feedback(kind):
+    message = kind()
+    message.status.goal_id.id = "goal 1"
+    return message
+
+
+@pytest.fixture
+def old(tmp_path):
+    """A bag as nao_robot's driver leaves it, compressed, with a topic of somebody else."""
+    path = tmp_path / "old.bag"
+    bumper = as_theirs(Bumper)
+    with rosbag.Bag(str(path), "w", compression="bz2") as bag:
+        for second in (1, 2):
+            angles = as_theirs(JointAnglesWithSpeed)(joint_names=["HeadYaw"], joint_angles=[0.25], speed=0.5)
+            bag.write("joint_angles", angles, Time(second))
+        header = {"topic": "bumper", "type": bumper._type, "md5sum": bumper._md5sum, "callerid": "/nao_tactile"}
+        header.update(message_definition=bumper._full_text, latching="1")
+        bag.write("bumper", bumper(bumper=1, state=1), Time(3), connection_header=header)
+        bag.write("joint_trajectory/feedback", feedback(as_theirs(JointTrajectoryActionFeedback)), Time(4))
+        bag.write("speech", String("hello"), Time(5))
+    return path
+
+
+def types_in(path):
+    with rosbag.Bag(str(path)) as bag:
+        return {topic: about.msg_type for topic, about in bag.get_type_and_topic_info().topics.items()}
+
+
+def content(path):
+    with rosbag.Bag(str(path)) as bag:
+        return [(topic, raw[1], time.to_sec()) for topic, raw, time in bag.read_messages(raw=True)]
+
+
+def test_an_old_bag_gets_our_types_and_keeps_bytes_times_publishers_and_compression(old, tmp_path):
+    new = tmp_path / "new.bag"
+    done = convert_bag(old, new, OURS)
+    assert dict(done.renamed) == {"naoqi_bridge_msgs/JointAnglesWithSpeed": 2, "naoqi_bridge_msgs/Bumper": 1}
+    assert dict(done.refilled) == {"naoqi_bridge_msgs/JointTrajectoryActionFeedback": 1}
+    assert dict(done.kept) == {"std_msgs/String": 1} and not done.foreign
+    assert types_in(new) == {
+        "joint_angles": "nao_library_msgs/JointAnglesWithSpeed",
+        "bumper": "nao_library_msgs/Bumper",
+        "joint_trajectory/feedback": "nao_library_actions/JointTrajectoryActionFeedback",
+        "speech": "std_msgs/String",
+    }
+    before, after = content(old), content(new)
+    assert [entry for entry in after if "feedback" not in entry[0]] == [e for e in before if "feedback" not in e[0]]
+    with rosbag.Bag(str(new)) as bag:
+        assert bag.get_compression_info().compression == "bz2"
+        headers = {c.topic: c.header for c in bag._get_connections()}
+        assert (headers["bumper"]["callerid"], headers["bumper"]["latching"]) == (b"/nao_tactile", b"1")
+        (_, message, _), *_ = bag.read_messages(topics=["joint_trajectory/feedback"])
+    assert message.status.goal_id.id == "goal 1" and message.feedback.joint_names == []
+
+
+def test_there_and_back_is_the_same_bag(old, tmp_path):
+    ours, back = tmp_path / "ours.bag", tmp_path / "back.bag"
+    convert_bag(old, ours, OURS)
+    done = convert_bag(ours, back, THEIRS)
+    assert sum(done.renamed.values()) == 3 and sum(done.refilled.values()) == 1
+    assert content(back) == content(old) and types_in(back) == types_in(old)
+
+
+def test_a_type_of_that_name_with_other_fields_stays_as_it_is_and_is_told(tmp_path):
+    stranger = type("Bumper", (String,), {"_type": "naoqi_bridge_msgs/Bumper", "__slots__": ()})
+    stranger.__slots__ = String.__slots__
+    with rosbag.Bag(str(tmp_path / "old.bag"), "w") as bag:
+        bag.write("bumper", stranger("left"), Time(1))
+    done = convert_bag(tmp_path / "old.bag", tmp_path / "new.bag", OURS)
+    assert dict(done.foreign) == {f"naoqi_bridge_msgs/Bumper ({String._md5sum})": 1}
+    assert types_in(tmp_path / "new.bag") == {"bumper": "naoqi_bridge_msgs/Bumper"}
+
+
+def test_what_cannot_be_read_or_written_is_refused_and_leaves_nothing(old, tmp_path):
+    (tmp_path / "text.bag").write_text("no bag")
+    for source, target, problem in (
+        (tmp_path / "text.bag", tmp_path / "new.bag", "text.bag cannot be converted"),
+        (old, old, "is there already"),
+        (tmp_path / "none.bag", tmp_path / "new.bag", "none.bag cannot be converted"),
+    ):
+        with pytest.raises(NaoError, match=problem):
+            convert_bag(source, target, OURS)
+    with pytest.raises(NaoError, match="is the bag itself"):
+        convert_bag(old, old, OURS, overwrite=True)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["old.bag", "text.bag"]
+
+
+def test_a_topic_of_two_types_is_refused_with_what_to_do(tmp_path):
+    path = tmp_path / "old.bag"
+    with rosbag.Bag(str(path), "w") as bag:
+        bag.write("t", String("x"), Time(1))
+        del bag._topic_connections["t"]  # as when two nodes publish: rosbag itself cannot write that
+        bag.write("t", Bumper(), Time(2))
+    with pytest.raises(NaoError, match="t has messages of std_msgs/String and of nao_library_msgs/Bumper: "):
+        convert_bag(path, tmp_path / "new.bag", THEIRS)
+
+
+def test_the_command_tells_how_many_messages_have_other_names(old, tmp_path):
+    run = CliRunner().invoke(nao, ["bag", "convert", str(old), str(tmp_path / "new.bag"), "--json"])
+    assert run.exit_code == 0, run.output
+    assert json.loads(run.output)["renamed"]["naoqi_bridge_msgs/JointAnglesWithSpeed"] == 2
+    run = CliRunner().invoke(nao, ["bag", "convert", str(tmp_path / "new.bag"), str(tmp_path / "more.bag")])
+    assert run.exit_code == 0 and "nothing had to be renamed" in run.output
+    run = CliRunner().invoke(nao, ["bag", "convert", str(old), str(tmp_path / "new.bag")])
+    assert run.exit_code == 1 and "--overwrite" in run.output

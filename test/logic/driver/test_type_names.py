@@ -1,0 +1,145 @@
+"""Names of types in the older packages: the table, what is installed, and classes that go by these names."""
+
+import sys
+from io import BytesIO
+
+import pytest
+from older_packages import make_older_packages
+
+from nao_library_actions import msg as actions
+from nao_library_modules.nao import type_names as names_of_types
+from nao_library_modules.nao.type_names import AUTO, OURS, THEIRS, choose, generated, main, sums_in, type_names
+from nao_library_modules.ros.driver_types import as_theirs
+from nao_library_msgs import msg, srv
+from naoqi.errors import NaoError
+
+OLDER = ("naoqi_bridge_msgs", "humanoid_nav_msgs")
+
+
+@pytest.fixture(scope="module")
+def packages(tmp_path_factory):
+    return make_older_packages(tmp_path_factory.mktemp("older"))
+
+
+def forget():
+    for name in [name for name in sys.modules if name.partition(".")[0] in OLDER]:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def installed(packages, monkeypatch):
+    """The older packages as a sourced workspace has them."""
+    forget()
+    monkeypatch.syspath_prepend(str(packages))
+    yield packages
+    forget()
+
+
+def carried(message, kind):
+    """A message of a class as what another class reads of its bytes."""
+    buffer = BytesIO()
+    message.serialize(buffer)
+    return kind().deserialize(buffer.getvalue())
+
+
+def test_our_definitions_under_the_older_names_have_the_sums_of_the_table(installed):
+    made = {package: sums_in(generated(package)) for package in OLDER}
+    assert {**made["naoqi_bridge_msgs"], **made["humanoid_nav_msgs"]} == dict(type_names().sums)
+    assert len(type_names().sums) == 154
+
+
+def test_auto_speaks_what_is_installed_and_names_may_be_asked_for(installed):
+    assert choose(AUTO) == choose(THEIRS) == (THEIRS, "")
+    assert choose(OURS) == (OURS, "")
+
+
+def test_without_the_packages_auto_is_ours_and_their_names_are_refused(monkeypatch, capsys):
+    monkeypatch.setattr(names_of_types, "generated", lambda package: [])
+    assert choose(AUTO) == (OURS, "")
+    assert main([AUTO]) == 0 and capsys.readouterr().out == OURS
+    with pytest.raises(NaoError, match="naoqi_bridge_msgs and humanoid_nav_msgs cannot be imported.* say nao_lib"):
+        choose(THEIRS)
+    assert main([THEIRS]) == 1 and "cannot be imported" in capsys.readouterr().err
+    with pytest.raises(NaoError, match="'naoqi': it is auto, nao_library or naoqi_bridge"):
+        choose("naoqi")
+
+
+@pytest.fixture
+def changed(installed):
+    """Changes a file of the generated packages, and puts it back."""
+    before = {}
+
+    def change(name, *replaced):
+        file = installed / name
+        before[file] = file.read_text()
+        file.write_text(before[file].replace(*replaced))
+
+    yield change
+    for file, text in before.items():
+        file.write_text(text)
+
+
+def test_a_package_of_another_version_is_refused_with_its_sum_and_left_alone_by_auto(changed):
+    wanted = type_names().sums["naoqi_bridge_msgs/Bumper"]
+    changed("naoqi_bridge_msgs/msg/_Bumper.py", wanted, "0" * 32)
+    with pytest.raises(NaoError, match=f"naoqi_bridge_msgs/Bumper has md5 sum {'0' * 32} instead of {wanted}"):
+        choose(THEIRS)
+    choice, warning = choose(AUTO)
+    assert choice == OURS and "naoqi_bridge_msgs/Bumper" in warning
+
+
+def test_a_type_that_a_package_lacks_is_named(changed):
+    changed("humanoid_nav_msgs/msg/_StepTarget.py", "humanoid_nav_msgs/StepTarget", "humanoid_nav_msgs/Other")
+    with pytest.raises(NaoError, match="humanoid_nav_msgs/StepTarget is not there: another version of the package"):
+        choose(THEIRS)
+
+
+def test_a_message_by_the_older_name_is_read_by_their_class_and_theirs_by_it(installed):
+    from naoqi_bridge_msgs.msg import JointAnglesWithSpeed
+
+    ours = msg.JointAnglesWithSpeed(joint_names=["HeadYaw"], joint_angles=[0.5], speed=0.2)
+    spoken = as_theirs(msg.JointAnglesWithSpeed)
+    assert (spoken._type, spoken._md5sum) == (JointAnglesWithSpeed._type, JointAnglesWithSpeed._md5sum)
+    theirs = carried(ours, JointAnglesWithSpeed)
+    assert theirs.joint_names == ["HeadYaw"] and theirs.speed == pytest.approx(0.2)
+    back = carried(theirs, spoken)
+    assert isinstance(back, msg.JointAnglesWithSpeed) and back.joint_angles == pytest.approx([0.5])
+    assert spoken(speed=0.3).speed == 0.3 and spoken(relative=1) != spoken()
+
+
+def test_the_definition_that_goes_with_it_names_their_types_all_the_way_down(installed):
+    from genpy.dynamic import generate_dynamic
+    from humanoid_nav_msgs.msg import ExecFootstepsActionGoal
+
+    text = as_theirs(actions.ExecFootstepsActionGoal)._full_text
+    assert "nao_library" not in text
+    rebuilt = generate_dynamic(ExecFootstepsActionGoal._type, text)
+    assert rebuilt[ExecFootstepsActionGoal._type]._md5sum == ExecFootstepsActionGoal._md5sum
+    assert "humanoid_nav_msgs/StepTarget" in rebuilt
+
+
+def test_an_action_has_their_topics_and_keeps_our_goal(installed):
+    action = as_theirs(actions.BodyPoseAction)()
+    assert [part._type for part in (action.action_goal, action.action_result, action.action_feedback)] == [
+        f"naoqi_bridge_msgs/BodyPoseAction{part}" for part in ("Goal", "Result", "Feedback")
+    ]
+    assert isinstance(action.action_goal.goal, actions.BodyPoseGoal)
+
+
+def test_feedback_with_other_fields_goes_out_without_ours(installed):
+    from naoqi_bridge_msgs.msg import JointTrajectoryActionFeedback
+
+    spoken = type(as_theirs(actions.JointTrajectoryAction)().action_feedback)
+    assert (spoken._type, spoken._md5sum) == (
+        JointTrajectoryActionFeedback._type,
+        JointTrajectoryActionFeedback._md5sum,
+    )
+    message = spoken(feedback=actions.JointTrajectoryFeedback(joint_names=["HeadYaw"]))
+    message.status.goal_id.id = "g"
+    assert carried(message, JointTrajectoryActionFeedback).status.goal_id.id == "g"
+
+
+def test_a_service_keeps_its_halves():
+    spoken = as_theirs(srv.CmdPoseService)
+    assert (spoken._type, spoken._md5sum) == ("naoqi_bridge_msgs/CmdPoseService", srv.CmdPoseService._md5sum)
+    assert spoken._response_class is srv.CmdPoseService._response_class
