@@ -11,7 +11,7 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import one_of
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller
+from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller, PlaySound
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
 from nao_sim_bridge.speech.animations import AnimationLibrary, read_animations
 from nao_sim_bridge.speech.animator import Animator
@@ -37,6 +37,7 @@ class ALAnimatedSpeech:
         call: Caller,
         animator: Animator,
         library: AnimationLibrary,
+        play_sound: PlaySound,
     ) -> None:
         self._runner = runner
         self._memory = memory
@@ -47,6 +48,7 @@ class ALAnimatedSpeech:
         self._call = call
         self._animator = animator
         self._library = library
+        self._play_sound = play_sound
         self._chance = random.Random(runner.simulation.scene.seed)
         self._mode = CONTEXTUAL
         memory.declare_event(END, "ALAnimatedSpeech")
@@ -59,7 +61,17 @@ class ALAnimatedSpeech:
         return self._say(text, self._mode, None)
 
     def _say(self, text: str, mode: str, call: Caller | None) -> Task:
-        talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, call)
+        talk = AnimatedTalk(
+            text,
+            self._settings.style(),
+            mode,
+            self._studio,
+            self._library,
+            self._chance,
+            call,
+            self._play_sound,
+            lambda: self._animator.posture,
+        )
 
         def start() -> Task:
             task = talk.start(self._runner.simulation, self._speaker, self._animator)
@@ -98,7 +110,7 @@ class ALAnimatedSpeech:
     def declareTagForAnimations(self, tags: Any) -> None:
         for tag, names in _lists(tags, "tagsToAnimations").items():
             for name in names:
-                one_of(name, "animation", self._library.animations)
+                one_of(name, "animation", self._library.names)
             self._library.add_tag(tag, names)
 
     def addTagsToWords(self, tags: Any) -> None:
