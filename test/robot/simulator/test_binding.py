@@ -9,6 +9,7 @@ from simulator import PATIENCE, connected
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task, TaskIds
 from nao_sim_bridge.naoqi.binding.binding import DEFECT, Service, offered
+from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.server.broker import Broker
 
 BOOK = "Head " * 20000
@@ -65,6 +66,16 @@ class Motion:
 
     def _getRobotConfig(self):
         raise AssertionError("published though it is private")
+
+
+class Battery:
+    """All that ALBattery has."""
+
+    def enablePowerMonitoring(self, enable):
+        raise AssertionError("not called")
+
+    def getBatteryCharge(self):
+        return 80
 
 
 @pytest.fixture(scope="module")
@@ -165,6 +176,43 @@ def test_other_objects_may_take_over_the_work_of_a_module(service, proxy, motion
         proxy.isRunning(posted)
     end()
     assert ended(wake) is None and motion.tasks[0].killed
+
+
+def test_a_module_for_later_is_made_once_by_its_first_call_and_left_unmade_by_another_one(broker, session):
+    made = []
+
+    def make():
+        made.append(Battery())
+        return made[-1:]
+
+    service = Service("ALBattery", Later(make), broker)
+    broker.register("ALBattery", service.object)
+    battery = session.service("ALBattery")
+    assert "getBatteryCharge" in {method["name"] for method in battery.metaObject()["methods"].values()}
+    assert made == []
+    calls = [battery.call("getBatteryCharge", _async=True) for _ in range(20)]
+    assert [ended(call) for call in calls] == [80] * 20 and len(made) == 1
+    service.rebind(Later(make))
+    assert len(made) == 1
+    assert battery.getBatteryCharge() == 80 and len(made) == 2
+    broker.unregister("ALBattery")
+
+
+def test_a_module_that_could_not_be_made_fails_its_call_and_is_made_by_the_next(broker, session):
+    tries = []
+
+    def make():
+        tries.append(1)
+        if len(tries) == 1:
+            raise BadValue("battery", None, "a battery")
+        return [Battery()]
+
+    broker.register("ALBattery", Service("ALBattery", Later(make), broker).object)
+    battery = session.service("ALBattery")
+    with pytest.raises(RuntimeError, match="^ALBattery::getBatteryCharge battery is None, allowed is a battery"):
+        battery.getBatteryCharge()
+    assert battery.getBatteryCharge() == 80
+    broker.unregister("ALBattery")
 
 
 def test_an_error_arrives_as_a_short_text_with_module_and_method(proxy, motion):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from functools import partial
-from typing import TYPE_CHECKING, Any, Callable
+from typing import TYPE_CHECKING, Any, Callable, Iterator, Sequence
 
 from nao_sim_bridge.base.closing import Step
 from nao_sim_bridge.base.config import sounds_directory
@@ -16,6 +16,7 @@ from nao_sim_bridge.hearing.recogniser import SpareProcess
 from nao_sim_bridge.naoqi import motion
 from nao_sim_bridge.naoqi.behaviors import animation_player, behavior_manager, frame_manager
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
+from nao_sim_bridge.naoqi.binding.later import Later, made
 from nao_sim_bridge.naoqi.body import leds
 from nao_sim_bridge.naoqi.body.body_modules import BodyModules
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
@@ -110,7 +111,7 @@ class RobotModules:
         self.film = FilmControl(runner, files, options.renderer)
         self.health = HealthControl(runner)
         self._body = BodyModules(runner, memory)
-        self.modules: dict[str, list[Any]] = {
+        self.modules: dict[str, Sequence[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
             "ALLeds": leds.parts(runner),
             "ALMotion": motion.parts(runner, memory),
@@ -147,7 +148,7 @@ class RobotModules:
     def client_gone(self, module: str) -> None:
         """A module of a client has left: what is subscribed under its name ends, in every module of the robot."""
         for name, parts in self.modules.items():
-            for part in parts:
+            for part in made(parts):
                 if hasattr(part, "client_gone"):
                     try:
                         part.client_gone(module)
@@ -158,6 +159,7 @@ class RobotModules:
         """First steps of the end, while the simulation runs or has been left behind: complete what is under way."""
         return [
             self._life.close,
+            *(part.close for parts in self._later() for part in parts.made if hasattr(part, "close")),
             *self._audio.closing(),
             *self.vision.closing(),  # before what has files to complete, and needs the pictures that are drawn
             self._photographer.close,  # before the film, whose last frames need not wait for the photos
@@ -169,3 +171,7 @@ class RobotModules:
     def closing(self) -> list[Step]:
         """Last steps of the end, when the simulation has ended."""
         return [self.speech.close, self.recognition.close]
+
+    def _later(self) -> Iterator[Later]:
+        """Modules that are made when they are first called."""
+        return (parts for parts in self.modules.values() if isinstance(parts, Later))

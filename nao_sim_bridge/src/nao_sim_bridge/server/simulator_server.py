@@ -111,7 +111,7 @@ class SimulatorServer:
         snapshot = robot.simulation.snapshot
         return snapshot, robot.began + snapshot.time
 
-    def modules(self) -> dict[str, list[Any]]:
+    def modules(self) -> dict[str, Sequence[Any]]:
         """NAOqi's modules by name: the objects that together have the methods of each."""
         return dict(self._robot.modules)
 

@@ -19,6 +19,7 @@ import qi
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.api import Method, module_methods, qi_type
 from nao_sim_bridge.naoqi.binding.common import CommonModule
+from nao_sim_bridge.naoqi.binding.later import Later, made
 from nao_sim_bridge.naoqi.binding.limits import check_sizes
 from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to
 
@@ -31,6 +32,7 @@ LONGEST_ERROR = 1200
 # The answer where something else was raised than what is raised on purpose.
 DEFECT = "a defect of the simulator, whose log tells more"
 PACKAGE = __name__.partition(".")[0]
+Methods = Mapping[str, Callable[..., Any]]
 
 
 class Service:
@@ -42,7 +44,8 @@ class Service:
     Args:
         module: A key of the API table.
         parts: Objects whose methods do the work; those with the names of the table are published. One with an attribute
-            `signals` publishes these libqi signals, by name; it has to keep them in `take_over(former)`.
+            `signals` publishes these libqi signals, by name; it has to keep them in `take_over(former)`. Of parts that
+            are made `Later` all of the table is published, and no signals.
         broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
     """
 
@@ -51,16 +54,17 @@ class Service:
         self._broker = broker
         self._parts = parts
         self._targets = self._bound_to(parts)
+        names = module_methods(module).keys() - NATIVE if isinstance(parts, Later) else self._targets.methods
         body: dict[str, Any] = {}
         for name, method in module_methods(module).items():
-            if name in self._targets.methods:
+            if name in names:
                 for position, overload in enumerate(method.overloads):
                     call = self._published(name, method.summary, qi_type(method.returns))
                     call.__qi_signature__ = overload.signature
                     body[name if position == 0 else f"{name}_{position}"] = call
         body["pCall"] = self._published("pCall", inspect.getdoc(CommonModule.pCall), qi.Dynamic, qi.AnyArguments)
         self.object = type(module, (), body)()
-        for part in parts:
+        for part in made(parts):
             for name, signal in getattr(part, "signals", {}).items():
                 setattr(self.object, name, signal)
 
@@ -69,20 +73,25 @@ class Service:
 
         What it returns is to be called when the former ones do nothing any more: it ends calls that wait for them.
         """
-        for part in parts:
+        for part in made(parts):
             if hasattr(part, "take_over"):
                 part.take_over(next(former for former in self._parts if type(former) is type(part)))
         former, self._targets, self._parts = self._targets, self._bound_to(parts), parts
         return former.end
 
     def _bound_to(self, parts: Sequence[Any]) -> _Targets:
+        if isinstance(parts, Later):
+            return _Targets({}, lambda: self._methods_of(parts))
+        return _Targets(self._methods_of(parts))
+
+    def _methods_of(self, parts: Sequence[Any]) -> Methods:
         table = module_methods(self._module)
         common = CommonModule(self._module, table, self._broker)
         for name, method in table.items():
             target = None if name in NATIVE else _find(name, [*parts, common])
             if target is not None:
                 common.targets[name] = _checked(self._module, method, target)
-        return _Targets({**common.targets, "pCall": common.pCall})
+        return {**common.targets, "pCall": common.pCall}
 
     def _published(self, name: str, summary: str | None, returns: Any, types: Any = None) -> Any:
         def published(_: Any, *args: Any) -> Any:
@@ -93,15 +102,20 @@ class Service:
 
 
 class _Targets:
-    """What answers the calls of a service, and the calls that take simulated time and have not ended."""
+    """What answers the calls of a service, and the calls that take simulated time and have not ended.
 
-    def __init__(self, methods: Mapping[str, Callable[..., Any]]) -> None:
+    Without `methods`, `make` gives them at the first call.
+    """
+
+    def __init__(self, methods: Methods, make: Callable[[], Methods] = dict) -> None:
         self.methods = methods
+        self._make = make
+        self._making = threading.Lock()
         self._waiting: set[Task] = set()
         self._ended = False
 
     def answer(self, module: str, method: str, args: Iterable[Any]) -> Any:
-        result = answer(module, method, self.methods[method], args, self._note)
+        result = answer(module, method, self.methods.get(method) or partial(self._first, method), args, self._note)
         if self._ended:  # by the time it was noted
             self.end()
         return result
@@ -113,6 +127,11 @@ class _Targets:
             task = self._waiting.pop()
             task.killed = task.killed or not task.finished
             task.finish()
+
+    def _first(self, method: str, *args: Any) -> Any:
+        with self._making:
+            self.methods = self.methods or self._make()
+        return self.methods[method](*args)
 
     def _note(self, task: Task) -> None:
         self._waiting.add(task)
