@@ -117,7 +117,7 @@ class Animator:
         self._moves.clear()
         self._home.clear()
         self._planned.clear()
-        for _, task in self._idle:
+        for _, task in list(self._idle):
             task.kill()
 
     # --- inside ---------------------------------------------------------------------------------------------------
