@@ -61,7 +61,7 @@ class Play:
 
     Attributes:
         height: Of the upper arm, up and down, rad.
-        out: Of the upper arm, outwards and inwards, rad.
+        out: Of the upper arm, only outwards, lest hands touch, rad.
         forearm: Of the elbow, rad.
         beat: Share of the time between poses.
         size: Share of the way from hanging arms.
@@ -74,10 +74,11 @@ class Play:
     size: float
 
     def of(self, rank: int, begin: float, share: float) -> Play:
-        """What the gesture of a rank has of it, -1 to 1 times `share`; each family begins elsewhere."""
+        """What the gesture of a rank has of it, up to `share` of it; each family begins elsewhere."""
         places = (SPREAD * (rank + 0.618 * begin)) % 1.0 * 2.0 - 1.0
         whole = (self.height, self.out, self.forearm, self.beat, self.size)
-        return Play(*(share * place * width for place, width in zip(places.tolist(), whole)))
+        height, out, forearm, beat, size = (share * place * width for place, width in zip(places.tolist(), whole))
+        return Play(height, (out + share * self.out) / 2.0, forearm, beat, size)
 
 
 @dataclass(frozen=True)

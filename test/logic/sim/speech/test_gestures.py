@@ -21,7 +21,7 @@ from nao_sim_bridge.speech.animations import FILE, is_for, load_animations, read
 from nao_sim_bridge.speech.body_language import CONTEXTUAL, QUICKEST, RANDOM, SLOWEST, plan
 
 # Of any two animations one hand is so far from where the other animation has it, at some moment, m.
-APART, APART_IN_FAMILY = 0.025, 0.045
+APART, APART_IN_FAMILY = 0.025, 0.04
 # The middle of a hand in the frame of its wrist, m.
 HAND = (0.05775, 0.0, -0.01231, 1.0)
 GESTURES = "animations/Stand/Gestures/"
