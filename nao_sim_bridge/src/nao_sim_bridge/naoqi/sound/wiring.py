@@ -98,7 +98,8 @@ class SpeechModules:
             self._call,
             self.animator,
             self.library,
-            play_sound,
+            # A sound set that is not loaded yet has its files read.
+            lambda path, volume: studio.in_background(lambda: play_sound(path, volume), "playSoundSetFile"),
         )
         self.modules: dict[str, list[Any]] = {
             "ALTextToSpeech": [self._text_to_speech, settings],

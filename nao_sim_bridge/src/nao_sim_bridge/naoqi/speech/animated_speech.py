@@ -5,11 +5,10 @@ from __future__ import annotations
 import random
 from typing import Any, Mapping
 
-from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
-from nao_sim_bridge.naoqi.binding.arguments import one_of
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller, PlaySound
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
@@ -110,7 +109,8 @@ class ALAnimatedSpeech:
     def declareTagForAnimations(self, tags: Any) -> None:
         for tag, names in _lists(tags, "tagsToAnimations").items():
             for name in names:
-                one_of(name, "animation", self._library.names)
+                if name not in self._library.names:
+                    raise UnknownName("animation", name, self._library.names)
             self._library.add_tag(tag, names)
 
     def addTagsToWords(self, tags: Any) -> None:
