@@ -167,5 +167,5 @@ def draw(path: Path) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("picture", nargs="?", type=Path, default=PICTURE, help=f"default: {PICTURE.name} in docs/images")
+    parser.add_argument("picture", nargs="?", type=Path, default=PICTURE, help="default: that of the documents")
     draw(parser.parse_args().picture)

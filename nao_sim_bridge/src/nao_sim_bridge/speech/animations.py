@@ -100,6 +100,11 @@ class AnimationLibrary:
         tags = [*self._words.get(word, ()), word]
         return list(dict.fromkeys(animation for tag in tags for animation in self.tagged(tag, posture)))
 
+    def of_sentence(self, sentence: str, posture: str = POSTURE) -> list[Animation]:
+        """Those that go with any part of a sentence, by its ending: a question, an exclamation, or any other."""
+        tag = _tables()["endings"].get(sentence.rstrip()[-1:], self.body_language)
+        return self.tagged(tag, posture) or self.tagged(self.body_language, posture)
+
     def add(self, animations: Iterable[Animation]) -> None:
         self.revision += 1
         for animation in animations:
@@ -162,7 +167,7 @@ def read_animations(path: Path) -> dict[str, Animation]:
     Raises:
         ConfigError: It has a wrong, unknown or missing entry.
     """
-    tables = check_keys(read_json(path), path.name, ("animations",), ("_meta", "body_language", "words"))
+    tables = check_keys(read_json(path), path.name, ("animations",), ("_meta", "body_language", "endings", "words"))
     return {name: _animation(name, entry, path.name) for name, entry in tables["animations"].items()}
 
 
@@ -173,7 +178,9 @@ def _shipped() -> Mapping[str, Animation]:
 
 @lru_cache(maxsize=None)
 def _tables() -> Mapping:
-    return check_keys(read_json(config_file(FILE)), FILE, ("animations", "body_language", "words"), ("_meta",))
+    return check_keys(
+        read_json(config_file(FILE)), FILE, ("animations", "body_language", "endings", "words"), ("_meta",)
+    )
 
 
 def _animation(name: str, entry: object, file: str) -> Animation:

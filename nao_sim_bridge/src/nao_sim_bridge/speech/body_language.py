@@ -38,18 +38,20 @@ def plan(
     library: AnimationLibrary,
     chance: random.Random,
     posture: str = POSTURE,
+    sentence: str = "",
 ) -> list[PlannedGesture]:
     """Gestures of a sentence, all over when it is; a sentence too short for any has the shortest one, done quickly.
 
-    The contextual mode looks at the words, (s from the beginning, word) in their order, and fills what is left at
-    random; `chance` chooses among those that fit equally, all made for the posture.
+    The contextual mode looks at the words, (s from the beginning, word) in their order, and at the end of the sentence,
+    which says what fills the rest; `chance` chooses among those that fit equally, all made for the posture.
     """
     if mode == DISABLED:
         return []
-    fillers = library.tagged(library.body_language, posture)
+    contextual = mode == CONTEXTUAL
+    fillers = library.of_sentence(sentence if contextual else "", posture)
     planned: list[PlannedGesture] = []
     begin = 0.0
-    if mode == CONTEXTUAL:
+    if contextual:
         for time, word in words:
             start = max(time - LEAD, begin)
             fitting = [a for a in library.of_word(word, posture) if a.length * QUICKEST <= duration - start]
@@ -62,7 +64,7 @@ def plan(
     planned += _filled(begin, duration, fillers, chance)
     if planned:
         return planned
-    of_words = [a for _, word in words for a in library.of_word(word, posture)] if mode == CONTEXTUAL else []
+    of_words = [a for _, word in words for a in library.of_word(word, posture)] if contextual else []
     return _quick(of_words or fillers)
 
 

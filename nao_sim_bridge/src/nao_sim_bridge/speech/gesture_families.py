@@ -30,7 +30,7 @@ SPEED_SHARE = 0.55
 PEAK = 1.5
 # A trunk that leans by the hips goes back by the ankles by this share: its centre of mass stays over the soles.
 ANKLE_SHARE = 0.35
-# Multiples of these fill a cube of five dimensions evenly, so gestures of a family that follow each other lie far apart.
+# Multiples of these fill a cube of five dimensions evenly: gestures of a family that follow each other lie far apart.
 # Source: M. Roberts' generalisation of the golden ratio.
 SPREAD = np.array([0.875, 0.7656, 0.6699, 0.5862, 0.5129])
 NAME = re.compile(r"(?:(Left|Right|Center)_(Slow|Neutral|Strong)_)?(\w+)_\d+")
@@ -45,7 +45,7 @@ class Tempo:
         beat: From one pose to the next, s.
         end: From the last pose back to where the gesture began, s.
         size: How far poses are from hanging arms, times what the table says.
-        again: How many poses are done once more.
+        again: How often the last two poses are done once more.
     """
 
     begin: float
@@ -224,7 +224,7 @@ class _Builder:
         else:
             other = [] if self._other == "none" else [self._other] * len(way)
         again = self._tempo.again if len(way) > 1 else 0
-        return way + way[-2:] * (again // 2), other + other[-2:] * (again // 2)
+        return way + way[-2:] * again, other + other[-2:] * again
 
     def _pose(self, name: str, arm: str) -> list[float]:
         """Angles of an arm, as far from hanging as this gesture is large, within the limits of its joints."""
@@ -268,9 +268,7 @@ class _Builder:
         return moved
 
 
-def _frames(
-    joints: Sequence[str], points: Sequence[Sequence[float]], begin: float, end: float
-) -> dict[str, KeyFrames]:
+def _frames(joints: Sequence[str], points: Sequence[Sequence[float]], begin: float, end: float) -> dict[str, KeyFrames]:
     """Key frames at even times from `begin` to `end`, s, of those joints that move at all."""
     times = tuple(np.linspace(begin, end, len(points)).round(3).tolist()) if len(points) > 1 else (round(begin, 3),)
     columns = zip(joints, zip(*points))
@@ -285,7 +283,7 @@ def _family(name: str, entry: Mapping) -> Family:
 
 
 def _numbers(written: Sequence[str]) -> Iterator[str]:
-    """ "01", "04-06" -> "01", "04", "05", "06"."""
+    """Numbers as they are in names: those of "01", "04-06" are "01", "04", "05", "06"."""
     for part in written:
         first, _, last = part.partition("-")
         for number in range(int(first), int(last or first) + 1):

@@ -152,8 +152,8 @@ def test_gestures_are_built_when_they_are_asked_for():
 WORDS = [(0.1, "Hello"), (0.6, "my"), (1.0, "name"), (4.5, "maybe"), (5.0, "not")]
 
 
-def gestures(duration, words, mode, seed=0):
-    return plan(duration, words, mode, load_animations(), random.Random(seed))
+def gestures(duration, words, mode, seed=0, sentence=""):
+    return plan(duration, words, mode, load_animations(), random.Random(seed), sentence=sentence)
 
 
 def names(planned):
@@ -175,6 +175,15 @@ def test_a_sentence_too_short_for_any_gesture_has_a_quick_one(mode, tag):
     (gesture,) = gestures(0.5, WORDS[:1], mode)
     assert tag in gesture.animation.tags and gesture.start == 0.0
     assert gesture.length == pytest.approx(QUICKEST * gesture.animation.length)
+
+
+@pytest.mark.parametrize("ending, mode, tag", [
+    ("?", CONTEXTUAL, "interrogative"), ("!", CONTEXTUAL, "exclamation"), (".", CONTEXTUAL, "body language"),
+    ("?", RANDOM, "body language"),
+])  # fmt: skip
+def test_a_question_is_asked_with_the_hands_too(ending, mode, tag):
+    planned = gestures(10.0, [], mode, sentence=f"Well{ending}")
+    assert planned and all(tag in gesture.animation.tags for gesture in planned)
 
 
 def test_words_bring_their_gestures_a_little_before_they_are_said():

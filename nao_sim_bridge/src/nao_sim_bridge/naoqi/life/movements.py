@@ -83,6 +83,7 @@ class SpeakingMovement:
                 self._library,
                 self._chance,
                 self._animator.posture,
+                clip.text,
             )
         )
 

@@ -51,7 +51,7 @@ class AudioModules:
         simulation.holds += [self.clients.behind, background.holds]
 
     def play_sound(self, path: str, volume: float) -> Task:
-        """Play a sound of a sound set, "set/file" or "file", at a volume, 0..1; the task ends with one that ends with it.
+        """Play a sound of a set, "set/file" or "file", at a volume, 0..1; the task ends with one that ends with it.
 
         Errors in the task are those of ALAudioPlayer.
         """

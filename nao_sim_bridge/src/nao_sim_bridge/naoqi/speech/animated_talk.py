@@ -112,7 +112,7 @@ class AnimatedTalk:
         # From the first instruction on there are the gestures that it asks for.
         until = min((time for time, mark in clip.marks if isinstance(mark, Cue)), default=clip.sound.duration)
         words = [word for word in words if word[0] < until]
-        gestures = body_language.plan(until, words, self._mode, self._library, self._chance, self._posture())
+        gestures = body_language.plan(until, words, self._mode, self._library, self._chance, self._posture(), clip.text)
         for gesture in gestures:
             self._tell_limp(gesture.animation)
         self._animator.plan([] if self._animator.busy else gestures)
