@@ -141,7 +141,7 @@ def layout() -> tuple[list[Section], int]:
     line = column = 0
     for folder, each in groupby(sorted(names()), lambda name: name.rsplit("/", 1)[0]):
         members = list(each)
-        if column and column + len(members) > COLUMNS:
+        if column and column + max(len(members), WIDTH) > COLUMNS:
             line, column = line + 1, 0
         sections.append(Section(folder, members, line, column))
         lines, end = divmod(column + len(members), COLUMNS)

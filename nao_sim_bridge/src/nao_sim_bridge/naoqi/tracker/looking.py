@@ -97,9 +97,6 @@ class Looking:
     def _move(self, name: str, angles: Mapping[str, float], share: float) -> Task:
         robot = self._simulation.robot
         targets = {robot.model.joint_index[joint]: angle for joint, angle in angles.items()}
-        limp = [robot.model.joints[i].name for i in targets if robot.joints.stiffnesses[i] == 0.0]
-        if limp:
-            raise NaoqiError(f"{', '.join(limp)} is limp, wakeUp or a stiffness comes first")
         speeds = {i: share * robot.model.joints[i].max_velocity for i in targets}
         return robot.motion.follow(
             name, targets, lambda now: {i: Ramp(now[i], angle, speeds[i]) for i, angle in targets.items()}
