@@ -107,6 +107,17 @@ def test_limp_joints_stay_while_a_behaviour_takes_its_time(bench):
     assert limp.command("HeadPitch") == pitch and limp.simulation.robot.motion.tasks() == []
 
 
+def test_a_gesture_that_leans_is_stopped_half_way_and_the_robot_stands(stage):
+    hip = stage.command("LHipPitch")
+    task = stage.play({"gesture": "animations/Stand/Gestures/BowShort_1"})
+    stage.bench.run(1.2)
+    assert stage.command("LHipPitch") < hip - 0.2
+    task.kill()
+    stage.bench.run(1.5)
+    assert stage.command("LHipPitch") == pytest.approx(hip, abs=1e-6)
+    assert recognise(stage.bench.model, stage.bench.now).posture == "Stand"
+
+
 LEGS = {"LHipPitch", "LHipRoll"}
 
 

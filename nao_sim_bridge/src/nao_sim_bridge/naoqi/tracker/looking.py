@@ -13,7 +13,6 @@ from nao_sim_bridge.control.joints.curves import Ramp
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.frames import TORSO
 from nao_sim_bridge.naoqi.binding.arguments import numbers, one_of, speed_share, vector
-from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.arguments import space_of
 from nao_sim_bridge.naoqi.tracker.tracking import Tracking
 from nao_sim_bridge.tracking import geometry
