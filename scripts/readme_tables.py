@@ -36,6 +36,7 @@ from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
 from nao_sim_bridge.server.cli import parser as simulator_parser
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.server.simulator_server import SimulatorServer
+from nao_sim_bridge.speech.gesture_families import names as animation_names
 
 try:
     from nao_sim_bridge.naoqi.binding.limits import table as limits_of_simulator
@@ -50,6 +51,8 @@ NOT_WRAPPED = ROOT / "scripts" / "not_wrapped.yaml"
 OUR_MESSAGES = "nao_library_msgs"
 FEW = 5
 """Functions that are named where all that read a field read it alike."""
+MOST_TAGS = 6
+"""Tags of a folder of animations that are named."""
 LAUNCH_FILES = ROOT / "launch" / "launch"
 MARKED = re.compile(r"<!-- begin: (?P<name>[^>]+) -->\n(?P<body>.*?)<!-- end: (?P<end>[^>]+) -->", re.DOTALL)
 
@@ -321,6 +324,21 @@ def sizes() -> str:
     return table(("of", "what", "bound", "unit", "where"), rows)
 
 
+def animations() -> str:
+    """Folders of NAOqi's animations: how many there are, of which families, with which tags."""
+    rows = []
+    folders: dict[str, list[str]] = {}
+    for name in animation_names():
+        folders.setdefault(name.rsplit("/", 1)[0], []).append(name)
+    for folder, members in sorted(folders.items()):
+        named = [animation_names()[name] for name in members]
+        families = sorted({each.family.rsplit("/", 1)[-1] for each in named})
+        tags = sorted({tag for each in named for tag in each.tags})
+        shown = [code(tag) for tag in tags[:MOST_TAGS]] + (["..."] if len(tags) > MOST_TAGS else [])
+        rows.append((code(folder), str(len(members)), ", ".join(families), ", ".join(shown)))
+    return table(("folder", "animations", "families", "tags"), rows)
+
+
 def bound(number: float | None) -> str:
     """A bound as people read it; a dash for none."""
     return "–" if number is None or abs(number) == float("inf") else f"{number:.10g}"
@@ -347,6 +365,7 @@ def all_tables() -> dict[str, str]:
         "wrapped": wrapped(servers),
         "limits": limits(),
         "sizes": sizes(),
+        "animations": animations(),
         "simulator options": simulator_options(),
         "simulator only": simulator_only(),
         "robot files": robot_files(),

@@ -9,7 +9,13 @@ import pytest
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk
-from nao_sim_bridge.naoqi.speech.annotated_text import Instruction, method_call, read
+from nao_sim_bridge.naoqi.speech.annotated_text import (
+    Instruction,
+    method_call,
+    path_and_tag,
+    read,
+    sound_and_volume,
+)
 from nao_sim_bridge.speech.animations import load_animations
 from nao_sim_bridge.speech.clips import Style
 from nao_sim_bridge.speech.sentences import Sentence
@@ -19,14 +25,24 @@ SHUTDOWN = "Good ^call(ALSystem.shutdown()) night ^pCall(ALSystem.reboot())."
 
 
 def items_of(text, call=None):
+    studio, posture = Studio(object()), lambda: "Stand"
     return AnimatedTalk(
-        text, Style(None), "disabled", Studio(object()), load_animations(), random.Random(0), call
+        text, Style(None), "disabled", studio, load_animations(), random.Random(0), call, lambda *_: None, posture
     )._items
 
 
 def test_a_behaviour_calls_no_methods_and_who_calls_the_robot_does():
     assert [type(item) for item in items_of(SHUTDOWN)] == [Sentence]
     assert len(items_of(SHUTDOWN, call=lambda *_: None)) == 3  # a sentence, a gate at which it waits, a sentence
+
+
+def test_tags_may_have_a_path_and_sounds_a_volume():
+    assert path_and_tag("hello") == (None, "hello")
+    assert path_and_tag("animations/Stand , hello") == ("animations/Stand", "hello")
+    assert sound_and_volume("mine/bell") == ("mine/bell", 1.0) and sound_and_volume("bell, 50") == ("bell", 0.5)
+    for text in ("bell, loud", "bell, 101", "bell, -1"):
+        with pytest.raises(ValueError, match="no volume, which is 0 to 100"):
+            sound_and_volume(text)
 
 
 @pytest.mark.parametrize(

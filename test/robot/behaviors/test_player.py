@@ -92,13 +92,30 @@ def test_stopping_ends_everything_at_once_and_brings_gestures_and_lights_back(st
     stage.bench.run(2.0)
     assert stage.command("HeadPitch") == pitch and stage.command("RShoulderPitch") == pytest.approx(home, abs=1e-6)
     assert stage.simulation.robot.motion.tasks() == []
-    limp = Stage(bench(stiffness=0.0)).play({"together": [{"wait": 5.0}, nod()]})
-    assert limp.finished and "HeadPitch are limp, wakeUp" in str(limp.error)
     task = stage.play({"posture": "Crouch", "speed": 1.0}, {"say": "down"}, {"wait": 30.0})
     stage.bench.run(6.0)
     assert recognise(stage.bench.model, stage.bench.now).posture == "Crouch" and stage.said[0][1] == "down"
     stage.simulation.reset()
     assert task.finished
+
+
+def test_limp_joints_stay_while_a_behaviour_takes_its_time(bench):
+    limp = Stage(bench(stiffness=0.0))
+    pitch, hey = limp.command("HeadPitch"), {"gesture": "animations/Stand/Gestures/Hey_1"}
+    task = limp.play(nod(), hey)
+    assert limp.until_over(task) == pytest.approx(0.3 + 2.5, abs=0.1) and task.error is None
+    assert limp.command("HeadPitch") == pitch and limp.simulation.robot.motion.tasks() == []
+
+
+def test_a_gesture_that_leans_is_stopped_half_way_and_the_robot_stands(stage):
+    hip = stage.command("LHipPitch")
+    task = stage.play({"gesture": "animations/Stand/Gestures/BowShort_1"})
+    stage.bench.run(1.2)
+    assert stage.command("LHipPitch") < hip - 0.2
+    task.kill()
+    stage.bench.run(1.5)
+    assert stage.command("LHipPitch") == pytest.approx(hip, abs=1e-6)
+    assert recognise(stage.bench.model, stage.bench.now).posture == "Stand"
 
 
 LEGS = {"LHipPitch", "LHipRoll"}

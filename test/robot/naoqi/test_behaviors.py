@@ -32,6 +32,7 @@ def test_what_comes_with_a_robot_is_installed_with_tags_and_natures(manager):
     assert manager.getBehaviorNames() == names == manager.getSystemBehaviorNames()
     assert manager.isBehaviorInstalled(HEY) and manager.isBehaviorPresent("User/" + HEY)
     assert not manager.isBehaviorInstalled("Hey_1") and manager.resolveBehaviorName("Hey_1") == HEY
+    assert len([name for name in names if name.startswith("animations/")]) > 434
     assert HEY in manager.getBehaviorsByTag("hello") and "hello" in manager.getBehaviorTags(HEY)
     assert "hello" in manager.getTagList()
     assert [manager.getBehaviorNature(name) for name in (SLEEP, HEY)] == ["solitary", "no nature"]
@@ -90,7 +91,6 @@ def test_what_is_installed_is_told_runs_and_goes(manager, stiff_robot, begin):
 def test_what_is_wrong_is_told(robot, refuses):
     refuses(MANAGER, f"""
         runBehavior('animations/Stand/Gestures/Hei_1') -> did you mean .*Hey_1
-        startBehavior('{HEY}') -> are limp, wakeUp or a stiffness comes first
         stopBehavior('{HEY}') -> does not run; running is none
         removeBehavior('{HEY}') -> not one of the robot
         installBehavior('../mine.yaml') -> not inside
@@ -104,6 +104,25 @@ def test_what_is_wrong_is_told(robot, refuses):
     """)  # fmt: skip
 
 
+def test_a_limp_robot_plays_and_stays_as_it_is_and_that_is_told_once(robot, begin, caplog):
+    before = robot.ALMotion.getAngles("Body", False)
+    for module, method in ((MANAGER, "runBehavior"), ("ALAnimationPlayer", "run")):
+        caplog.clear()
+        future = begin(module, method, HEY, after=1.0)
+        assert robot.ALBehaviorManager.getRunningBehaviors() == [HEY]
+        robot.advance(2.0)
+        assert robot.answer(future) is None and robot.ALMotion.getAngles("Body", False) == before
+        (warning,) = [record.getMessage() for record in caplog.records if record.name == "nao_sim.behaviors"]
+        assert f"behavior {HEY}: RShoulderPitch, RShoulderRoll, RElbowYaw... have no stiffness and stay" in warning
+
+
+def test_joints_that_are_stiff_move_beside_limp_ones(robot, begin):
+    robot.ALMotion.setStiffnesses("Head", 1.0)
+    begin(MANAGER, "runBehavior", "animations/Stand/Gestures/Yes_1", after=0.3)
+    pitch, shoulder = robot.ALMotion.getAngles(["HeadPitch", "RShoulderPitch"], False)
+    assert pitch == pytest.approx(-0.17 + 0.22, abs=0.03) and shoulder == pytest.approx(1.44, abs=0.01)
+
+
 def test_the_player_knows_the_posture_and_chooses_by_tag(manager, stiff_robot, begin):
     player = stiff_robot.ALAnimationPlayer
     future = begin("ALAnimationPlayer", "run", "animations/[posture]/Gestures/Hey_1")
@@ -111,11 +130,15 @@ def test_the_player_knows_the_posture_and_chooses_by_tag(manager, stiff_robot, b
     stiff_robot.advance(3.0)
     stiff_robot.answer(future)
     begin("ALAnimationPlayer", "runTag", "hello")
-    assert manager.getRunningBehaviors() == [HEY]
+    (running,) = manager.getRunningBehaviors()
+    assert "hello" in manager.getBehaviorTags(running)
     manager.stopAllBehaviors()
     player.addTagForAnimations({"salute": ["Nod_1"]})
     begin("ALAnimationPlayer", "runTag", "Stand", "salute")
     assert manager.getRunningBehaviors() == ["animations/Stand/Gestures/Nod_1"]
+    manager.stopAllBehaviors()
+    begin("ALAnimationPlayer", "runTag", "animations/[posture]/Emotions/Negative", "bored")
+    assert manager.getRunningBehaviors() == ["animations/Stand/Emotions/Negative/Bored_1"]
     player.reset()
     with pytest.raises(RuntimeError, match="no animation"):
         player.runTag("salute")

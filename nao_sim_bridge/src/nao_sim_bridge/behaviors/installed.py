@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 from functools import lru_cache
 from typing import Iterable, Mapping
 
@@ -27,15 +28,25 @@ class InstalledBehaviors:
         self._lock = threading.Lock()
         self._gestures = gestures
         self._user: dict[str, Behavior] = {}
+        # Those of the system, and the revision of the gestures of which they are.
+        self._system: tuple[dict[str, Behavior] | None, int] = (None, 0)
 
     @property
     def system(self) -> dict[str, Behavior]:
-        """Those that come with the robot."""
-        gestures = list(self._gestures.animations.values())
-        return {
-            **{a.name: Behavior(a.name, Gesture(a.name), "a gesture", tags=a.tags) for a in gestures},
-            **shipped_behaviors(),
-        }
+        """Those that come with the robot, and gestures that somebody has declared since."""
+        library = self._gestures
+        known, revision = self._system
+        if known is None or revision != library.revision:
+            revision, known = library.revision, dict(shipped_behaviors())
+            for name in library.names:
+                tags = library.tags_of(name)
+                own = known.get(name)
+                if own is None:
+                    known[name] = Behavior(name, Gesture(name), "a gesture", tags=tags)
+                else:  # it does more than the gesture of its name
+                    known[name] = replace(own, tags=tuple(dict.fromkeys((*own.tags, *tags))))
+            self._system = known, revision
+        return known
 
     @property
     def user(self) -> dict[str, Behavior]:

@@ -114,7 +114,7 @@ class BehaviorPlayer:
         if isinstance(step, Together):
             return _all_of([self._in_turn([branch], run) for branch in step.steps])
         if isinstance(step, Joints):
-            return run.watch(self._move(step))
+            return run.watch(self._move(step, run))
         if isinstance(step, Gesture):
             return self._gesture(step, run)
         if isinstance(step, Lights):
@@ -123,13 +123,14 @@ class BehaviorPlayer:
             return run.watch(self._timer(step.duration))
         return self._command(step, run)
 
-    def _move(self, step: Joints) -> Task:
+    def _move(self, step: Joints, run: BehaviorRun) -> Task:
+        """Joints without stiffness stay where they are, as on a robot; the others move."""
         robot = self._simulation.robot
         index = robot.model.joint_index
         ways = {index[name]: way for name, way in step.ways.items()}
-        self._check_stiff(ways)
-        # Limp hands stay as they are: their gears hold them, and opening and closing switches their motors off.
-        ways = {i: way for i, way in ways.items() if robot.joints.stiffnesses[i] > 0.0}
+        limp = [i for i in ways if robot.joints.stiffnesses[i] == 0.0]
+        run.tell_limp(robot.model.joints[i].name for i in limp if not robot.model.joints[i].is_hand)
+        ways = {i: way for i, way in ways.items() if i not in limp}
         if not ways:
             return self._timer(step.length)
 
@@ -138,21 +139,12 @@ class BehaviorPlayer:
 
         return robot.motion.follow("behavior", ways, curves, noticed=False)
 
-    def _check_stiff(self, indices: Iterable[int]) -> None:
-        robot = self._simulation.robot
-        limp = [robot.model.joints[i] for i in indices if robot.joints.stiffnesses[i] == 0.0]
-        names = [joint.name for joint in limp if not joint.is_hand]
-        if names:
-            raise SimulationError(f"{', '.join(names[:3])} are limp, wakeUp or a stiffness comes first")
-
     def _gesture(self, step: Gesture, run: BehaviorRun) -> Task:
-        animation = self._library.find(step.name)
+        animation = self._library.find(step.name, self._animator.posture)
         if animation is None:
             raise SimulationError("there is no such animation")
-        self._check_stiff(self._simulation.model.joint_index[joint] for joint in animation.joints)
+        run.tell_limp(self._animator.limp_joints(animation))
         task = self._animator.start(animation)
-        if task is None:
-            raise SimulationError("its joints cannot be moved now")
         # Another gesture of the same joints replaces it: the behaviour goes on.
         return run.watch(task, end=lambda: self._animator.stop(animation), needed=False)
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Callable, Iterable, Mapping
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.steps import Behavior
 from nao_sim_bridge.body.leds import LedBank
+
+log = logging.getLogger("nao_sim.behaviors")
 
 # Intensities that are equal.
 SAME = 1e-6
@@ -21,6 +24,7 @@ class BehaviorRun:
         self._leds = leds
         self._ends: dict[Task, Callable[[], object]] = {}
         self._stopped = False
+        self._told_limp = False
         # Intensities of LEDs before the behaviour changed them first, and those that it has asked for last.
         self._before: dict[int, float] = {}
         self._asked: dict[int, float] = {}
@@ -29,6 +33,17 @@ class BehaviorRun:
     @property
     def over(self) -> bool:
         return self._stopped or self.task.finished
+
+    def tell_limp(self, joints: Iterable[str]) -> None:
+        """Tell in the log, once a run, of joints that stay where they are because they have no stiffness."""
+        names = list(joints)
+        if names and not self._told_limp:
+            self._told_limp = True
+            log.warning(
+                "behavior %s: %s have no stiffness and stay where they are; wakeUp or a stiffness comes first",
+                self.behavior.name,
+                ", ".join(names[:3]) + ("..." if len(names) > 3 else ""),
+            )
 
     def watch(self, task: Task, end: Callable[[], object] | None = None, needed: bool = True) -> Task:
         """Have a task that the behaviour has begun end with it, by killing it when `end` is None; the task.

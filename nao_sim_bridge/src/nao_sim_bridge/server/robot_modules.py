@@ -97,7 +97,7 @@ class RobotModules:
         self.files = files = ClientFiles(options.record_dir, [sounds_directory()])
         sounds = SoundFiles(files, workers.sounds)
         self._audio = AudioModules(runner, sounds, broker, memory, options.allow_private_streams)
-        self.speech = SpeechModules(runner, memory, files, broker, workers.voice)
+        self.speech = SpeechModules(runner, memory, files, broker, workers.voice, self._audio.play_sound)
         posture = ALRobotPosture(runner, memory)
         library = self.speech.library
         player = BehaviorPlayer(simulation, self.speech.animator, library, self.speech.say, posture.goToPosture)

@@ -1,122 +1,168 @@
-"""Gestures that go with speech, from `config/animations.json` and files of clients in the same form."""
+"""The animations that a robot knows: those of `config/animations.json`, those of families, and those of clients."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Iterable, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.config import array, check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
-from nao_sim_bridge.control.joints.curves import SmoothCurve
+from nao_sim_bridge.control.balance.posture_recognition import CROUCHING, ON_CHAIR, SITTING, STANDING
 from nao_sim_bridge.model.model_reader import load_model
+from nao_sim_bridge.speech import gesture_families
+from nao_sim_bridge.speech.gesture import Animation, KeyFrames, is_of_legs
 
 FILE = "animations.json"
-# What NAOqi writes for the posture that the robot is in.
-POSTURE_PATTERN, POSTURE = "[posture]", "Stand"
+ANIMATIONS = "animations/"
+# What NAOqi writes for the posture that the robot is in, and for its kind.
+POSTURE_PATTERN, ROBOT_PATTERN = "[posture]", "[robot]"
+ROBOTS = ("Nao", "NAO")
+# The folder of animations for each family of postures; NAOqi has none for crouching.
+FOLDERS = {STANDING: "Stand", CROUCHING: "Stand", SITTING: "Sit", ON_CHAIR: "SitOnPod"}
+POSTURE = FOLDERS[STANDING]
 
 
-@dataclass(frozen=True)
-class KeyFrames:
-    """Where one joint goes: angles, rad (hands 0..1), of the head added to where it looks.
-
-    Their times are in s from the beginning, rising, between 0 and the length of the animation.
-    """
-
-    times: Tuple[float, ...]
-    angles: Tuple[float, ...]
+def folder_of(family: str) -> str:
+    """The folder of animations for a family of postures."""
+    return FOLDERS.get(family, POSTURE)
 
 
-@dataclass(frozen=True, eq=False)
-class Animation:
-    """A gesture of arms, hands and head, `length` s long; it ends where it began.
-
-    Its name is NAOqi's path, for example "animations/Stand/Gestures/Hey_1".
-    """
-
-    name: str
-    length: float
-    tags: Tuple[str, ...]
-    joints: Mapping[str, KeyFrames]
-
-    def curve(self, joint: str, start: float, home: float, stretch: float) -> SmoothCurve:
-        """The way of a joint that is at `start` and belongs at `home`, rad, with all times `stretch` times as long."""
-        frames = self.joints[joint]
-        base = home if joint.startswith("Head") else 0.0
-        times = [0.0, *(time * stretch for time in frames.times), self.length * stretch]
-        return SmoothCurve(times, [start, *(base + angle for angle in frames.angles), home])
+def is_for(name: str, posture: str) -> bool:
+    """Whether an animation is made for a posture; what lies in other folders than NAOqi's is for all of them."""
+    return not name.startswith(ANIMATIONS) or f"/{posture}/" in name
 
 
-@dataclass(eq=False)
+def paths_of(path: str, posture: str) -> list[str]:
+    """What a path with NAOqi's patterns may stand for; one without stands for itself."""
+    path = path.strip().replace(POSTURE_PATTERN, posture)
+    return list(dict.fromkeys(path.replace(ROBOT_PATTERN, robot) for robot in ROBOTS))
+
+
 class AnimationLibrary:
     """The animations that a robot knows, and the tags that words, in lower case, call for. Any thread.
 
-    `body_language` is the tag of those that go with any text.
+    Names, tags and words are read when somebody first asks, and a gesture of a family is built then.
+
+    Attributes:
+        revision: Counts what has been added to it.
     """
 
-    animations: dict[str, Animation]
-    body_language: str
-    words: dict[str, list[str]] = field(default_factory=dict)
-    _tags: dict[str, list[str]] = field(default_factory=dict)
-    _own_words: dict[str, list[str]] = field(default_factory=dict)
+    def __init__(self) -> None:
+        self.revision = 0
+        self._added: dict[str, Animation] = {}
 
-    def __post_init__(self) -> None:
-        for animation in self.animations.values():
-            for tag in animation.tags:
-                self._tags.setdefault(tag.lower(), []).append(animation.name)
+    @property
+    def names(self) -> list[str]:
+        return list(self._tags_by_name)
 
-    def find(self, name: str) -> Animation | None:
-        """An animation by its path, or by the end of it; of a family ("Explain_9") one that is there ("Explain_1")."""
-        path = name.strip().replace(POSTURE_PATTERN, POSTURE)
-        for known in self.animations:
-            if known == path or known.endswith("/" + path):
-                return self.animations[known]
+    @property
+    def body_language(self) -> str:
+        """The tag of those animations that go with any text."""
+        return _tables()["body_language"]
+
+    def tags_of(self, name: str) -> Tuple[str, ...]:
+        return tuple(self._tags_by_name[name])
+
+    def get(self, name: str) -> Animation | None:
+        """An animation by exactly its name."""
+        own = self._added.get(name) or _shipped().get(name)
+        if own is None and name in gesture_families.names():
+            return gesture_families.build(name)
+        return own
+
+    def find(self, name: str, posture: str = POSTURE) -> Animation | None:
+        """An animation by its path, or by the end of it; of a family ("Explain_9") one that is there ("Explain_1").
+
+        Of several that fit, one for the posture goes first.
+        """
+        for path in paths_of(name, posture):
+            if path in self._tags_by_name:
+                return self.get(path)
         family = path.rsplit("/", 1)[-1].rsplit("_", 1)[0]
-        return next(
-            (a for known, a in self.animations.items() if known.rsplit("/", 1)[-1].startswith(family + "_")), None
-        )
+        ends = [known for known in self._tags_by_name if known.endswith("/" + path)] or [
+            known for known in self._tags_by_name if known.rsplit("/", 1)[-1].rsplit("_", 1)[0] == family
+        ]
+        ends.sort(key=lambda known: not is_for(known, posture))  # a stable sort
+        return self.get(ends[0]) if ends else None
 
-    def tagged(self, tag: str) -> list[Animation]:
-        return [self.animations[name] for name in self._tags.get(tag.strip().lower(), ()) if name in self.animations]
+    def tagged(self, tag: str, posture: str = POSTURE) -> list[Animation]:
+        """Those with a tag that are made for a posture."""
+        return [self.get(name) for name in self._with(tag) if is_for(name, posture)]
 
-    def of_word(self, word: str) -> list[Animation]:
-        return [animation for tag in self.words.get(word.lower(), ()) for animation in self.tagged(tag)]
+    def below(self, path: str, tag: str, posture: str = POSTURE) -> list[Animation]:
+        """Those with a tag whose name begins with a path, which may have NAOqi's patterns."""
+        return [self.get(name) for name in self._with(tag) if name.startswith(tuple(paths_of(path, posture)))]
+
+    def of_word(self, word: str, posture: str = POSTURE) -> list[Animation]:
+        """Those that a word calls for: by tags that it is linked to, and by the tag that it is itself."""
+        word = word.lower()
+        tags = [*self._words.get(word, ()), word]
+        return list(dict.fromkeys(animation for tag in tags for animation in self.tagged(tag, posture)))
+
+    def of_sentence(self, sentence: str, posture: str = POSTURE) -> list[Animation]:
+        """Those that go with any part of a sentence, by its ending: a question, an exclamation, or any other."""
+        tag = _tables()["endings"].get(sentence.rstrip()[-1:], self.body_language)
+        return self.tagged(tag, posture) or self.tagged(self.body_language, posture)
 
     def add(self, animations: Iterable[Animation]) -> None:
+        self.revision += 1
         for animation in animations:
-            self.animations[animation.name] = animation
+            self._added[animation.name] = animation
+            self._tags_by_name[animation.name] = []
             for tag in animation.tags:
                 self.add_tag(tag, [animation.name])
 
     def add_tag(self, tag: str, names: Sequence[str]) -> None:
-        known = self._tags.setdefault(tag.strip().lower(), [])
-        known.extend(name for name in names if name not in known)
+        self.revision += 1
+        known = self._names_by_tag.setdefault(tag.strip().lower(), [])
+        for name in names:
+            if name not in known:
+                known.append(name)
+                self._tags_by_name[name].append(tag)
+
+    def _with(self, tag: str) -> Sequence[str]:
+        return self._names_by_tag.get(tag.strip().lower(), ())
 
     def add_words(self, tag: str, words: Sequence[str]) -> None:
         """Let words call for a tag."""
         for word in words:
-            tags = self.words.setdefault(word.strip().lower(), [])
+            tags = self._words.setdefault(word.strip().lower(), [])
             if tag not in tags:
                 tags.append(tag)
 
-    def keep_words(self) -> None:
-        """What words call for now is what `forget_words` goes back to."""
-        self._own_words = {word: list(tags) for word, tags in self.words.items()}
-
     def forget_words(self) -> None:
-        """Forget what words have been made to call for."""
-        self.words = {word: list(tags) for word, tags in self._own_words.items()}
+        """Have words call for what they call for on a new robot."""
+        self.__dict__.pop("_words", None)
+
+    @cached_property
+    def _tags_by_name(self) -> dict[str, list[str]]:
+        tags = {name: list(animation.tags) for name, animation in _shipped().items()}
+        for name, naming in gesture_families.names().items():
+            known = tags.setdefault(name, [])
+            known.extend(tag for tag in naming.tags if tag not in known)
+        return tags
+
+    @cached_property
+    def _names_by_tag(self) -> dict[str, list[str]]:
+        names: dict[str, list[str]] = {}
+        for name, tags in self._tags_by_name.items():
+            for tag in tags:
+                names.setdefault(tag.lower(), []).append(name)
+        return names
+
+    @cached_property
+    def _words(self) -> dict[str, list[str]]:
+        words: dict[str, list[str]] = {}
+        for tag, linked in _tables()["words"].items():
+            for word in linked:
+                words.setdefault(word, []).append(tag)
+        return words
 
 
 def load_animations() -> AnimationLibrary:
     """A library of the animations that come with the robot, which its owner may add to."""
-    tables = _tables()
-    library = AnimationLibrary(dict(_shipped()), tables["body_language"])
-    for tag, words in tables["words"].items():
-        library.add_words(tag, words)
-    library.keep_words()
-    return library
+    return AnimationLibrary()
 
 
 def read_animations(path: Path) -> dict[str, Animation]:
@@ -125,7 +171,7 @@ def read_animations(path: Path) -> dict[str, Animation]:
     Raises:
         ConfigError: It has a wrong, unknown or missing entry.
     """
-    tables = check_keys(read_json(path), path.name, ("animations",), ("_meta", "body_language", "words"))
+    tables = check_keys(read_json(path), path.name, ("animations",), ("_meta", "body_language", "endings", "words"))
     return {name: _animation(name, entry, path.name) for name, entry in tables["animations"].items()}
 
 
@@ -136,7 +182,9 @@ def _shipped() -> Mapping[str, Animation]:
 
 @lru_cache(maxsize=None)
 def _tables() -> Mapping:
-    return check_keys(read_json(config_file(FILE)), FILE, ("animations", "body_language", "words"), ("_meta",))
+    return check_keys(
+        read_json(config_file(FILE)), FILE, ("animations", "body_language", "endings", "words"), ("_meta",)
+    )
 
 
 def _animation(name: str, entry: object, file: str) -> Animation:
@@ -154,7 +202,7 @@ def _animation(name: str, entry: object, file: str) -> Animation:
 
 def _key_frames(joint: str, frames: Mapping, length: float, where: str) -> KeyFrames:
     model = load_model()
-    if joint not in model.joint_index or any(part in joint for part in ("Hip", "Knee", "Ankle")):
+    if joint not in model.joint_index or is_of_legs(joint):
         raise ConfigError(where, "is no joint of arms, hands or head")
     times = tuple(array(frames["times"], where, (-1,)).tolist())
     angles = tuple(array(frames["angles"], where, (len(times),)).tolist())

@@ -1,4 +1,4 @@
-"""Moves arms and head through gestures, and always brings them back. Simulation thread only."""
+"""Moves arms, head and trunk through gestures, and always brings them back. Simulation thread only."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from typing import Any, Iterable, Sequence
 
 from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.control.balance.posture_recognition import STANDING, recognise
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.control.joints.engine import CurveBuilder
-from nao_sim_bridge.speech.animations import Animation
+from nao_sim_bridge.speech.animations import folder_of
 from nao_sim_bridge.speech.body_language import PlannedGesture
+from nao_sim_bridge.speech.gesture import Animation, is_of_legs
 
 # How fast joints of a gesture that is broken off go back, rad/s, and how long that takes at least, s.
 RETURN_SPEED = 1.5
@@ -36,14 +38,23 @@ class Animator:
         self._moves: dict[Task, _Move] = {}
         self._home: dict[int, float] = {}
         self._planned: list[tuple[float, PlannedGesture]] = []
+        # Animations none of whose joints can move, and when they would end.
+        self._idle: list[tuple[float, Task]] = []
         simulation.after_tick.append(self._tick)
         simulation.after_reset.append(self.forget)
 
     # --- looking --------------------------------------------------------------------------------------------------
 
-    def can(self, animation: Animation) -> bool:
-        """Whether the joints of an animation are stiff; hands need not be, limp ones stay as they are."""
-        return self._usable_joints(animation) is not None
+    def limp_joints(self, animation: Animation) -> list[str]:
+        """Joints of an animation that have no stiffness and would stay where they are, but for hands and legs."""
+        stiffnesses, index = self._simulation.robot.joints.stiffnesses, self._simulation.robot.model.joint_index
+        upper = (name for name in animation.joints if not (name.endswith("Hand") or is_of_legs(name)))
+        return [name for name in upper if stiffnesses[index[name]] == 0.0]
+
+    @property
+    def posture(self) -> str:
+        """The folder of animations that fits the posture of the robot."""
+        return folder_of(self._family())
 
     @property
     def busy(self) -> bool:
@@ -59,11 +70,17 @@ class Animator:
 
     # --- moving ---------------------------------------------------------------------------------------------------
 
-    def start(self, animation: Animation, length: float | None = None) -> Task | None:
-        """Begin with an animation, `length` s long if given, when its joints are free; None when the robot cannot."""
+    def start(self, animation: Animation, length: float | None = None) -> Task:
+        """Begin with an animation when its joints are free; limp ones stay as they are.
+
+        One that is to be `length` s long goes with speech and leaves the legs alone; else the trunk leans if the robot
+        stands on stiff legs that nobody moves.
+        """
         indices = self._usable_joints(animation)
-        if indices is None:
-            return None
+        if length is None:
+            indices += self._leaning_joints(animation)
+        if not indices:
+            return self._wait(animation, length or animation.length)
         joints = self._simulation.robot.joints
         homes = {index: self._home.get(index, joints.commands[index]) for index in indices}
         self._clear_way(indices)
@@ -105,6 +122,8 @@ class Animator:
         self._moves.clear()
         self._home.clear()
         self._planned.clear()
+        for _, task in list(self._idle):
+            task.kill()
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
@@ -113,16 +132,36 @@ class Animator:
             _, gesture = self._planned.pop(0)
             indices = self._usable_joints(gesture.animation)
             # Whatever else moves the robot goes first: for these gestures nobody has asked.
-            if indices is not None and not self._moved_by_others(indices):
+            if indices and not self._moved_by_others(indices):
                 self.start(gesture.animation, gesture.length)
+        while self._idle and snapshot.time >= self._idle[0][0]:
+            self._idle[0][1].finish()
 
-    def _usable_joints(self, animation: Animation) -> list[int] | None:
+    def _family(self) -> str:
+        return recognise(self._simulation.model, self._simulation.snapshot).family
+
+    def _usable_joints(self, animation: Animation) -> list[int]:
         robot = self._simulation.robot
-        index = robot.model.joint_index
-        limp = [name for name in animation.joints if robot.joints.stiffnesses[index[name]] == 0.0]
-        if any(not name.endswith("Hand") for name in limp):
-            return None
-        return [index[name] for name in animation.joints if name not in limp]
+        indices = [robot.model.joint_index[name] for name in animation.joints if not is_of_legs(name)]
+        return [index for index in indices if robot.joints.stiffnesses[index] > 0.0]
+
+    def _leaning_joints(self, animation: Animation) -> list[int]:
+        robot = self._simulation.robot
+        legs = [robot.model.joint_index[name] for name in animation.joints if is_of_legs(name)]
+        stiff = all(robot.joints.stiffnesses[index] > 0.0 for index in legs)
+        if legs and stiff and not self._moved_by_others(legs) and self._family() == STANDING:
+            return legs
+        return []
+
+    def _wait(self, animation: Animation, length: float) -> Task:
+        """The task of an animation that moves nothing."""
+        task = self._simulation.task_ids.make("animation")
+        self._moves[task] = _Move(animation, frozenset())
+        self._idle.append((self._simulation.time + length, task))
+        self._idle.sort(key=lambda entry: entry[0])
+        task.add_done_callback(self._ended)
+        task.add_done_callback(lambda _: self._idle.remove(next(e for e in self._idle if e[1] is task)))
+        return task
 
     def _moved_by_others(self, indices: Sequence[int]) -> bool:
         robot = self._simulation.robot

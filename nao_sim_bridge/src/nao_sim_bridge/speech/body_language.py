@@ -6,7 +6,8 @@ import random
 from dataclasses import dataclass
 from typing import Sequence, Tuple
 
-from nao_sim_bridge.speech.animations import Animation, AnimationLibrary
+from nao_sim_bridge.speech.animations import POSTURE, AnimationLibrary
+from nao_sim_bridge.speech.gesture import Animation
 
 DISABLED, RANDOM, CONTEXTUAL = "disabled", "random", "contextual"
 MODES = (DISABLED, RANDOM, CONTEXTUAL)
@@ -55,31 +56,35 @@ def plan(
     mode: str,
     library: AnimationLibrary,
     chance: random.Random,
+    posture: str = POSTURE,
+    sentence: str = "",
 ) -> list[PlannedGesture]:
     """Gestures of a sentence, all over when it is; a sentence too short for any has the shortest one, done quickly.
 
-    The contextual mode looks at the words, (s from the beginning, word) in their order, and fills what is left at
-    random; `chance` chooses among those that fit equally.
+    The contextual mode looks at the words, (s from the beginning, word) in their order, and at the end of the sentence,
+    which says what fills the rest; `chance` chooses among those that fit equally, all made for the posture.
     """
     if mode == DISABLED:
         return []
+    contextual = mode == CONTEXTUAL
+    fillers = library.of_sentence(sentence if contextual else "", posture)
     planned: list[PlannedGesture] = []
     begin = 0.0
-    if mode == CONTEXTUAL:
+    if contextual:
         for time, word in words:
             start = max(time - LEAD, begin)
-            fitting = [a for a in library.of_word(word) if a.length * QUICKEST <= duration - start]
+            fitting = [a for a in library.of_word(word, posture) if a.length * QUICKEST <= duration - start]
             if not fitting or start > time:  # the hands are still busy with a word before
                 continue
             animation = chance.choice(fitting)
-            planned += _filled(begin, start - REST, library, chance)
+            planned += _filled(begin, start - REST, fillers, chance)
             planned.append(PlannedGesture(start, animation, min(animation.length, duration - start)))
             begin = planned[-1].end + REST
-    planned += _filled(begin, duration, library, chance)
+    planned += _filled(begin, duration, fillers, chance)
     if planned:
         return planned
-    of_words = [a for _, word in words for a in library.of_word(word)] if mode == CONTEXTUAL else []
-    return _quick(of_words or library.tagged(library.body_language))
+    of_words = [a for _, word in words for a in library.of_word(word, posture)] if contextual else []
+    return _quick(of_words or fillers)
 
 
 def _quick(animations: Sequence[Animation]) -> list[PlannedGesture]:
@@ -90,11 +95,11 @@ def _quick(animations: Sequence[Animation]) -> list[PlannedGesture]:
     return [PlannedGesture(0.0, animation, animation.length * QUICKEST)]
 
 
-def _filled(begin: float, end: float, library: AnimationLibrary, chance: random.Random) -> list[PlannedGesture]:
+def _filled(begin: float, end: float, fillers: Sequence[Animation], chance: random.Random) -> list[PlannedGesture]:
     """Gestures that go with any text, one after the other, in a stretch of time."""
     planned: list[PlannedGesture] = []
     while True:
-        fitting = [a for a in library.tagged(library.body_language) if a.length * QUICKEST <= end - begin]
+        fitting = [a for a in fillers if a.length * QUICKEST <= end - begin]
         if not fitting:
             return planned
         animation = chance.choice(fitting)

@@ -1,22 +1,31 @@
-"""Gestures of the robot: their file, names and tags, that no arm hits anything; and which go with a sentence."""
+"""Gestures of the robot: names and tags, that no arm hits anything; and which go with a sentence."""
 
 from __future__ import annotations
 
 import random
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nao_sim_bridge.base.config import config_file
 from nao_sim_bridge.control.joints.self_collision import SelfCollision
+from nao_sim_bridge.model.kinematics import link_transforms
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import posture
-from nao_sim_bridge.speech.animations import load_animations
+from nao_sim_bridge.speech import gesture_families
+from nao_sim_bridge.speech.animations import FILE, is_for, load_animations, read_animations
 from nao_sim_bridge.speech.body_language import CONTEXTUAL, QUICKEST, RANDOM, SLOWEST, plan
 
+# Of any two animations one hand is so far from where the other animation has it, at some moment, m.
+APART, APART_IN_FAMILY = 0.025, 0.04
+# The middle of a hand in the frame of its wrist, m.
+HAND = (0.05775, 0.0, -0.01231, 1.0)
 GESTURES = "animations/Stand/Gestures/"
-ALL = sorted(load_animations().animations)
+BY_HAND, FAMILIES = read_animations(config_file(FILE)), gesture_families.names()
 # How near limbs may come, m: the shapes that are looked at are wider than the limbs, and an arm is kept at -0.006.
 NEAREST = -0.004
 
@@ -28,7 +37,7 @@ def library():
 
 def test_tags_and_words_lead_to_gestures(library):
     assert library.find("Hey_1") in library.tagged("hello") and library.find("Hey_1") in library.tagged("Hello")
-    assert library.find("Me_1") in library.of_word("I")
+    assert library.find("Me_1") in library.of_word("I") and library.find("Far_1") in library.of_word("there")
     assert library.tagged("nonsense") == library.of_word("nonsense") == []
     library.add_tag("ahoy", [GESTURES + "Hey_1"])
     library.add_words("ahoy", ["Ship"])
@@ -37,28 +46,114 @@ def test_tags_and_words_lead_to_gestures(library):
     assert len(library.tagged(library.body_language)) >= 2
 
 
-@pytest.mark.parametrize("start", ["Stand", "StandInit", "Sit"])
-def test_no_arm_comes_too_near_on_the_way(library, start):
+def curves_of(animation, home):
+    """The ways of an animation's joints by index, from and to the angles of a posture."""
+    indices = {joint: load_model().joint_index[joint] for joint in animation.joints}
+    return {index: animation.curve(joint, home[index], home[index], 1.0) for joint, index in indices.items()}
+
+
+def ways(animation, home, step):
+    """Angles of all joints, rad, every `step` s."""
+    times, curves = np.arange(0.0, animation.length, step), curves_of(animation, home)
+    angles = np.repeat(home[None], len(times), 0)
+    for index, curve in curves.items():
+        angles[:, index] = [curve.value(time) for time in times]
+    return angles
+
+
+@pytest.mark.parametrize("start, names, step", [
+    ("Stand", BY_HAND, 0.04), ("StandInit", BY_HAND, 0.04), ("Sit", BY_HAND, 0.04),
+    ("Stand", FAMILIES, 0.2), ("Sit", FAMILIES, 0.1),
+])  # fmt: skip
+def test_no_arm_comes_too_near_on_the_way(library, start, names, step):
     model = load_model()
     collision, home = SelfCollision(model), np.array(posture(model, start))
     nearest = np.minimum(collision.distances(home), NEAREST) - 1e-6
-    for name in ALL:
-        animation = library.animations[name]
-        indices = {joint: model.joint_index[joint] for joint in animation.joints}
-        curves = {index: animation.curve(joint, home[index], home[index], 1.0) for joint, index in indices.items()}
-        for time in np.arange(0.0, animation.length, 0.04):
-            angles = home.copy()
-            for index, curve in curves.items():
-                angles[index] = curve.value(time)
+    for name in names:
+        if names is FAMILIES and not is_for(name, start):
+            continue
+        for angles in ways(library.get(name), home, step):
             distances = collision.distances(angles)
-            assert not (distances < nearest).any(), f"{name}: {distances.min():.3f} m at {time:.2f} s"
+            assert not (distances < nearest).any(), f"{name}: {distances.min():.3f} m"
+
+
+def test_all_animations_of_a_nao_are_there_within_limits_speeds_and_a_few_seconds(library):
+    model = load_model()
+    assert len(FAMILIES) == 434 and set(FAMILIES) <= set(library.names)
+    for name in FAMILIES:
+        animation = library.get(name)
+        assert 1.5 <= animation.length <= 5.0 and library.get(name) is animation
+        for joint, frames in animation.joints.items():
+            limits, home = model.joint(joint), posture(model, "Sit" if "/Sit/" in name else "Stand")
+            curve = animation.curve(joint, *[home[model.joint_index[joint]]] * 2, QUICKEST)
+            low, high = curve.extremes
+            assert limits.lower <= low and high <= limits.upper, f"{name}: {joint} {low:.2f} to {high:.2f} rad"
+            assert curve.peak_speed() <= limits.max_velocity, f"{name}: {joint} {curve.peak_speed():.1f} rad/s"
+            assert 0.0 < frames.times[0] and frames.times[-1] < animation.length
+
+
+def hands(animation):
+    """(40, 2, 3) places of both hands, m in the torso, every 0.12 s of an animation and the stand behind it."""
+    model = load_model()
+    home = np.array(posture(model, "Stand"))
+    path = [link_transforms(model, angles) for angles in ways(animation, home, 0.12)]
+    places = [[(links[f"{arm}WristYaw"] @ HAND)[:3] for arm in "LR"] for links in path]
+    return np.array([*places, *[places[0]] * (40 - len(places))])[:40]
+
+
+def test_no_two_animations_are_the_same(library):
+    names = list(FAMILIES)
+    paths = np.array([hands(gesture_families.build(name)) for name in names])
+    families = [name.rsplit("_", 1)[0].rsplit("_", 1)[-1].rsplit("/", 1)[-1] for name in names]
+    for k, path in enumerate(paths[:-1]):
+        apart = np.linalg.norm(paths[k + 1 :] - path, axis=3).max(axis=(1, 2))
+        nearest = int(apart.argmin())
+        assert apart[nearest] >= APART, f"{names[k]} and {names[k + 1 + nearest]}: {apart[nearest]:.3f} m"
+        for other, distance in zip(families[k + 1 :], apart):
+            assert other != families[k] or distance >= APART_IN_FAMILY, f"{names[k]}: {distance:.3f} m"
+
+
+def test_an_animation_is_as_its_name_says():
+    build, names = gesture_families.build, FAMILIES
+    folder = "animations/Stand/Affirmation/NAO/"
+    for name in names:
+        if "/Left_" in name:
+            left, right = (hands(build(each)) for each in (name, name.replace("/Left_", "/Right_")))
+            assert np.allclose(left, right[:, ::-1] * (1.0, -1.0, 1.0), atol=0.005), name
+    slow, neutral, strong = (
+        np.mean([build(name).length for name in names if name.startswith(f"{folder}Center_{tempo}_")])
+        for tempo in ("Slow", "Neutral", "Strong")
+    )
+    assert slow > neutral and slow > strong
+    sky = [hands(build(name))[:, :, 2].max() for name in names if "ShowSky" in name]
+    floor = [hands(build(name))[:, :, 2].max() for name in names if "ShowFloor" in name]
+    assert min(sky) > 0.15 > max(floor)
+    yes, no = build("animations/Stand/Gestures/Yes_1"), build("animations/Stand/Gestures/No_1")
+    assert "HeadPitch" in yes.joints and "HeadYaw" in no.joints
+
+
+def test_a_contextual_name_is_that_of_the_posture(library):
+    assert library.find("animations/[posture]/BodyTalk/BodyTalk_3", "Sit").name == "animations/Sit/BodyTalk/BodyTalk_3"
+    assert library.find("animations/Stand/Negation/[robot]/Left_Strong_NEG_01").tags == ("negative_context", "refusal")
+    assert library.find("BodyTalk_3", "Sit").name == "animations/Sit/BodyTalk/BodyTalk_3"
+    assert library.find("BodyTalk_3").name == "animations/Stand/BodyTalk/BodyTalk_3"
+    assert {a.name.split("/")[1] for a in library.tagged("body language", "Sit")} == {"Sit"}
+    assert [a.name for a in library.below("animations/[posture]/Emotions", "happy")] == [
+        "animations/Stand/Emotions/Positive/Happy_4", "animations/Stand/Emotions/Positive/Hysterical_1"
+    ]  # fmt: skip
+
+
+def test_gestures_are_built_when_they_are_asked_for():
+    code = "from nao_sim_bridge.speech import animations, gesture_families as families; animations.load_animations();"
+    code += "print(families._tables.cache_info().currsize, families.build.cache_info().currsize)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.split() == ["0", "0"]
 
 
 WORDS = [(0.1, "Hello"), (0.6, "my"), (1.0, "name"), (4.5, "maybe"), (5.0, "not")]
 
 
-def gestures(duration, words, mode, seed=0):
-    return plan(duration, words, mode, load_animations(), random.Random(seed))
+def gestures(duration, words, mode, seed=0, sentence=""):
+    return plan(duration, words, mode, load_animations(), random.Random(seed), sentence=sentence)
 
 
 def names(planned):
@@ -75,14 +170,24 @@ def test_gestures_are_over_with_the_sentence_and_do_not_overlap(duration, seed, 
         assert QUICKEST - 1e-9 <= gesture.length / gesture.animation.length <= SLOWEST + 1e-9
 
 
-@pytest.mark.parametrize("mode, name", [(RANDOM, "Explain"), (CONTEXTUAL, "Hey_1")])
-def test_a_sentence_too_short_for_any_gesture_has_a_quick_one(mode, name):
+@pytest.mark.parametrize("mode, tag", [(RANDOM, "body language"), (CONTEXTUAL, "hello")])
+def test_a_sentence_too_short_for_any_gesture_has_a_quick_one(mode, tag):
     (gesture,) = gestures(0.5, WORDS[:1], mode)
-    assert names([gesture])[0].startswith(name) and gesture.start == 0.0
+    assert tag in gesture.animation.tags and gesture.start == 0.0
     assert gesture.length == pytest.approx(QUICKEST * gesture.animation.length)
+
+
+@pytest.mark.parametrize("ending, mode, tag", [
+    ("?", CONTEXTUAL, "interrogative"), ("!", CONTEXTUAL, "exclamation"), (".", CONTEXTUAL, "body language"),
+    ("?", RANDOM, "body language"),
+])  # fmt: skip
+def test_a_question_is_asked_with_the_hands_too(ending, mode, tag):
+    planned = gestures(10.0, [], mode, sentence=f"Well{ending}")
+    assert planned and all(tag in gesture.animation.tags for gesture in planned)
 
 
 def test_words_bring_their_gestures_a_little_before_they_are_said():
     planned = gestures(8.0, WORDS, CONTEXTUAL)
-    assert names(planned)[0] == "Hey_1" and planned[0].start == 0.0
-    assert planned[names(planned).index("IDontKnow_1")].start == pytest.approx(4.2)
+    assert names(planned)[0].startswith("Hey_") and planned[0].start == 0.0
+    (unsure,) = [gesture for gesture in planned if gesture.animation.name.rsplit("/", 1)[-1].startswith("IDontKnow_")]
+    assert unsure.start == pytest.approx(4.2)

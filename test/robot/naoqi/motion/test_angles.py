@@ -146,10 +146,13 @@ def test_stiffness_is_set_at_once_or_in_time(robot, motion, begin):
     assert motion.getStiffnesses("Body") == [0.25] * 26
 
 
-def test_a_limp_joint_takes_commands_but_follows_none_and_does_not_jump(robot, motion, commands, sensed):
+def test_a_limp_joint_takes_commands_but_follows_none_and_does_not_jump(robot, motion, commands, sensed, caplog):
     motion.setStiffnesses("HeadYaw", 0.0)
-    motion.setAngles("HeadYaw", 0.5, 1.0)
-    robot.advance(1.0)
+    for _ in range(2):
+        motion.setAngles("HeadYaw", 0.5, 1.0)
+        robot.advance(1.0)
+    told = [record.getMessage() for record in caplog.records if record.name == "nao_sim.motion"]
+    assert told == ["setAngles: no stiffness in HeadYaw: wakeUp or setStiffnesses comes first"]
     assert commands("HeadYaw") == near(0.5) and sensed("HeadYaw") == near(0.0, within=0.01)
     motion.setStiffnesses("HeadYaw", 1.0)
     robot.advance(0.5)

@@ -17,6 +17,8 @@ log = logging.getLogger(__name__)
 
 MODULE = "ALBehaviorManager"
 ANSWER_LIMIT = 5.0
+# So many behaviours are named in an error.
+MOST_NAMED = 20
 
 
 class Behaviors:
@@ -31,13 +33,16 @@ class Behaviors:
     def run(self, name: str, interrupt: CancellationToken) -> None:
         """Run one, to its end or to the interrupt, which stops it.
 
-        Raises NaoError if it is not installed, the robot refuses or is lost; Preempted, or whatever reason the
+        Raises NaoError if it is not installed, the robot is limp, refuses or is lost; Preempted, or whatever reason the
         interrupt has.
         """
         if not self._ask("isBehaviorInstalled", name):
             known = self.installed()
             problem = f"{name!r} is not installed{did_you_mean(name, known)}"
-            raise BadGoal("behavior", name, f"one of {', '.join(sorted(known)) or 'none'}", problem=problem)
+            some = ", ".join(sorted(known)[:MOST_NAMED]) or "none"
+            more = f"... ({len(known)} in all)" if len(known) > MOST_NAMED else ""
+            raise BadGoal("behavior", name, f"one of {some}{more}", problem=problem)
+        self._require_stiffness()
         interrupt.check()
         call = self._robot.proxy(MODULE).call_async("runBehavior", name)
         try:
@@ -47,6 +52,12 @@ class Behaviors:
             if self._runs(name):
                 self._stop(name)
             raise
+
+    def _require_stiffness(self) -> None:
+        """NAOqi plays behaviours on a limp robot, which then does not move and does not say so."""
+        stiffnesses = self._robot.proxy("ALMotion").call_async("getStiffnesses", "Body").result(timeout=ANSWER_LIMIT)
+        if not any(stiffnesses):
+            raise NaoError("the robot is limp and would not move: wakeUp first")
 
     def _runs(self, name: str) -> bool:
         try:

@@ -23,17 +23,31 @@ class Notices:
     def __init__(self, joints: JointCommands) -> None:
         self._joints = joints
         self.enabled = True
+        # Limp joints that were told of since somebody last moved them with stiffness.
+        self._limp: set[int] = set()
 
     def check_targets(self, name: str, targets: Mapping[int, float]) -> None:
         """Look at angles (rad by joint index) that a call sends joints to."""
+        self._tell(name, self._stay(targets))
         self._tell(name, self._beyond({i: (angle, angle) for i, angle in targets.items()}, targets))
 
     def check_curves(self, name: str, curves: Mapping[int, Any]) -> None:
         """Look at the curves of a task; those without extremes come from who knows the limits."""
+        self._tell(name, self._stay(curves))
         known = {i: curve for i, curve in curves.items() if hasattr(curve, "extremes")}
         ends = {i: curve.value(curve.duration) for i, curve in known.items()}
         self._tell(name, self._beyond({i: curve.extremes for i, curve in known.items()}, ends))
         self._tell(name, self._too_fast(known))
+
+    def _stay(self, indices: Iterable[int]) -> Iterable[str]:
+        """Joints without stiffness, which stay where they are; hands are held by their gears, and switched off."""
+        joints, moved = self._joints, set(indices)
+        limp = {i for i in moved if joints.stiffnesses[i] == 0.0 and not joints.names[i].endswith("Hand")}
+        new = sorted(limp - self._limp)
+        self._limp = self._limp - moved | limp
+        if new:
+            names = ", ".join(joints.names[i] for i in new[:3]) + ("..." if len(new) > 3 else "")
+            yield f"no stiffness in {names}: wakeUp or setStiffnesses comes first"
 
     def _beyond(self, ranges: Mapping[int, tuple[float, float]], ends: Mapping[int, float]) -> Iterable[str]:
         """Joints that leave their limits on the way, or those that other joints leave them at the end."""

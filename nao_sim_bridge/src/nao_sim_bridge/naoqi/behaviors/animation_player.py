@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import random
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.steps import Behavior
-from nao_sim_bridge.control.balance.posture_recognition import CROUCHING, ON_CHAIR, SITTING, STANDING, recognise
+from nao_sim_bridge.control.balance.posture_recognition import recognise
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.speech.animations import POSTURE_PATTERN
+from nao_sim_bridge.speech.animations import ANIMATIONS, FOLDERS, folder_of, is_for, paths_of
 
 NAME = "ALAnimationPlayer"
-# The folder of animations for each family of postures; NAOqi has none for crouching.
-FOLDERS = {STANDING: "Stand", CROUCHING: "Stand", SITTING: "Sit", ON_CHAIR: "SitOnPod"}
-ANIMATIONS = "animations/"
 
 
 class ALAnimationPlayer:
@@ -31,16 +28,25 @@ class ALAnimationPlayer:
         self._paths: list[str] = [ANIMATIONS]
 
     def run(self, path: str) -> Task:
-        """Ends with the animation; "[posture]" in the path stands for the posture that the robot is in."""
-        behavior = self._running.installed.resolve(path.replace(POSTURE_PATTERN, self._posture()))
-        return self._play(behavior, "run")
+        """Ends with the animation; [posture] in the path stands for that of the robot, [robot] for NAO."""
+        installed, paths = self._running.installed, paths_of(path, self._posture())
+        known = next((each for each in paths if installed.knows(each)), paths[0])
+        return self._play(installed.resolve(known), "run")
 
     def runTag(self, first: str, second: str | None = None) -> Task:
-        """(tag) or (posture, tag): one of the animations of a tag, for the posture of the robot or for another one."""
-        posture, tag = (self._posture(), first) if second is None else (first, second)
-        fitting = self._tagged(tag, posture)
+        """(tag) or (path, tag): one of the animations of a tag, for the posture of the robot or of a path.
+
+        A path may also be a posture: Stand, Sit or SitOnPod.
+        """
+        posture, tag = self._posture(), first if second is None else second
+        if second is None:
+            place, fitting = f"for the posture {posture}", self._tagged(tag, self._paths, posture)
+        elif first in FOLDERS.values():
+            place, fitting = f"for the posture {first}", self._tagged(tag, self._paths, first)
+        else:
+            place, fitting = f"in {first!r}", self._tagged(tag, paths_of(first, posture), None)
         if not fitting:
-            raise NaoqiError(f"there is no animation with the tag {tag!r} for the posture {posture}")
+            raise NaoqiError(f"there is no animation with the tag {tag!r} {place}")
         return self._play(self._chance.choice(fitting), "runTag")
 
     def addTagForAnimations(self, tags: Any) -> None:
@@ -51,27 +57,27 @@ class ALAnimationPlayer:
             self._tags.setdefault(tag.lower(), []).extend(names)
 
     def declarePathForTags(self, path: str) -> None:
-        """Animations of the path are found by their tags, too."""
-        if path not in self._paths:
-            self._paths.append(path)
+        """Animations of the path are found by their tags, too; [posture] in it stands for each posture."""
+        for posture in dict.fromkeys(FOLDERS.values()):
+            self._paths += [each for each in paths_of(path, posture) if each not in self._paths]
 
     def reset(self) -> None:
         self._tags.clear()
         self._paths = [ANIMATIONS]
 
-    def _tagged(self, tag: str, posture: str) -> list[Behavior]:
+    def _tagged(self, tag: str, paths: Sequence[str], posture: str | None) -> list[Behavior]:
+        """Animations below one of the paths, made for a posture if one is given."""
         added = self._tags.get(tag.lower(), ())
         return [
             behavior
             for name, behavior in self._running.installed.all.items()
-            if any(name.startswith(path) for path in self._paths)
+            if name.startswith(tuple(paths))
             and (name in added or tag.lower() in map(str.lower, behavior.tags))
-            and (not name.startswith(ANIMATIONS) or f"/{posture}/" in name)
+            and (posture is None or is_for(name, posture))
         ]
 
     def _posture(self) -> str:
-        family = recognise(self._runner.simulation.model, self._runner.snapshot).family
-        return FOLDERS.get(family, FOLDERS[STANDING])
+        return folder_of(recognise(self._runner.simulation.model, self._runner.snapshot).family)
 
     def _play(self, behavior: Behavior, call: str) -> Task:
         return self._runner.execute(lambda: self._running.start(behavior), call)

@@ -17,9 +17,10 @@ from nao_sim_bridge.control.joints.idle import Mode
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.speech import body_language, speaker
-from nao_sim_bridge.speech.animations import Animation, AnimationLibrary, KeyFrames
+from nao_sim_bridge.speech.animations import AnimationLibrary
 from nao_sim_bridge.speech.animator import Animator
 from nao_sim_bridge.speech.clips import SpokenWord
+from nao_sim_bridge.speech.gesture import Animation, KeyFrames
 from nao_sim_bridge.speech.speaker import Speaker, SpeechEvent
 from nao_sim_bridge.tracking.geometry import HEAD
 
@@ -94,7 +95,15 @@ class SpeakingMovement:
         clip = event.value
         words = [(time, mark.text) for time, mark in clip.marks if isinstance(mark, SpokenWord)]
         self._animator.plan(
-            body_language.plan(clip.sound.duration, words, self._body_language.mode, self._library, self._chance)
+            body_language.plan(
+                clip.sound.duration,
+                words,
+                self._body_language.mode,
+                self._library,
+                self._chance,
+                self._animator.posture,
+                clip.text,
+            )
         )
 
 
@@ -126,7 +135,7 @@ class ListeningMovement:
     def _nod(self) -> None:
         robot, now = self._runner.simulation.robot, self._runner.simulation.time
         head = [robot.model.joint_index[name] for name in HEAD]
-        if now < self._next or robot.motion.busy(head) or not self._animator.can(NOD):
+        if now < self._next or robot.motion.busy(head) or self._animator.limp_joints(NOD):
             return
         self._next = now + NOD_PAUSE
         self._animator.start(NOD)

@@ -16,6 +16,7 @@ from nao_sim_bridge.naoqi.sound.microphone_clients import MicrophoneClients
 from nao_sim_bridge.naoqi.sound.recorder import ALAudioRecorder, FilesInUse, Recorder
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.speech.animated_speech import ALAnimatedSpeech
+from nao_sim_bridge.naoqi.speech.animated_talk import PlaySound
 from nao_sim_bridge.naoqi.speech.speech_events import SpeechEvents
 from nao_sim_bridge.naoqi.speech.text_to_speech import ALTextToSpeech
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
@@ -41,7 +42,7 @@ class AudioModules:
         in_use = FilesInUse()
         self.recorders = [Recorder(runner, sounds.files, in_use) for _ in range(2)]
         self._energy = MicrophoneEnergy(ears, {side: settings.energy_channels(side) for side in settings.energies})
-        player = ALAudioPlayer(runner, sounds, background, memory, allow_private_streams)
+        self._player = player = ALAudioPlayer(runner, sounds, background, memory, allow_private_streams)
         device = ALAudioDevice(runner, sounds, self.clients, self._energy, self.recorders[0])
         self.modules: dict[str, list[Any]] = {
             "ALAudioPlayer": player.parts(),
@@ -49,6 +50,13 @@ class AudioModules:
             "ALAudioRecorder": [ALAudioRecorder(self.recorders[1])],
         }
         simulation.holds += [self.clients.behind, background.holds]
+
+    def play_sound(self, path: str, volume: float) -> Task:
+        """Play a sound of a set, "set/file" or "file", at a volume, 0..1; the task ends with one that ends with it.
+
+        Errors in the task are those of ALAudioPlayer.
+        """
+        return self._player.playSoundSetFile(*path.rsplit("/", 1), 0.0, volume, 0.0, False)
 
     def closing(self) -> list[Callable[[], None]]:
         """Steps that complete recordings and call no client any more; blocking."""
@@ -63,7 +71,13 @@ class SpeechModules:
     """ALTextToSpeech and ALAnimatedSpeech of one robot; the broker finds modules that a text calls."""
 
     def __init__(
-        self, runner: RobotRunner, memory: MemoryStore, files: ClientFiles, broker: Any, studio: Studio
+        self,
+        runner: RobotRunner,
+        memory: MemoryStore,
+        files: ClientFiles,
+        broker: Any,
+        studio: Studio,
+        play_sound: PlaySound,
     ) -> None:
         self._broker = broker
         self._closed = False
@@ -87,6 +101,8 @@ class SpeechModules:
             self.animator,
             self.library,
             self.body_language,
+            # A sound set that is not loaded yet has its files read.
+            lambda path, volume: studio.in_background(lambda: play_sound(path, volume), "playSoundSetFile"),
         )
         self.modules: dict[str, list[Any]] = {
             "ALTextToSpeech": [self._text_to_speech, settings],

@@ -5,13 +5,12 @@ from __future__ import annotations
 import random
 from typing import Any, Mapping
 
-from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
-from nao_sim_bridge.naoqi.binding.arguments import one_of
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller
+from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller, PlaySound
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
 from nao_sim_bridge.speech.animations import AnimationLibrary, read_animations
 from nao_sim_bridge.speech.animator import Animator
@@ -38,6 +37,7 @@ class ALAnimatedSpeech:
         animator: Animator,
         library: AnimationLibrary,
         body_language: BodyLanguage,
+        play_sound: PlaySound,
     ) -> None:
         self._runner = runner
         self._memory = memory
@@ -48,6 +48,7 @@ class ALAnimatedSpeech:
         self._call = call
         self._animator = animator
         self._library = library
+        self._play_sound = play_sound
         self._chance = random.Random(runner.simulation.scene.seed)
         self._body_language = body_language
         memory.declare_event(END, "ALAnimatedSpeech")
@@ -60,7 +61,17 @@ class ALAnimatedSpeech:
         return self._say(text, self._body_language.mode, None)
 
     def _say(self, text: str, mode: str, call: Caller | None) -> Task:
-        talk = AnimatedTalk(text, self._settings.style(), mode, self._studio, self._library, self._chance, call)
+        talk = AnimatedTalk(
+            text,
+            self._settings.style(),
+            mode,
+            self._studio,
+            self._library,
+            self._chance,
+            call,
+            self._play_sound,
+            lambda: self._animator.posture,
+        )
 
         def start() -> Task:
             task = talk.start(self._runner.simulation, self._speaker, self._animator)
@@ -99,7 +110,8 @@ class ALAnimatedSpeech:
     def declareTagForAnimations(self, tags: Any) -> None:
         for tag, names in lists_by_tag(tags, "tagsToAnimations").items():
             for name in names:
-                one_of(name, "animation", self._library.animations)
+                if name not in self._library.names:
+                    raise UnknownName("animation", name, self._library.names)
             self._library.add_tag(tag, names)
 
     def addTagsToWords(self, tags: Any) -> None:

@@ -7,11 +7,20 @@ import random
 from typing import Any, Callable, Sequence
 
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.naoqi.speech.annotated_text import ANIMATION, Instruction, method_call, read
+from nao_sim_bridge.naoqi.speech.annotated_text import (
+    ANIMATION,
+    SOUND,
+    Instruction,
+    method_call,
+    path_and_tag,
+    read,
+    sound_and_volume,
+)
 from nao_sim_bridge.speech import body_language, speaker
-from nao_sim_bridge.speech.animations import Animation, AnimationLibrary
+from nao_sim_bridge.speech.animations import AnimationLibrary
 from nao_sim_bridge.speech.animator import Animator
 from nao_sim_bridge.speech.clips import Clip, SpokenWord, Style
+from nao_sim_bridge.speech.gesture import Animation
 from nao_sim_bridge.speech.sentences import Item
 from nao_sim_bridge.speech.speaker import Speaker, SpeechEvent
 from nao_sim_bridge.speech.studio import Studio
@@ -21,6 +30,8 @@ log = logging.getLogger("nao_sim.speech")
 
 # Calls a method of a module and ends with its answer: module, method, arguments.
 Caller = Callable[[str, str, list], Task]
+# Plays a sound of a sound set, "set/file", at a volume, 0..1; the task may end with one that ends with the sound.
+PlaySound = Callable[[str, float], Task]
 
 
 class AnimatedTalk:
@@ -39,6 +50,8 @@ class AnimatedTalk:
         library: AnimationLibrary,
         chance: random.Random,
         call: Caller | None,
+        play_sound: PlaySound,
+        posture: Callable[[], str],
     ) -> None:
         studio.check_length(text)
         self._style = style
@@ -46,6 +59,10 @@ class AnimatedTalk:
         self._library = library
         self._chance = chance
         self._call = call
+        self._play_sound = play_sound
+        # Sounds that this text has begun, by name.
+        self._sounds: dict[str, Task] = {}
+        self._posture = posture
         self._animator: Animator | None = None
         self._speech: Task | None = None
         self._began = False
@@ -95,15 +112,17 @@ class AnimatedTalk:
         # From the first instruction on there are the gestures that it asks for.
         until = min((time for time, mark in clip.marks if isinstance(mark, Cue)), default=clip.sound.duration)
         words = [word for word in words if word[0] < until]
-        gestures = body_language.plan(until, words, self._mode, self._library, self._chance)
-        if gestures and not all(self._animator.can(gesture.animation) for gesture in gestures):
-            self._tell_limp()
+        gestures = body_language.plan(until, words, self._mode, self._library, self._chance, self._posture(), clip.text)
+        for gesture in gestures:
+            self._tell_limp(gesture.animation)
         self._animator.plan([] if self._animator.busy else gestures)
 
-    def _tell_limp(self) -> None:
-        if not self._told_limp:
+    def _tell_limp(self, animation: Animation) -> None:
+        limp = self._animator.limp_joints(animation)
+        if limp and not self._told_limp:
             self._told_limp = True
-            log.warning("speaks without gestures: arms or head are limp; wakeUp or a stiffness comes first")
+            alone = "speaks without gestures" if len(limp) > 3 else "moves less than its gestures ask for"
+            log.warning("%s: %s... are limp; wakeUp or a stiffness comes first", alone, ", ".join(limp[:3]))
 
     # --- instructions ---------------------------------------------------------------------------------------------
 
@@ -117,6 +136,8 @@ class AnimatedTalk:
             return [Gate(lambda: self._set_mode(value))]
         if act in ("call", "post"):
             return self._call_piece(instruction)
+        if instruction.kind == SOUND:
+            return self._sound_piece(act, value)
         animation = self._animation(instruction)
         if animation is None:
             log.warning("there is no animation for %s %r: it is left out", instruction.kind, value)
@@ -142,20 +163,45 @@ class AnimatedTalk:
             return [Gate(lambda: self._call(module, method, arguments))]
         return [Cue(lambda: self._call(module, method, arguments))]
 
+    def _sound_piece(self, act: str, value: str) -> list[Piece]:
+        """A sound goes on when the text is over."""
+        try:
+            sound, volume = sound_and_volume(value)
+        except ValueError as error:
+            log.warning("a sound is left out: %s", error)
+            return []
+
+        def begin() -> Task:
+            task = self._sounds[sound] = until_over(self._play_sound(sound, volume))
+            task.add_done_callback(self._tell_silence)
+            return task
+
+        if act == "start":
+            return [Cue(begin)]
+        if act == "run":
+            return [Gate(begin)]
+        if act == "wait":
+            return [Gate(lambda: self._sounds.get(sound))]
+        return [Cue(lambda: self._sounds[sound].kill() if sound in self._sounds else None)]
+
+    def _tell_silence(self, done: Task) -> None:
+        if done.error is not None:
+            log.warning("a sound of a text is not played: %s", done.error)
+
     def _animation(self, instruction: Instruction) -> Animation | None:
         if instruction.kind == ANIMATION:
-            return self._library.find(instruction.value)
-        tagged = self._library.tagged(instruction.value)
+            return self._library.find(instruction.value, self._posture())
+        path, tag = path_and_tag(instruction.value)
+        posture = self._posture()
+        tagged = self._library.tagged(tag, posture) if path is None else self._library.below(path, tag, posture)
         if tagged and instruction.value not in self._of_tag:
             self._of_tag[instruction.value] = self._chance.choice(tagged)
         return self._of_tag.get(instruction.value)
 
-    def _begin(self, animation: Animation) -> Task | None:
+    def _begin(self, animation: Animation) -> Task:
         self._animator.drop_plans()
-        task = self._animator.start(animation)
-        if task is None:
-            self._tell_limp()
-        return task
+        self._tell_limp(animation)
+        return self._animator.start(animation)
 
     def _set_mode(self, mode: str) -> None:
         self._mode = mode
@@ -169,3 +215,25 @@ def _after(tasks: Sequence[Task], then: Callable[[], Any]) -> None:
         then()
         return
     left[0].add_done_callback(lambda _: _after(left[1:], then))
+
+
+def until_over(command: Task) -> Task:
+    """A task that ends when a command and what it has begun have ended; killing it ends that."""
+    now = [command]
+
+    def stop(_: Task) -> None:
+        if now[0] is not command:
+            now[0].kill()
+        else:  # it has not run yet, and cannot be stopped before
+            command.add_done_callback(lambda done: done.value.kill() if isinstance(done.value, Task) else None)
+
+    def settle(done: Task) -> None:
+        if isinstance(done.value, Task):
+            now[0] = done.value
+            done.value.add_done_callback(settle)
+        elif not whole.finished:
+            whole.finish(error=done.error)
+
+    whole = Task(command.name, 0, on_kill=stop)
+    command.add_done_callback(settle)
+    return whole

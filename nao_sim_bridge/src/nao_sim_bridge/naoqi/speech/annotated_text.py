@@ -10,7 +10,7 @@ from typing import Any, Iterator, Tuple, Union
 
 log = logging.getLogger("nao_sim.speech")
 
-ANIMATION, TAG, MODE, CALL = "animation", "tag", "mode", "call"
+ANIMATION, TAG, SOUND, MODE, CALL = "animation", "tag", "sound", "mode", "call"
 # Instruction -> what is done, and what its argument is.
 INSTRUCTIONS = {
     "start": ("start", ANIMATION),
@@ -21,6 +21,10 @@ INSTRUCTIONS = {
     "runTag": ("run", TAG),
     "waitTag": ("wait", TAG),
     "stopTag": ("stop", TAG),
+    "startSound": ("start", SOUND),
+    "runSound": ("run", SOUND),
+    "waitSound": ("wait", SOUND),
+    "stopSound": ("stop", SOUND),
     "mode": ("mode", MODE),
     "call": ("call", CALL),
     "pCall": ("post", CALL),
@@ -37,8 +41,8 @@ METHOD = re.compile(r"\s*(\w+)\.(\w+)\s*\((.*)\)\s*", re.DOTALL)
 class Instruction:
     """Something to do at a place of the text."""
 
-    act: str  # start, run, wait or stop an animation, change the mode, call or post a method
-    kind: str  # what `value` is: an animation's name, a tag, a mode, or a call
+    act: str  # start, run, wait or stop an animation or a sound, change the mode, call or post a method
+    kind: str  # what `value` is: an animation's name, a tag, a sound, a mode, or a call
     value: str  # as it is written
 
 
@@ -60,6 +64,25 @@ def read(text: str) -> list[Union[str, Instruction]]:
         left_out = ", ^".join(name[:20] for name in list(unknown)[:10])
         log.warning("instructions ^%s are left out, there are ^%s", left_out, ", ^".join(INSTRUCTIONS))
     return [part for part in parts if part != ""]
+
+
+def path_and_tag(text: str) -> Tuple[str | None, str]:
+    """The path, or None, and the tag of an instruction: "hello" or "animations/Stand, hello"."""
+    path, comma, tag = text.rpartition(",")
+    return (path.strip(), tag.strip()) if comma else (None, text.strip())
+
+
+def sound_and_volume(text: str) -> Tuple[str, float]:
+    """The sound, which is a set and a file, and its volume, 0..1: "Aldebaran/laugh" or "Aldebaran/laugh, 50".
+
+    A ValueError when the volume is none.
+    """
+    sound, comma, percent = text.rpartition(",")
+    if not comma:
+        return text.strip(), 1.0
+    if not percent.strip().isdigit() or int(percent) > 100:
+        raise ValueError(f"{percent.strip()[:20]!r} is no volume, which is 0 to 100")
+    return sound.strip(), int(percent) / 100.0
 
 
 def method_call(text: str) -> Tuple[str, str, list[Any]]:

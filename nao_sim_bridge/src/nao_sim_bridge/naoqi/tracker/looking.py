@@ -13,7 +13,6 @@ from nao_sim_bridge.control.joints.curves import Ramp
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.model.frames import TORSO
 from nao_sim_bridge.naoqi.binding.arguments import numbers, one_of, speed_share, vector
-from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.arguments import space_of
 from nao_sim_bridge.naoqi.tracker.tracking import Tracking
 from nao_sim_bridge.tracking import geometry
@@ -97,9 +96,6 @@ class Looking:
     def _move(self, name: str, angles: Mapping[str, float], share: float) -> Task:
         robot = self._simulation.robot
         targets = {robot.model.joint_index[joint]: angle for joint, angle in angles.items()}
-        limp = [robot.model.joints[i].name for i in targets if robot.joints.stiffnesses[i] == 0.0]
-        if limp:
-            raise NaoqiError(f"{', '.join(limp)} is limp, wakeUp or a stiffness comes first")
         speeds = {i: share * robot.model.joints[i].max_velocity for i in targets}
         return robot.motion.follow(
             name, targets, lambda now: {i: Ramp(now[i], angle, speeds[i]) for i, angle in targets.items()}
