@@ -72,7 +72,7 @@ def test_each_picture_is_of_its_moment_and_no_series_is_faster_than_the_camera(t
     head.advance(60 / 120)
     assert not task.finished
     head.advance(1 / 120)
-    assert task.result(head.patience) == [str(path) for path in paths]
+    assert task.result(head.patience) == paths
     assert shades(paths) == pytest.approx([2, 62, 122], abs=1)
     assert stream.closed
     photographer.take([tmp_path / "a.png"], PhotoSettings(0, 0, 0, 0.001))
