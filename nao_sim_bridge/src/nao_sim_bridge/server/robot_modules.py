@@ -30,6 +30,8 @@ from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.wake import AWAKE
+from nao_sim_bridge.naoqi.navigation import caution
+from nao_sim_bridge.naoqi.navigation.navigation import ALNavigation
 from nao_sim_bridge.naoqi.sound.sound_extractors import DETECTION, LOCALIZATIONS, ALSoundDetection, SoundLocalization
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.sound.wiring import AudioModules, SpeechModules
@@ -140,6 +142,7 @@ class RobotModules:
             FILMS: [films()],
             vision_toolbox.NAME: Later(lambda: [vision_toolbox.ALVisionToolbox(photos(), films())]),
             **self._body.modules,
+            caution.NAME: Later(lambda: [ALNavigation(runner, memory)]),
             sentinel.NAME: Later(
                 lambda: [
                     sentinel.ALSentinel(memory, self._body.power, self._body.temperature, of_robot, self.speech.say)
