@@ -113,6 +113,8 @@ class RobotModules:
         self.film = FilmControl(runner, files, options.renderer)
         self.health = HealthControl(runner)
         self._body = BodyModules(runner, memory)
+        manager = behavior_manager.ALBehaviorManager(running, runner, memory, files)
+        system_modules = SystemModules(simulation, broker, files, memory, self.speech.say, manager)
         self.modules: dict[str, Sequence[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
             "ALLeds": leds.parts(runner),
@@ -120,7 +122,7 @@ class RobotModules:
             "ALRobotPosture": [posture],
             **self._audio.modules,
             **self.speech.modules,
-            behavior_manager.NAME: [behavior_manager.ALBehaviorManager(running, runner, memory, files)],
+            behavior_manager.NAME: [manager],
             animation_player.NAME: [animation_player.ALAnimationPlayer(running, runner)],
             frame_manager.NAME: [frame_manager.ALFrameManager(running, runner, files)],
             **self._life.modules,
@@ -134,7 +136,7 @@ class RobotModules:
             **self._body.modules,
             "ALSystem": [system(memory, zone)],
             **UserModules(simulation, memory, files, zone, self.vision.people).modules,
-            **SystemModules(simulation, broker, files, memory, self.speech.say).modules,
+            **system_modules.modules,
         }
 
     def begin(self) -> None:
