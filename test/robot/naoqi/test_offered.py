@@ -22,6 +22,7 @@ ELSEWHERE = {
     "deactivateRule getContextParam getRules loadContextSet loadVocabulary popContexts removeContext "
     "removeWordListFromSlot setContextParam",
     "ALPreferenceManager": "importPrefFile update",
+    "ALConnectionManager": "setServiceInput",
     "ALLogger": "logInForwarder logInSys",
     "ALUserSession": "getCurrentEncounterDate getFirstEncounterDate getLastEncounterDate getSecondsSinceLastEncounter "
     "getUserBinding getUserBindings getUserCreationDate getUserData setUserData",

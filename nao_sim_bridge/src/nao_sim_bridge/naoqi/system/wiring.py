@@ -48,6 +48,7 @@ class SystemModules:
         self._add("ALLogger", "logger", files)
         self._add("ALNotificationManager", "notification_manager", memory, say)
         self._add("PackageManager", "package_manager", manager, files, signals=PACKAGE_SIGNALS)
+        self._add("ALConnectionManager", "connection_manager", memory)
         self._add("ALResourceManager", "resource_manager", simulation, broker)
 
     def _add(self, module: str, file: str, *arguments: Any, signals: Mapping[str, str] | None = None) -> None:
