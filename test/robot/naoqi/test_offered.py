@@ -27,10 +27,12 @@ ELSEWHERE = {
     "deactivateRule getContextParam getRules loadContextSet loadVocabulary popContexts removeContext "
     "removeWordListFromSlot setContextParam",
     "ALPreferenceManager": "importPrefFile update",
+    "ALConnectionManager": "setServiceInput",
     "ALLogger": "logInForwarder logInSys",
     "ALUserSession": "getCurrentEncounterDate getFirstEncounterDate getLastEncounterDate getSecondsSinceLastEncounter "
     "getUserBinding getUserBindings getUserCreationDate getUserData setUserData",
     "ALUserInfo": "get getType has remove removeUser set",
+    "PackageManager": "getPackage getPackageIcon install installCheckMd5 package package2 packageIcon removePkg",
     "ALSystem": "changePassword factoryReset setRobotIcon shutdown upgrade",
     "DCM": "calibration special",
     "ALVideoDevice": "getDirectRawImageLocal getDirectRawImagesLocal getImageLocal getImagesLocal",

@@ -6,9 +6,9 @@ A package has a manifest.xml with a `uuid` and a `behaviorContent` for each beha
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Callable
+from typing import Callable, Mapping, Tuple
 from xml.etree.ElementTree import Element
 
 from nao_sim_bridge.base.archives import Archive, BadArchive
@@ -18,10 +18,49 @@ from nao_sim_bridge.behaviors.reader import NATURES, checked_name, read_behavior
 from nao_sim_bridge.behaviors.steps import NO_NATURE, Behavior
 from nao_sim_bridge.behaviors.xar import LARGEST_FILE, parse_xml, read_xar, xar_step
 
-MANIFEST, BEHAVIOR_FILE = "manifest.xml", "behavior.xar"
+MANIFEST, BEHAVIOR_FILE, ICON = "manifest.xml", "behavior.xar", "icon.png"
+LARGEST_ICON = 1_000_000
+"""Bytes of the icon of a package, which is kept in memory."""
 TEXT_FILES, PACKAGES = (".yaml", ".yml", ".json"), (".pkg", ".zip")
 # Reads a file of a package by its path in it.
 Read = Callable[[str], bytes]
+
+
+@dataclass(frozen=True)
+class PackageInfo:
+    """What a manifest says of its package, and its icon, a PNG picture; empty where it says nothing."""
+
+    uuid: str
+    version: str
+    names: Mapping[str, str]  # by language, such as en_US
+    descriptions: Mapping[str, str]
+    languages: Tuple[str, ...]
+    programs: Tuple[str, ...]  # services and other programs, which a robot would start
+    icon: bytes
+
+
+def package_info(path: Path) -> PackageInfo:
+    """What a package (.pkg, .zip) says of itself; a ConfigError when it is none."""
+    try:
+        with Archive(path) as archive:
+            manifest, folder = _manifest(archive)
+            root = parse_xml(archive.read(manifest), f"{path.name}: {MANIFEST}")
+            icon = archive.read(folder + ICON) if folder + ICON in archive.names else b""
+            if len(icon) > LARGEST_ICON:
+                raise BadArchive(f"its {ICON} has {len(icon)} bytes, at most {LARGEST_ICON} are allowed")
+    except (OSError, BadArchive) as error:
+        raise ConfigError(path.name, f"is no package: {error}") from error
+    services = [entry.get("name", "") for entry in root.findall("services/service")]
+    files = [entry.get("path", "") for entry in root.findall("executableFiles/file")]
+    return PackageInfo(
+        root.get("uuid", ""),
+        root.get("version", ""),
+        _by_language(root, "names/name"),
+        _by_language(root, "descriptions/description"),
+        tuple((entry.text or "").strip() for entry in root.findall("supportedLanguages/language")),
+        tuple(filter(None, [*services, *files])),
+        icon,
+    )
 
 
 def read_package(path: Path) -> list[Behavior]:
@@ -51,11 +90,20 @@ def renamed(behaviors: list[Behavior], name: str) -> list[Behavior]:
 def _zipped(path: Path) -> list[Behavior]:
     try:
         with Archive(path) as archive:
-            manifest = next((n for n in archive.names if n.rsplit("/", 1)[-1] == MANIFEST), MANIFEST)
-            folder = manifest[: -len(MANIFEST)]
+            _, folder = _manifest(archive)
             return _package(lambda name: archive.read(folder + name), path.name)
     except (OSError, BadArchive) as error:
         raise ConfigError(path.name, f"is no package: {error}") from error
+
+
+def _manifest(archive: Archive) -> tuple[str, str]:
+    """The path of the manifest, and of the folder that it is in, which is empty or ends with a slash."""
+    manifest = next((n for n in archive.names if n.rsplit("/", 1)[-1] == MANIFEST), MANIFEST)
+    return manifest, manifest[: -len(MANIFEST)]
+
+
+def _by_language(root: Element, path: str) -> dict[str, str]:
+    return {entry.get("lang", ""): (entry.text or "").strip() for entry in root.findall(path)}
 
 
 def _inside(folder: Path, name: str) -> bytes:

@@ -119,9 +119,14 @@ class RobotModules:
         self.film = FilmControl(runner, files, options.renderer)
         self.health = HealthControl(runner)
         self._body = BodyModules(runner, memory)
+<<<<<<< HEAD
         of_robot = system(memory, zone)
         photos = lambda: ALPhotoCapture(self._photographer, files, cameras.tables)  # noqa: E731
         films = lambda: ALVideoRecorder(self._recorder, files, cameras.tables)  # noqa: E731
+=======
+        manager = behavior_manager.ALBehaviorManager(running, runner, memory, files)
+        system_modules = SystemModules(simulation, broker, files, memory, self.speech.say, manager)
+>>>>>>> 955f8a485d4eb695935b67ea0f725435ef8504ac
         self.modules: dict[str, Sequence[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
             "ALLeds": leds.parts(runner),
@@ -129,7 +134,7 @@ class RobotModules:
             "ALRobotPosture": [posture],
             **self._audio.modules,
             **self.speech.modules,
-            behavior_manager.NAME: [behavior_manager.ALBehaviorManager(running, runner, memory, files)],
+            behavior_manager.NAME: [manager],
             animation_player.NAME: [animation_player.ALAnimationPlayer(running, runner)],
             frame_manager.NAME: [frame_manager.ALFrameManager(running, runner, files)],
             **self._life.modules,
@@ -150,7 +155,7 @@ class RobotModules:
             ),
             "ALSystem": [of_robot],
             **UserModules(simulation, memory, files, zone, self.vision.people).modules,
-            **SystemModules(simulation, broker, files, memory, self.speech.say).modules,
+            **system_modules.modules,
         }
 
     def begin(self) -> None:

@@ -31,6 +31,8 @@ SIMPLE_TYPES = {
     # Structures of single modules: ability, enabled, running; tag to animations.
     "AutonomousAbilityStatus": "(sbb)",
     "TagForAnimations": "{s[s]}",
+    "PackageInfo2": "(sssssssss{sm})<PackageInfo2,uuid,version,author,channel,organization,date,typeVersion,installer,"
+    "path,elems>",
 }
 
 

@@ -8,6 +8,8 @@ from typing import Any, Callable, Mapping
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.behaviors.behavior_manager import ALBehaviorManager
+from nao_sim_bridge.naoqi.binding.api import qi_type
 from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.binding.signals import Signals
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -20,6 +22,11 @@ PREFERENCE_SIGNALS = {
     "preferencesSynchronized": "()",
 }
 """Signals by name, with libqi's letters of their values."""
+PACKAGE_SIGNALS = {
+    name.format(what): f"({qi_type('PackageInfo2')})"
+    for what in ("Installed", "Removed")
+    for name in ("onPackage{}2", "onPackage{}", "package{}")
+}
 
 
 class SystemModules:
@@ -32,6 +39,7 @@ class SystemModules:
         files: ClientFiles,
         memory: MemoryStore,
         say: Callable[[str], Task],
+        manager: ALBehaviorManager,
     ) -> None:
         self.modules: dict[str, Later] = {}
         self._add("ALPreferenceManager", "preference_manager", files, memory, signals=PREFERENCE_SIGNALS)
@@ -39,6 +47,8 @@ class SystemModules:
         self._add("ALKnowledge", "knowledge", files)
         self._add("ALLogger", "logger", files)
         self._add("ALNotificationManager", "notification_manager", memory, say)
+        self._add("PackageManager", "package_manager", manager, files, signals=PACKAGE_SIGNALS)
+        self._add("ALConnectionManager", "connection_manager", memory)
         self._add("ALResourceManager", "resource_manager", simulation, broker)
 
     def _add(self, module: str, file: str, *arguments: Any, signals: Mapping[str, str] | None = None) -> None:
