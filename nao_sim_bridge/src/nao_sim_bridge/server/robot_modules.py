@@ -119,14 +119,11 @@ class RobotModules:
         self.film = FilmControl(runner, files, options.renderer)
         self.health = HealthControl(runner)
         self._body = BodyModules(runner, memory)
-<<<<<<< HEAD
         of_robot = system(memory, zone)
         photos = lambda: ALPhotoCapture(self._photographer, files, cameras.tables)  # noqa: E731
         films = lambda: ALVideoRecorder(self._recorder, files, cameras.tables)  # noqa: E731
-=======
         manager = behavior_manager.ALBehaviorManager(running, runner, memory, files)
         system_modules = SystemModules(simulation, broker, files, memory, self.speech.say, manager)
->>>>>>> 955f8a485d4eb695935b67ea0f725435ef8504ac
         self.modules: dict[str, Sequence[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
             "ALLeds": leds.parts(runner),
