@@ -36,6 +36,7 @@ COMMANDS = {
     "get": ("memory", "Values in the robot's memory."),
     "set": ("memory", "Write a value into the robot's memory."),
     "watch": ("memory", "Events and values of the robot's memory as they come."),
+    "naoqi": ("naoqi", "Services of the robot: their methods, signals and properties, as qicli."),
     "console": ("console", "Pages in a browser for the person who runs a study."),
     "new": ("new", "Write a skeleton: a package for a study of one's own."),
     "sim": ("simulator", "Touch, push and picture a simulated robot, and rule its time."),
