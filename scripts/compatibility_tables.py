@@ -77,10 +77,10 @@ def _sentence(counts: Mapping[str, _Counts]) -> str:
     before = [each for each in counts.values() if each.last != NEWEST]
     refusing, missing = sum(len(each.refused) for each in newest), sum(len(each.open) for each in newest)
     return (
-        f"Of the {there + of_others} methods that the modules of NAOqi {NEWEST} have of their own on a NAO, **{answered}** "
-        f"answer, in {len(newest)} modules. {refusing} always refuse, with a reason, {missing} of these modules are not "
-        f"there, and {of_others} are of modules that are not there. {older} methods of earlier versions are there beside "
-        f"them, and {len(before)} modules with {sum(each.all for each in before)} methods."
+        f"Of the {there + of_others} methods that the modules of NAOqi {NEWEST} have of their own on a NAO, "
+        f"**{answered}** answer, in {len(newest)} modules. {refusing} always refuse, with a reason, {missing} of these "
+        f"modules are not there, and {of_others} are of modules that are not there. {older} methods of earlier "
+        f"versions are there beside them, and {len(before)} modules with {sum(each.all for each in before)} methods."
     )
 
 

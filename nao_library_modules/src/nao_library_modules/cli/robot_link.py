@@ -26,6 +26,7 @@ class DirectRobot:
     def __init__(self, address: tuple[str, int], limit: float = LIMIT) -> None:
         self._address = address
         self._limit = limit
+        self._connection: Any = None
         self._proxies: dict[str, Any] = {}
 
     def __enter__(self) -> DirectRobot:
@@ -33,7 +34,7 @@ class DirectRobot:
         import naoqi
 
         try:
-            naoqi.connection(*self._address, connect_timeout=self._limit)
+            self._connection = naoqi.connection(*self._address, connect_timeout=self._limit)
         except NaoError as error:
             raise StackMissing(str(error)) from None
         return self
@@ -54,6 +55,30 @@ class DirectRobot:
         """Call a method. Raises CommandFailed if the robot refuses."""
         try:
             return self._proxy(module).call_async(method, *arguments).result(timeout=self._limit)
+        except NaoError as error:
+            raise CommandFailed(str(error)) from None
+
+    def begin(self, module: str, method: str, *arguments: Any) -> Any:
+        """Call a method without waiting; the answer is the `result(timeout)` of what it returns.
+
+        Raises CommandFailed if the robot has no such method.
+        """
+        try:
+            return _Begun(self._proxy(module).call_async(method, *arguments))
+        except NaoError as error:
+            raise CommandFailed(str(error)) from None
+
+    def services(self) -> list[str]:
+        """Names of all services of the robot and of programs."""
+        from naoqi.directory import module_names
+
+        connection = self._connection
+        return sorted(module_names(connection, connection.live))
+
+    def service(self, name: str) -> Any:
+        """A service as libqi gives it. Raises CommandFailed if there is none."""
+        try:
+            return self._connection.service(name)
         except NaoError as error:
             raise CommandFailed(str(error)) from None
 
@@ -114,6 +139,22 @@ class DirectRobot:
         if module not in self._proxies:
             self._proxies[module] = naoqi.ALProxy(module, *self._address, lazy=True)
         return self._proxies[module]
+
+
+class _Begun:
+    """A call that is under way; Ctrl-C while it is waited for cancels it."""
+
+    def __init__(self, call: Any) -> None:
+        self._call = call
+
+    def result(self, timeout: float | None = None) -> Any:
+        try:
+            return self._call.result(timeout=timeout)
+        except NaoError as error:
+            raise CommandFailed(str(error)) from None
+        finally:
+            if not self._call.done():
+                self._call.cancel()
 
 
 def _is_pattern(name: str) -> bool:
