@@ -36,12 +36,9 @@ COMMANDS = {
     "get": ("memory", "Values in the robot's memory."),
     "set": ("memory", "Write a value into the robot's memory."),
     "watch": ("memory", "Events and values of the robot's memory as they come."),
-<<<<<<< HEAD
     "files": ("files", "Files on the robot: list them, get one, put one."),
     "bag": ("bag", "Rosbags whose types have the names of the older packages, and back."),
-=======
     "naoqi": ("naoqi", "Services of the robot: their methods, signals and properties, as qicli."),
->>>>>>> 05e7e69faec9cb3c20aa2c552fe7ff39a7582207
     "console": ("console", "Pages in a browser for the person who runs a study."),
     "new": ("new", "Write a skeleton: a package for a study of one's own."),
     "sim": ("simulator", "Touch, push and picture a simulated robot, and rule its time."),
