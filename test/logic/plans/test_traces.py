@@ -15,6 +15,7 @@ from fake_goals import FakeActionClient, FakeGoal
 from plan_tools import fails
 
 import nao_library_modules.process_modules as p
+from nao_library_actions.msg import NaoLedAction
 from nao_library_modules.process_modules.core.projection import compare
 from nao_library_modules.process_modules.language.failures import ActionlibActionTimedOut
 from nao_library_modules.process_modules.language.settings import load_settings
@@ -91,7 +92,7 @@ def test_a_goal_that_takes_too_long_is_cancelled_when_the_server_knows_it_or_has
 
     client, ends = FakeActionClient(on_sent), []
     monkeypatch.setattr(actionlib, "ActionClient", lambda *_: client)
-    plan = lambda: PlanActionClient("NaoLights", None).call(None, timeout=0.01, on_end=ends.append)  # noqa: E731
+    plan = lambda: PlanActionClient("NaoLights", NaoLedAction).call(None, timeout=0.01, on_end=ends.append)  # noqa: E731
     if late:
         fails(ActionlibActionTimedOut, "the goal of NaoLights took longer than 0.01 s", plan)
         assert (client.goals[0].cancelled, ends[0].status) == ([CommState.ACTIVE], GoalStatus.PREEMPTED)
