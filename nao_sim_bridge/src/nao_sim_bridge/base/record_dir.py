@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Iterator, Sequence
+from typing import Iterator, Sequence, Tuple
 
 from nao_sim_bridge.base.config import config_file, read_json, robot_files_directory, section
 from nao_sim_bridge.base.errors import did_you_mean
@@ -49,7 +49,7 @@ class Place:
     """
 
     path: str
-    other_names: tuple[str, ...]
+    other_names: Tuple[str, ...]
     folder: str
     ours: bool
 
