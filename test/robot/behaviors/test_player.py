@@ -108,6 +108,7 @@ def test_limp_joints_stay_while_a_behaviour_takes_its_time(bench):
 
 
 def test_a_gesture_that_leans_is_stopped_half_way_and_the_robot_stands(stage):
+    stage.bench.run(0.3)  # until its feet carry it
     hip = stage.command("LHipPitch")
     task = stage.play({"gesture": "animations/Stand/Gestures/BowShort_1"})
     stage.bench.run(1.2)
