@@ -94,9 +94,16 @@ def test_the_head_follows_a_ball_that_moves_and_tells_when_it_is_lost(tracker, s
 
 def test_it_follows_the_places_of_an_event(tracker, stiff_robot):
     tracker.trackEvent(EVENT)
-    for place in ([1.0, 0.4, 0.4], [[1.0, -0.4, 0.5], ROBOT]):
-        tell(stiff_robot, place, 0.7)
-        assert off(stiff_robot, place[0] if len(place) == 2 else place) < 2.5
+    left, right = [1.0, 0.4, 0.4], [1.0, -0.4, 0.5]
+    turned, stamp = [0.0] * 3, [12, 500000]
+    for value, place in (
+        (left, left),
+        ([right, ROBOT], right),
+        ([[*left, *turned], stamp, 1], left),  # it stands where the world begins
+        ([[9.0, 9.0, 9.0, *turned], [*right, *turned], stamp, 1, 0.05], right),
+    ):
+        tell(stiff_robot, value, 0.7)
+        assert off(stiff_robot, place) < 2.5, value
     assert tracker.getActiveTarget() == EVENT
 
 

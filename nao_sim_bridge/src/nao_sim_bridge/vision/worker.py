@@ -27,6 +27,7 @@ DETECTORS = {
     "barcodes": "nao_sim_bridge.vision.barcodes.BarcodeDetector",
     "faces": "nao_sim_bridge.vision.faces.FaceDetector",
     "movement": "nao_sim_bridge.vision.movement.MovementDetector",
+    "color blob": "nao_sim_bridge.vision.color_blob.ColorBlobDetector",
     "darkness": "nao_sim_bridge.vision.light.DarknessDetector",
     "backlighting": "nao_sim_bridge.vision.light.BacklightingDetector",
 }

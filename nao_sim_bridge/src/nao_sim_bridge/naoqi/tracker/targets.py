@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Callable, Iterable, Mapping, Sequence, Tuple
 
-from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.base.errors import BadValue, SimulationError
+from nao_sim_bridge.model.frames import ROBOT, WORLD
+from nao_sim_bridge.naoqi.binding.arguments import number, numbers
 from nao_sim_bridge.tracking.geometry import Point, distance_of, seen_place
 
 # What `registerTarget` takes: a length in m, and for some targets ids or a confidence.
@@ -18,9 +19,10 @@ LARGEST_ID = 10000
 class Sighting:
     """Something that was seen or heard."""
 
-    place: Point  # x, y, z in FRAME_ROBOT at the time, m
+    place: Point  # x, y, z in `frame` at the time, m
     distance: float  # from the camera or the head, m
     number: int = 0  # of the landmark, or of the face; 0 for what has none
+    frame: int = ROBOT  # one of ALMotion's
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,26 @@ def read_sound(value: Any, parameters: Parameters) -> list[Sighting]:
         return []
     azimuth, elevation = value[1][:2]
     return [Sighting(seen_place(value[3], azimuth, -elevation, parameters.length), parameters.length)]
+
+
+def read_place(value: Any) -> list[Sighting]:
+    """Of an event that tells a place; what is none does not count.
+
+    It is NAOqi's [place in WORLD, time, effector, ...] or [place in TORSO, place in ROBOT, time, effector, ...], or in
+    short [[x, y, z, ...], frame] or [x, y, z, ...] in ROBOT.
+    """
+    place, frame = value, ROBOT
+    if _is_list(value) and value and _is_list(value[0]):
+        place, second, *_ = *value, None
+        if _is_list(second) and len(second) == len(place):
+            place = second
+        elif _is_list(second) or second == WORLD:
+            frame = WORLD
+    try:
+        x, y, z, *_ = numbers(place, "place")
+    except (SimulationError, ValueError, TypeError):
+        return []
+    return [Sighting((x, y, z), 0.0, frame=frame)]
 
 
 def _length(field: str) -> Callable[[Any], Parameters]:

@@ -67,7 +67,7 @@ class ALTracker:
         return self._runner.execute(lambda: self._tracking.start(target, parameters), "track")
 
     def trackEvent(self, event: str) -> Task:
-        """The event has [x, y, z] in FRAME_ROBOT, or [[x, y, z], frame] with frame 1 (WORLD) or 2 (ROBOT), m."""
+        """The event has a place as `read_place` says: NAOqi's layouts, or [x, y, z] in FRAME_ROBOT, m."""
         if not event:
             raise BadValue("pEventName", event, "the name of an event")
         return self._runner.execute(lambda: self._tracking.start_event(event), "trackEvent")

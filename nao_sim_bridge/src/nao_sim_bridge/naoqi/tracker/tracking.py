@@ -9,13 +9,11 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
-from nao_sim_bridge.base.errors import SimulationError, SimulationStopped
+from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.core.robot_runner import RobotRunner
-from nao_sim_bridge.model.frames import ROBOT, WORLD
-from nao_sim_bridge.naoqi.binding.arguments import numbers
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.tracker.targets import TARGETS, Parameters, Sighting
+from nao_sim_bridge.naoqi.tracker.targets import TARGETS, Parameters, Sighting, read_place
 from nao_sim_bridge.tracking import geometry
 from nao_sim_bridge.tracking.follower import Follower
 from nao_sim_bridge.tracking.geometry import Point
@@ -97,7 +95,7 @@ class Tracking:
 
     def start_event(self, event: str) -> None:
         """Track places that an event tells."""
-        self._begin(_Active(event, "", _read_place), event)
+        self._begin(_Active(event, "", read_place), event)
 
     def stop(self) -> None:
         """Track nothing any more."""
@@ -146,8 +144,7 @@ class Tracking:
         if not near:
             return
         model, placed = self._simulation.model, geometry.placement(self._simulation.model, self._simulation.snapshot)
-        frame = WORLD if not active.module and len(value) == 2 and value[1] == WORLD else ROBOT
-        self._place = geometry.in_world(model, placed, near[0].place, frame)
+        self._place = geometry.in_world(model, placed, near[0].place, near[0].frame)
         self._seen, self.new = self._simulation.time, True
         if self._lost:
             self._lost = False
@@ -171,13 +168,3 @@ class Tracking:
     def _after_reset(self) -> None:
         if self._active is not None:
             self.stop()
-
-
-def _read_place(value: Any) -> list[Sighting]:
-    """Of an event with a place: [x, y, z, ...], or [[x, y, z, ...], frame]; what is none of these does not count."""
-    try:
-        nested = isinstance(value, (list, tuple)) and value and isinstance(value[0], (list, tuple))
-        x, y, z, *_ = numbers(value[0] if nested else value, "place")
-    except (SimulationError, ValueError, TypeError):
-        return []
-    return [Sighting((x, y, z), 0.0)]

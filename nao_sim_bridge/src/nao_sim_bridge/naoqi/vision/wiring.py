@@ -12,7 +12,7 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.vision import face_detection, light_detection, movement_detection
+from nao_sim_bridge.naoqi.vision import color_blob_detection, face_detection, light_detection, movement_detection
 from nao_sim_bridge.naoqi.vision.vision_extractor import Sight, VisionExtractor, in_picture
 from nao_sim_bridge.naoqi.vision.watching import QVGA, TOP, Watching
 from nao_sim_bridge.vision.ball import Ball
@@ -114,6 +114,7 @@ class Rare:
 
 
 RARE: Mapping[str, Rare] = {
+    color_blob_detection.NAME: Rare(color_blob_detection.ALColorBlobDetection, (color_blob_detection.EVENT,)),
     light_detection.DARKNESS: Rare(
         light_detection.ALDarknessDetection, (light_detection.DARK,), (light_detection.DARKNESS_VALUE,)
     ),
