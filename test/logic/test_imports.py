@@ -60,7 +60,7 @@ ROOMS = {
     control.joints control.whole_body control.balance control walk
     cameras render.scene render.opengl render sound hearing.grammars hearing speech vision behaviors tracking core
     naoqi.binding naoqi.memory naoqi.motion naoqi.body naoqi.speech naoqi.sound naoqi.vision naoqi.cameras
-    naoqi.behaviors naoqi.tracker naoqi.system naoqi.life naoqi
+    naoqi.behaviors naoqi.tracker naoqi.navigation naoqi.system naoqi.life naoqi
     server library . envs sweep ros testing
     """.split(),
 }

@@ -16,6 +16,9 @@ LONGEST = 8.0
 ELSEWHERE = {
     "ALAudioDevice": "sendLocalBufferToOutput",
     "ALAudioPlayer": "playFileInLoop playInLoop playWebStream",
+    "ALNavigation": "explore findFreeZone getExplorationPath getFreeZone getMetricalMap getRobotPositionInMap "
+    "loadExploration navigateToInMap relocalizeInMap relocalizeInMapWithHint saveExploration setDefaultExploration "
+    "startFreeZoneUpdate startLocalization startMapping stopAndComputeFreeZone stopExploration stopLocalization",
     "ALMemory": "getDataOnChange getDataPtr getFloatPtr getIntPtr",
     "ALMovementDetection": "setDepthSensitivity",
     "ALSpeechRecognition": "activateAllRules activateRule addContext addWordListToSlot compile deactivateAllRules "

@@ -29,6 +29,8 @@ from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.wake import AWAKE
+from nao_sim_bridge.naoqi.navigation import caution
+from nao_sim_bridge.naoqi.navigation.navigation import ALNavigation
 from nao_sim_bridge.naoqi.sound.sound_extractors import DETECTION, LOCALIZATIONS, ALSoundDetection, SoundLocalization
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.sound.wiring import AudioModules, SpeechModules
@@ -130,6 +132,7 @@ class RobotModules:
             PHOTOS: [ALPhotoCapture(self._photographer, files, cameras.tables)],
             FILMS: [ALVideoRecorder(self._recorder, files, cameras.tables)],
             **self._body.modules,
+            caution.NAME: Later(lambda: [ALNavigation(runner, memory)]),
             "ALSystem": [system(memory, zone)],
         }
 

@@ -103,6 +103,11 @@ class Locomotion:
         """Whether a walk runs, from its begin until the robot stands again."""
         return self._job is not None
 
+    @property
+    def ahead(self) -> float:
+        """How far the robot goes forward in a step, m; 0 when it does not walk."""
+        return self._rate()[0] if self.active else 0.0
+
     def init(self) -> Task:
         """Take the stance that walks begin from."""
         if self.active:

@@ -1,0 +1,1 @@
+"""ALNavigation: moves that end before obstacles, and ways around them."""

@@ -1,0 +1,95 @@
+"""Ends moves before obstacles that the sonars see. Simulation thread only."""
+
+from __future__ import annotations
+
+import logging
+from typing import Any, Sequence, Tuple
+
+from nao_sim_bridge.base.rotations import Vector3, plus, rotate
+from nao_sim_bridge.body.sensors.snapshot import Snapshot
+from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.motion.walking import MoveFailures
+from nao_sim_bridge.walk.footsteps import FootPose
+
+log = logging.getLogger("nao_sim.navigation")
+
+NAME = "ALNavigation"
+OBSTACLE = "Navigation/AvoidanceNavigator/ObstacleDetected"
+SLOWEST = 0.004
+"""A robot that goes less than this forward in a step, m, comes nearer to nothing ahead: it turns on the spot."""
+ALIKE = 0.03
+"""Echoes of both sides that differ by less than this, m, are of one thing straight ahead."""
+Place = Tuple[float, float]
+
+
+class Caution:
+    """Looks ahead while a move lasts that was begun with `begin`.
+
+    It ends the move, and raises `Navigation/AvoidanceNavigator/ObstacleDetected` with [x, y] in FRAME_ROBOT, when
+    something ahead is nearer than ALMotion's orthogonal security distance, however slow the robot is.
+
+    Attributes:
+        obstacle: Place in the world of the robot's odometry, m, of what has ended the present move; None for nothing.
+        free_side: Where the sonars saw less of it: 1 left, -1 right, 0 when both saw the same.
+    """
+
+    def __init__(self, simulation: Simulation, memory: MemoryStore) -> None:
+        self.obstacle: Place | None = None
+        self.free_side = 0
+        self._simulation = simulation
+        self._memory = memory
+        self._failures = MoveFailures(memory)
+        self._looks = False
+        self._echoes: Sequence[float] = ()
+        memory.declare_event(OBSTACLE, NAME)
+        simulation.after_tick.append(self._tick)
+
+    @property
+    def distance(self) -> float:
+        """Security distance, m."""
+        return self._simulation.robot.reflexes.external_collision.orthogonal
+
+    @distance.setter
+    def distance(self, distance: float) -> None:
+        self._simulation.robot.reflexes.external_collision.orthogonal = distance
+
+    def begin(self) -> None:
+        """A move is about to begin."""
+        locomotion = self._simulation.robot.locomotion
+        self._failures.watch(locomotion)
+        if self._failed not in locomotion.failures:
+            locomotion.failures.append(self._failed)
+        self.obstacle = None
+        self._looks = True
+        self._echoes = ()
+
+    def _tick(self, now: Snapshot) -> None:
+        if not self._looks:
+            return
+        locomotion = self._simulation.robot.locomotion
+        if not locomotion.active:
+            self._looks = False
+        elif now.sonars is not self._echoes:
+            self._echoes = now.sonars
+            if locomotion.ahead > SLOWEST and min(now.sonars) < self.distance:
+                collision = self._simulation.robot.reflexes.external_collision
+                seen = rotate(now.odometry.orientation, collision.obstacle_ahead(now.sonars).tolist())
+                self._stop_at(plus(now.odometry.position, seen))
+
+    def _failed(self, _: str, started: bool, obstacle: Vector3 | None) -> None:
+        """ALMotion's own protection was quicker."""
+        if self._looks and started and obstacle is not None:
+            self._stop_at(obstacle)
+
+    def _stop_at(self, place: Any) -> None:
+        if self.obstacle is not None:
+            return
+        self.obstacle = (place[0], place[1])
+        left, right = self._simulation.snapshot.sonars
+        self.free_side = 0 if abs(left - right) < ALIKE else 1 if left > right else -1
+        locomotion = self._simulation.robot.locomotion
+        x, y, _ = FootPose(place[0], place[1], 0.0).seen_from(locomotion.position(use_sensors=True))
+        log.warning("the move ends: there is an obstacle %.2f m ahead", x)
+        self._memory.raise_event(OBSTACLE, [x, y])
+        locomotion.stop()

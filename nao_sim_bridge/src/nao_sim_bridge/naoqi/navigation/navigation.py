@@ -1,0 +1,110 @@
+"""ALNavigation of the simulated robot. Only NAOqi methods live here."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Callable, NoReturn
+
+from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.core.robot_runner import RobotRunner
+from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.motion.move_config import gait_of
+from nao_sim_bridge.naoqi.navigation.caution import Caution
+from nao_sim_bridge.naoqi.navigation.navigator import Navigator
+from nao_sim_bridge.naoqi.navigation.trajectory import read_trajectory
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.gait import FeetGait
+from nao_sim_bridge.walk.locomotion import Locomotion
+
+FARTHEST_GOAL = 3.0
+"""Goals of navigateTo are nearer than this, m."""
+MOST = 1e6
+"""In m, rad and s: with more, sums would leave what numbers can be."""
+NO_MAP = "a NAO has no laser or 3D camera to map its surroundings with, as a Pepper has; navigateTo goes by the sonars"
+NO_ZONE = "the free zone is that of a Pepper's lasers and 3D camera; a NAO's sonars see ahead only, see ALSonar"
+
+
+class ALNavigation:
+    """Moves that end before what the sonars see ahead, and ways around it.
+
+    `move`, `moveTo` and `moveToward` are ALMotion's but for the security distance, at which they end however slow they
+    are; that is ALMotion's orthogonal one.
+    """
+
+    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
+        self._runner = runner
+        self._caution = Caution(runner.simulation, memory)
+        self._navigator = Navigator(runner.simulation, memory, self._caution)
+
+    # --- cautious moves -------------------------------------------------------------------------------------------
+
+    def move(self, x: float, y: float, theta: float, config: Any = ()) -> Task:
+        rate, gait = _three(x, y, theta), gait_of(config)
+        return self._cautiously("move", lambda locomotion: locomotion.move(*rate, gait))
+
+    def moveToward(self, x: float, y: float, theta: float, config: Any = ()) -> Task:
+        shares = [number(value, name, -1.0, 1.0) for name, value in (("x", x), ("y", y), ("theta", theta))]
+        gait = gait_of(config)
+        return self._cautiously("moveToward", lambda locomotion: locomotion.move_toward(*shares, gait))
+
+    def moveTo(self, x: float, y: float, theta: float, config: Any = ()) -> Task:
+        """Ends when the robot stands there, or before an obstacle."""
+        goal, gait = FootPose(*_three(x, y, theta)), gait_of(config)
+        return self._cautiously("moveTo", lambda locomotion: locomotion.move_to([goal], gait).then(lambda _: None))
+
+    def getSecurityDistance(self) -> float:
+        return self._caution.distance
+
+    def setSecurityDistance(self, distance: float) -> Task:
+        checked = number(distance, "distance", 0.0, MOST)
+        return self._runner.execute(lambda: setattr(self._caution, "distance", checked), "setSecurityDistance")
+
+    # --- ways -----------------------------------------------------------------------------------------------------
+
+    def navigateTo(self, x: float, y: float, *others: Any) -> Task:
+        """(x, y), then theta, a configuration, both or neither; answers whether the robot got there."""
+        theta = next((value for value in others if not isinstance(value, (list, tuple))), None)
+        config = next((value for value in others if isinstance(value, (list, tuple))), ())
+        goal, gait = FootPose(*_three(x, y, theta or 0.0)), gait_of(config)
+        if math.hypot(x, y) >= FARTHEST_GOAL:
+            raise BadValue("x, y", [x, y], f"a place nearer than {FARTHEST_GOAL:g} m")
+        return self._runner.execute(lambda: self._navigator.go_to(goal, theta is not None, gait), "navigateTo")
+
+    def moveAlong(self, trajectory: Any) -> Task:
+        """Answers True also when an obstacle has ended it."""
+        stretches = read_trajectory(trajectory)
+        return self._runner.execute(lambda: self._navigator.go_along(stretches, FeetGait()), "moveAlong")
+
+    def stopNavigateTo(self) -> Task:
+        return self._runner.execute(self._navigator.stop, "stopNavigateTo")
+
+    # --- what a NAO has no sensors for ----------------------------------------------------------------------------
+
+    def _no_map(self, *_: Any) -> NoReturn:
+        raise NaoqiError(NO_MAP)
+
+    def _no_zone(self, *_: Any) -> NoReturn:
+        raise NaoqiError(NO_ZONE)
+
+    explore = startMapping = stopExploration = saveExploration = loadExploration = setDefaultExploration = _no_map
+    getExplorationPath = getMetricalMap = getRobotPositionInMap = navigateToInMap = _no_map
+    relocalizeInMap = relocalizeInMapWithHint = startLocalization = stopLocalization = _no_map
+    getFreeZone = findFreeZone = startFreeZoneUpdate = stopAndComputeFreeZone = _no_zone
+
+    # --- inside ---------------------------------------------------------------------------------------------------
+
+    def _cautiously(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
+        def run() -> Any:
+            self._navigator.stop()
+            self._caution.begin()
+            return command(self._runner.simulation.robot.locomotion)
+
+        return self._runner.execute(run, call)
+
+
+def _three(x: Any, y: Any, theta: Any) -> tuple[float, float, float]:
+    x, y, theta = (number(value, name, -MOST, MOST) for value, name in ((x, "x"), (y, "y"), (theta, "theta")))
+    return x, y, theta
