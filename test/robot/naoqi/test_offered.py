@@ -20,6 +20,7 @@ ELSEWHERE = {
     "loadExploration navigateToInMap relocalizeInMap relocalizeInMapWithHint saveExploration setDefaultExploration "
     "startFreeZoneUpdate startLocalization startMapping stopAndComputeFreeZone stopExploration stopLocalization",
     "ALMemory": "getDataOnChange getDataPtr getFloatPtr getIntPtr",
+    "ALVisionRecognition": "detectFromFile learnFromFile",
     "ALMovementDetection": "setDepthSensitivity",
     "ALSpeechRecognition": "activateAllRules activateRule addContext addWordListToSlot compile deactivateAllRules "
     "deactivateRule getContextParam getRules loadContextSet loadVocabulary popContexts removeContext "

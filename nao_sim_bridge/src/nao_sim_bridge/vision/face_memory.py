@@ -101,15 +101,15 @@ class FaceMemory:
         memory = cls()
         try:
             with Archive(path) as content:
-                names = [str(name) for name in _array(content.read("names.npy"))]
-                arrays = [_array(content.read(f"{KEY.format(i)}.npy")) for i in range(len(names))]
+                names = [str(name) for name in read_array(content.read("names.npy"))]
+                arrays = [read_array(content.read(f"{KEY.format(i)}.npy")) for i in range(len(names))]
             memory._pictures = dict(zip(names, _checked(arrays)))
         except (OSError, ValueError) as error:
             raise FaceFileError(f"{str(path)!r} is no file of known faces: {error}") from error
         return memory
 
 
-def _array(content: bytes) -> np.ndarray:
+def read_array(content: bytes) -> np.ndarray:
     """The array of a .npy file; its header may not claim more than there is."""
     file = io.BytesIO(content)
     try:

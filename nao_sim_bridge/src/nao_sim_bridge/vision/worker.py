@@ -28,6 +28,7 @@ DETECTORS = {
     "faces": "nao_sim_bridge.vision.faces.FaceDetector",
     "movement": "nao_sim_bridge.vision.movement.MovementDetector",
     "color blob": "nao_sim_bridge.vision.color_blob.ColorBlobDetector",
+    "pictures": "nao_sim_bridge.vision.picture_features.PictureDetector",
     "darkness": "nao_sim_bridge.vision.light.DarknessDetector",
     "backlighting": "nao_sim_bridge.vision.light.BacklightingDetector",
 }

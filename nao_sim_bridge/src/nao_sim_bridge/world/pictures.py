@@ -154,10 +154,11 @@ def _paint(kind: str, content: str) -> np.ndarray:
         from nao_sim_bridge.world.painting.pattern import paint_pattern
 
         return paint_pattern(content)
-    return _read_file(content)
+    return read_picture_file(content)
 
 
-def _read_file(path: str) -> np.ndarray:
+def read_picture_file(path: str) -> np.ndarray:
+    """(h, w, 3) uint8 RGB of a file, in at most `MOST_PIXELS` a side; a BadValue when it is no picture."""
     from PIL import Image, UnidentifiedImageError
 
     sizes = load_sizes().picture

@@ -106,32 +106,31 @@ class Navigator:
             if ways == MOST_WAYS:
                 self._blocked = True
                 return False
-            if not (yield from self._aside(gait)):
+            self._tell_status(AVOIDING)
+            self._memory.raise_event(LEAVES, 1.0)
+            free = yield from self._aside(gait)
+            self._memory.raise_event(LEAVES, 0.0)
+            if not free:
                 return False
         return not turns or (yield from self._turn(goal.seen_from(self._here()).yaw, gait))
 
     def _aside(self, gait: FeetGait) -> Legs:
-        """Turn to where there is room, and go there for a bit; False when there is none."""
-        self._tell_status(AVOIDING)
-        self._memory.raise_event(LEAVES, 1.0)
+        """Turn to where there is room, and go there for a bit; False when there is none, or somebody stops it."""
         self._side = self._caution.free_side or self._side
-        found = False
         for side in (self._side, -self._side):
             turned = 0.0
-            while not found and turned < WIDEST - 1e-9:
+            while turned < WIDEST - 1e-9:
                 if not (yield from self._turn(side * TURN, gait)):
                     return False
                 turned += TURN
-                found = min(self._simulation.snapshot.sonars) > self._caution.distance + ROOM
-            if found:
-                self._side = side
-                yield from self._walk([FootPose(BIT, 0.0, 0.0)], gait)
-                break
+                if min(self._simulation.snapshot.sonars) > self._caution.distance + ROOM:
+                    self._side = side
+                    reached = yield from self._walk([FootPose(BIT, 0.0, 0.0)], gait)
+                    return reached or self._caution.obstacle is not None
             if not (yield from self._turn(-side * turned, gait)):
                 return False
-        self._memory.raise_event(LEAVES, 0.0)
-        self._blocked = not found
-        return found
+        self._blocked = True
+        return False
 
     def _along(self, stretches: Iterable[Stretch], gait: FeetGait) -> Legs:
         self._tell_status(MOVING)

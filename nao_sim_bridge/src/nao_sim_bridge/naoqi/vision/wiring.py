@@ -12,7 +12,13 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.vision import color_blob_detection, face_detection, light_detection, movement_detection
+from nao_sim_bridge.naoqi.vision import (
+    color_blob_detection,
+    face_detection,
+    light_detection,
+    movement_detection,
+    vision_recognition,
+)
 from nao_sim_bridge.naoqi.vision.vision_extractor import Sight, VisionExtractor, in_picture
 from nao_sim_bridge.naoqi.vision.watching import QVGA, TOP, Watching
 from nao_sim_bridge.vision.ball import Ball
@@ -108,9 +114,10 @@ class Rare:
     What is made has a `watching`, and ends it in `close()`.
     """
 
-    make: Callable[[Simulation, MemoryStore, VisionProcess], Any]
+    make: Callable[..., Any]  # of simulation, memory and vision process; of files, too, where it has `with_files`
     events: Tuple[str, ...]
     keys: Tuple[str, ...] = ()
+    with_files: bool = False
 
 
 RARE: Mapping[str, Rare] = {
@@ -121,6 +128,7 @@ RARE: Mapping[str, Rare] = {
     light_detection.BACKLIGHTING: Rare(
         light_detection.ALBacklightingDetection, (light_detection.BACKLIGHT,), (light_detection.BACKLIGHT_VALUE,)
     ),
+    vision_recognition.NAME: Rare(vision_recognition.ALVisionRecognition, (vision_recognition.EVENT,), with_files=True),
 }
 
 
@@ -145,7 +153,7 @@ class VisionModules:
 
         def later(module: str, rare: Rare) -> Later:
             def make() -> list[Any]:
-                made = rare.make(simulation, memory, process)
+                made = rare.make(simulation, memory, process, *([files] if rare.with_files else []))
                 return parts(module, [made], made.watching, rare.events, rare.keys)
 
             return Later(make)
