@@ -28,6 +28,7 @@ from nao_sim_bridge.naoqi.life.wiring import LifeModules
 from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.motion import motion_recorder
 from nao_sim_bridge.naoqi.motion.wake import AWAKE
 from nao_sim_bridge.naoqi.navigation import caution
 from nao_sim_bridge.naoqi.navigation.navigation import ALNavigation
@@ -132,6 +133,7 @@ class RobotModules:
             PHOTOS: [ALPhotoCapture(self._photographer, files, cameras.tables)],
             FILMS: [ALVideoRecorder(self._recorder, files, cameras.tables)],
             **self._body.modules,
+            motion_recorder.NAME: Later(lambda: [motion_recorder.ALMotionRecorder(runner)]),
             caution.NAME: Later(lambda: [ALNavigation(runner, memory)]),
             "ALSystem": [system(memory, zone)],
         }
