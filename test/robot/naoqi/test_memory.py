@@ -131,6 +131,23 @@ def test_a_subscriber_object_signals_every_value_also_anew_after_a_removal(robot
     assert again.get(timeout=PATIENCE) == 5
 
 
+@pytest.mark.parametrize(
+    "event, module",
+    [
+        ("FaceDetected", "ALFaceDetection"),
+        ("SoundDetected", "ALSoundDetection"),
+        ("PictureDetected", "ALVisionRecognition"),
+        ("DarknessDetection/DarknessDetected", "ALDarknessDetection"),
+    ],
+)
+def test_who_subscribes_to_an_event_starts_the_module_that_raises_it(robot, memory, listener, event, module):
+    memory.subscribeToEvent(event, "Listener", "onEvent")
+    extractor = getattr(robot, module)
+    assert [name for name, *_ in extractor.getSubscribersInfo()] == ["Listener"] and extractor.isProcessing()
+    memory.unsubscribeToEvent(event, "Listener")
+    assert extractor.getSubscribersInfo() == [] and not extractor.isProcessing()
+
+
 def test_signals_of_a_service_become_events(robot, memory, listener):
     memory.addMapping("Listener", "touched", "Test/Touched")
     memory.addMapping("Listener", {"moved": "Test/Moved"})

@@ -29,6 +29,7 @@ from nao_sim_bridge.naoqi.life.wiring import LifeModules
 from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.motion import motion_recorder
 from nao_sim_bridge.naoqi.motion.wake import AWAKE
 from nao_sim_bridge.naoqi.navigation import caution
 from nao_sim_bridge.naoqi.navigation.navigation import ALNavigation
@@ -144,6 +145,7 @@ class RobotModules:
             FILMS: [films()],
             vision_toolbox.NAME: Later(lambda: [vision_toolbox.ALVisionToolbox(photos(), films())]),
             **self._body.modules,
+            motion_recorder.NAME: Later(lambda: [motion_recorder.ALMotionRecorder(runner)]),
             caution.NAME: Later(lambda: [ALNavigation(runner, memory)]),
             sentinel.NAME: Later(
                 lambda: [

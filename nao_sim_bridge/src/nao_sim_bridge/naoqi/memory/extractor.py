@@ -72,13 +72,15 @@ class Extractor:
         self._subscriptions: dict[str, Subscription] = {}
         self._started: Any = None
         self._lock = threading.Lock()
+        self._listening: dict[str, frozenset[str]] = {}
+        self._followed: set[str] = set()
+        self._following = threading.Lock()
         for event in events:
             memory.declare_event(event, module)
             if by_events:
                 memory.watch_subscribers(event, self._follow)
-        self._listening: dict[str, frozenset[str]] = {}
-        self._followed: set[str] = set()
-        self._following = threading.Lock()
+                if memory.subscribers(event):  # before there was an extractor
+                    self._follow(event, memory.subscribers(event))
 
     def subscribe(self, name: str, *asked: Any) -> Task | None:
         """Work for `name` from now on; who is subscribed already changes what it asks for."""

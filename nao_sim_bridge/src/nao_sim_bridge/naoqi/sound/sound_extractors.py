@@ -85,7 +85,7 @@ class SoundExtractor(SwitchModule):
         self._make_detector = detector
         self._detector: Any = None
         self._sensitivity = DEFAULT_SENSITIVITY
-        self._extractor = Extractor(module, memory, listening.start, listening.stop, events)
+        self._extractor = Extractor(module, memory, listening.start, listening.stop, events, by_events=True)
 
     def parts(self) -> list[Any]:
         return [self, self._extractor]

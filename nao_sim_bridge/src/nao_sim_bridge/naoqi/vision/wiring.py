@@ -145,7 +145,7 @@ class VisionModules:
 
         def parts(module: str, own: list[Any], watching: Watching, *events_and_keys: Sequence[str]) -> list[Any]:
             work = (watching.start, watching.stop)
-            extractor = Extractor(module, memory, *work, *events_and_keys, changed=watching.changed)
+            extractor = Extractor(module, memory, *work, *events_and_keys, changed=watching.changed, by_events=True)
             return [*own, VisionExtractor(watching, simulation.cameras.tables), extractor]
 
         def add(module: str, own: list[Any], watching: Watching, *events_and_keys: Sequence[str]) -> None:
@@ -157,7 +157,11 @@ class VisionModules:
                 made = rare.make(simulation, memory, process, *([files] if rare.with_files else []))
                 return parts(module, [made], made.watching, rare.events, rare.keys)
 
-            return Later(make)
+            parts_later = Later(make)
+            for event in rare.events:
+                memory.declare_event(event, module)
+                memory.watch_subscribers(event, lambda *_: len(parts_later))  # which makes them, and they see who it is
+            return parts_later
 
         for one in DETECTIONS:
             add(one.module, [], one.watching(simulation, memory, process), [one.event])
