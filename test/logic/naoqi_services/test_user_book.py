@@ -61,7 +61,7 @@ def test_a_face_that_is_recognised_later_opens_the_session_of_its_person(book):
     assert book.open == [1] and book.user_of_face(7) == 1
 
 
-def test_whose_face_is_learnt_while_he_is_here_alone_becomes_permanent(book):
+def test_whose_face_is_learnt_while_nobody_else_is_here_becomes_permanent(book):
     book.track(7, 0.0)
     book.news()
     book.learn(["Ada"], 1.0)

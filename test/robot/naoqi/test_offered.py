@@ -28,7 +28,9 @@ ELSEWHERE = {
     "removeWordListFromSlot setContextParam",
     "ALPreferenceManager": "importPrefFile update",
     "ALConnectionManager": "setServiceInput",
+    "ALLauncher": "launchExecutable launchPythonModule launchScript",
     "ALLogger": "logInForwarder logInSys",
+    "ALStore": "stopUpdate update",
     "ALUserSession": "getCurrentEncounterDate getFirstEncounterDate getLastEncounterDate getSecondsSinceLastEncounter "
     "getUserBinding getUserBindings getUserCreationDate getUserData setUserData",
     "ALUserInfo": "get getType has remove removeUser set",

@@ -88,6 +88,12 @@ def test_a_package_whose_behaviours_were_removed_one_by_one_can_be_removed(robot
     assert packages.hasPackage("dance-1") is False
 
 
+def test_the_status_of_applications_is_that_of_packages(robot, packages, pack):
+    packages.install(pack("turn"))
+    (status,) = robot.ALStore.status()
+    assert dict(status)["uuid"] == "dance-1" and dict(status)["version"] == "1.2.0"
+
+
 def test_what_is_no_package_is_refused(packages, pack, robot, refuses):
     (robot.server.files.folder / "text.pkg").write_text("no zip")
     (robot.server.files.folder / "mine.yaml").write_text("behaviors: {}")

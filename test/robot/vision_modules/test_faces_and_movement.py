@@ -137,3 +137,20 @@ def test_what_glides_by_is_told_and_where_until_it_comes_to_rest(robot, movement
     robot.advance(2.5)
     assert moving.times[-1] < robot.now.time - 1.0 and still.times[-1] > robot.now.time - 0.11
     assert movement.getMemoryKeyList() == [INFO] and movement.getEventList() == [DETECTED, NONE]
+
+
+def test_who_is_followed_has_a_session_and_keeps_the_number_when_the_face_is_learnt(robot, show, learn):
+    sessions = robot.ALUserSession
+    robot.ALBasicAwareness.setEnabled(True)
+    show("anna", y=0.1)
+    robot.advance(1.0)
+    assert sessions.getOpenUserSessions() == [1] and sessions.getFocusedUser() == 1
+    assert learn("Anna") is True
+    assert sessions.getUserBindings(1) == {"ALFaceDetection": "Anna"} and sessions.getPermanentUserList() == [1]
+    robot.NaoSimulation.removeObject("card")
+    robot.advance(4.0)
+    assert sessions.getOpenUserSessions() == [] and sessions.getFocusedUser() == -1
+    show("anna", y=0.1)
+    robot.advance(1.0)
+    assert sessions.getFocusedUser() == 1 and sessions.getUserList() == [1]
+    assert robot.ALUserInfo.get("name") == "Anna"

@@ -113,6 +113,10 @@ class Broker:
         found = self._session.service(module, _async=True)
         return answer(found, threading.Condition(), lambda: True, PATIENCE)
 
+    def names(self) -> list[str]:
+        """All services that there are, of the simulator and of clients."""
+        return [served["name"] for served in self._session.services()]
+
     def call(self, module: str, method: str, arguments: list) -> None:
         """Call a module of a client without waiting, in the order of the calls; failures are logged."""
         with self._lock:

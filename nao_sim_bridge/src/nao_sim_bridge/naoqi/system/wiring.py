@@ -49,6 +49,8 @@ class SystemModules:
         self._add("ALNotificationManager", "notification_manager", memory, say)
         self._add("PackageManager", "package_manager", manager, files, signals=PACKAGE_SIGNALS)
         self._add("ALConnectionManager", "connection_manager", memory)
+        self._add("ALLauncher", "launcher", broker)
+        self._add("ALStore", "store", self._packages)
         self._add("ALResourceManager", "resource_manager", simulation, broker)
 
     def _add(self, module: str, file: str, *arguments: Any, signals: Mapping[str, str] | None = None) -> None:
@@ -57,3 +59,7 @@ class SystemModules:
         given = arguments if raised is None else (*arguments, raised)
         make = lambda: [getattr(import_module(f"{__package__}.{file}"), module)(*given)]  # noqa: E731
         self.modules[module] = Later(make, raised)
+
+    def _packages(self) -> list[tuple[str, str]]:
+        """Uuid and version of each that is installed."""
+        return [package[:2] for package in self.modules["PackageManager"][0].packages2()]

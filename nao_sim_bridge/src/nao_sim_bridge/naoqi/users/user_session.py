@@ -16,8 +16,8 @@ DATE_FORMAT = "%Y-%b-%d %H:%M:%S"
 class ALUserSession:
     """ALUserSession as the simulated robot offers it.
 
-    Permanent users are the people whose faces ALFaceDetection has learnt; somebody else is a user from when basic
-    awareness follows him until ten minutes after he has left.
+    Permanent users are the people whose faces ALFaceDetection has learnt; a stranger is a user from when basic
+    awareness follows the face until ten minutes after it has gone.
     """
 
     def __init__(self, users: Users) -> None:
