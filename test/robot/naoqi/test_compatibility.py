@@ -13,3 +13,7 @@ def test_a_method_that_always_refuses_says_why(robot, module, call, why):
     method, arguments = re.fullmatch(r"(\w+)\((.*)\)", call).groups()
     with pytest.raises(RuntimeError, match=re.escape(why)):
         getattr(robot, module).call(method, *eval(f"({arguments},)"))
+
+
+def test_no_module_that_the_page_misses_is_there(robot):
+    assert known()["modules"].keys() & robot.server.modules().keys() == set()

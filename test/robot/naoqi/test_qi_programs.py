@@ -87,7 +87,7 @@ def test_a_single_threaded_service_takes_one_call_at_a_time(program):
     door = qi.singleThreaded()(Door)()
     program().registerService("Door", door)
     remote = program().service("Door")
-    entering, opening = remote.enter(_async=True), None
+    entering = remote.enter(_async=True)
     assert door.entered.wait(PATIENCE)
     opening = remote.open(_async=True)
     assert remote.metaObject() and opening.isRunning() and not door.opened.is_set()
