@@ -1,7 +1,9 @@
 """Names of types in the older packages: the table, what is installed, and classes that go by these names."""
 
+import ast
 import sys
 from io import BytesIO
+from pathlib import Path
 
 import pytest
 from older_packages import make_older_packages
@@ -13,6 +15,8 @@ from nao_library_modules.ros.driver_types import as_theirs
 from nao_library_msgs import msg, srv
 from naoqi.errors import NaoError
 
+PACKAGE = Path(__file__).resolve().parents[3] / "nao_library_modules"
+MAKERS = {"Publisher", "Subscriber", "Service", "ActionClient", "SimpleActionClient", "ActionServer"}
 OLDER = ("naoqi_bridge_msgs", "humanoid_nav_msgs")
 
 
@@ -143,3 +147,21 @@ def test_a_service_keeps_its_halves():
     spoken = as_theirs(srv.CmdPoseService)
     assert (spoken._type, spoken._md5sum) == ("naoqi_bridge_msgs/CmdPoseService", srv.CmdPoseService._md5sum)
     assert spoken._response_class is srv.CmdPoseService._response_class
+
+
+def made_past_the_choice(source):
+    """Lines of a program where a topic, a service or an action is made with a type of the table as it is."""
+    words = {name.partition("/")[2] for name in type_names().theirs}
+    for call in ast.walk(ast.parse(source)):
+        if isinstance(call, ast.Call) and getattr(call.func, "attr", getattr(call.func, "id", "")) in MAKERS:
+            given = [*call.args, *(keyword.value for keyword in call.keywords)]
+            if any(getattr(value, "attr", getattr(value, "id", "")) in words for value in given):
+                yield call.lineno
+
+
+def test_every_topic_and_action_of_a_type_with_two_names_follows_the_choice():
+    assert list(made_past_the_choice("rospy.Publisher('bumper', Bumper)\nrospy.Publisher('x', spoken(Bumper))")) == [1]
+    files = [*(PACKAGE / "src").rglob("*.py"), *(PACKAGE / "examples").rglob("*.py")]
+    assert len(files) > 300
+    wrong = [f"{file.relative_to(PACKAGE)}:{line}" for file in files for line in made_past_the_choice(file.read_text())]
+    assert not wrong, "\n".join(wrong)
