@@ -19,7 +19,7 @@ from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 RED, GREEN, BLUE = ColorRGBA(1.0, 0.0, 0.0, 1.0), ColorRGBA(0.0, 1.0, 0.0, 1.0), ColorRGBA(0.0, 0.0, 1.0, 1.0)
 EYE = "Face/Led/{}/Left/45Deg"
 CHEST = "ChestBoard/Led/{}"
-HELLO, ENDLESS = "nao_library/hello", "nao_library/breathe"
+HELLO, ENDLESS, HEY = "nao_library/hello", "nao_library/breathe", "animations/Stand/Gestures/Hey_1"
 
 
 def rgb(pattern, color):
@@ -126,7 +126,7 @@ class DriverLedsBehaviors(unittest.TestCase):
         run = send(self.run_behavior, RunBehaviorGoal("nao_library/helo")).wait(LIMIT)
         self.assertEqual(run.state, GoalStatus.ABORTED)
         self.assertIn("did you mean 'nao_library/hello'", run.text)
-        limp = send(self.run_behavior, RunBehaviorGoal(HELLO)).wait(LIMIT)
+        limp = send(self.run_behavior, RunBehaviorGoal(HEY)).wait(LIMIT)
         self.assertEqual(limp.state, GoalStatus.ABORTED)
         self.assertIn("limp", limp.text)
 

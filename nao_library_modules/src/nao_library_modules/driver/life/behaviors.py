@@ -16,6 +16,8 @@ from ...robot.robot_task import run_task
 log = logging.getLogger(__name__)
 
 MODULE = "ALBehaviorManager"
+ANIMATIONS = "animations/"
+"""Beginning of the names of those that only move joints: others may wake the robot themselves."""
 ANSWER_LIMIT = 5.0
 # So many behaviours are named in an error.
 MOST_NAMED = 20
@@ -33,8 +35,8 @@ class Behaviors:
     def run(self, name: str, interrupt: CancellationToken) -> None:
         """Run one, to its end or to the interrupt, which stops it.
 
-        Raises NaoError if it is not installed, the robot is limp, refuses or is lost; Preempted, or whatever reason the
-        interrupt has.
+        Raises NaoError if it is not installed, is an animation for a limp robot, is refused, or the robot is lost;
+        Preempted, or whatever reason the interrupt has.
         """
         if not self._ask("isBehaviorInstalled", name):
             known = self.installed()
@@ -42,7 +44,8 @@ class Behaviors:
             some = ", ".join(sorted(known)[:MOST_NAMED]) or "none"
             more = f"... ({len(known)} in all)" if len(known) > MOST_NAMED else ""
             raise BadGoal("behavior", name, f"one of {some}{more}", problem=problem)
-        self._require_stiffness()
+        if name.startswith(ANIMATIONS):
+            self._require_stiffness()
         interrupt.check()
         call = self._robot.proxy(MODULE).call_async("runBehavior", name)
         try:
@@ -54,7 +57,7 @@ class Behaviors:
             raise
 
     def _require_stiffness(self) -> None:
-        """NAOqi plays behaviours on a limp robot, which then does not move and does not say so."""
+        """NAOqi plays animations on a limp robot, which then does not move and does not say so."""
         stiffnesses = self._robot.proxy("ALMotion").call_async("getStiffnesses", "Body").result(timeout=ANSWER_LIMIT)
         if not any(stiffnesses):
             raise NaoError("the robot is limp and would not move: wakeUp first")
