@@ -14,7 +14,7 @@ def notifications(robot):
 def test_notifications_are_pending_until_they_are_removed(robot, notifications):
     added, removed = robot.heard("notificationAdded"), robot.heard("notificationRemoved")
     first, second = notifications.add(HELLO), notifications.add([["message", "World"]])
-    assert [added.get(timeout=PATIENCE) for _ in range(2)] == [first, second]
+    assert {added.get(timeout=PATIENCE) for _ in range(2)} == {first, second}
     hello = [["id", first], ["message", "Hello"], ["severity", "warning"], ["removeOnRead", False]]
     world = [["id", second], ["message", "World"], ["severity", "info"], ["removeOnRead", True]]
     assert notifications.notifications() == [hello, world] and notifications.notification(first) == hello
@@ -29,7 +29,7 @@ def test_a_click_on_the_chest_has_them_read_and_those_go_that_are_to(robot, noti
     robot.advance_until(lambda: not removed.empty(), 20.0, 0.2, "the notification is read")
     assert removed.get() == gone
     assert [dict(entry)["id"] for entry in notifications.notifications()] == [kept]
-    sentences = [said.get(timeout=PATIENCE) for _ in range(2)]
+    sentences = sorted(said.get(timeout=PATIENCE) for _ in range(2))
     assert sentences == ["Hello", "World"]
 
 
