@@ -400,7 +400,7 @@ def main():
     parser.add_argument(
         "--record-coverage", action="store_true", help="only run all tests once and see what they reach"
     )
-    parser.add_argument("--suite", default="present", help="name of the column in the record")
+    parser.add_argument("--suite", default="now", help="name of the column in the record")
     parser.add_argument("--tree", type=Path, default=ROOT, help="checkout with the tests, built; this one without")
     parser.add_argument("--levels", nargs="*", help=f"folders of test/; {' '.join(USUAL)} without")
     parser.add_argument("--seconds", type=float, default=40.0, help="for the tests of one level against one fault")
