@@ -21,7 +21,14 @@ from nao_sim_bridge.testing import wait_until
 READS = re.compile(
     "get|is|are|has|list|show|locale|timezone|robotName|focusedActivity|robotIsWakeUp|default|behaviors|areNot"
 )
-OF_THE_COMPUTER = {"getGlobalModuleList", "getRemainingRam", "totalMemory", "freeMemory", "isStatsEnabled", "isTraceEnabled"}
+OF_THE_COMPUTER = {
+    "getGlobalModuleList",
+    "getRemainingRam",
+    "totalMemory",
+    "freeMemory",
+    "isStatsEnabled",
+    "isTraceEnabled",
+}
 MINE = "behaviors:\n  mine/look:\n    do: [{frames: [{time: 0.4, angles: {HeadYaw: 0.4}}]}]\n"
 RED_LED = "Device/SubDeviceList/Face/Led/Red/Left/0Deg/Actuator/Value"
 TEMPERATURE, ARMS = "Device/SubDeviceList/HeadYaw/Temperature/Sensor/Value", "Arms"

@@ -200,8 +200,8 @@ class DriverSenses(unittest.TestCase):
         self.reports.wait("nao_power: Battery", lambda status: status.message.startswith("Charging ("))
         self.reports.wait("nao_power: Current", lambda status: status.message.endswith("(charging)"))
         self.reports.wait("nao_cpu: Head Temperature", lambda status: status.message.endswith(" C"))
-        for name in ("nao_wlan: Status", "nao_ethernet: Status"):
-            self.reports.wait(name, lambda status: status.message == "unknown: the robot does not tell")
+        self.reports.wait("nao_ethernet: Status", lambda status: status.message.startswith("connected: "))
+        self.reports.wait("nao_wlan: Status", lambda status: status.message == "not connected")
 
     def test_the_robot_says_what_it_is_and_that_it_is_there(self):
         rospy.wait_for_service("get_robot_config", LIMIT)
