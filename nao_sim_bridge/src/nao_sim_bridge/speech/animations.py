@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Iterable, Mapping, Sequence, Tuple
@@ -39,6 +40,26 @@ def paths_of(path: str, posture: str) -> list[str]:
     return list(dict.fromkeys(path.replace(ROBOT_PATTERN, robot) for robot in ROBOTS))
 
 
+class _Index:
+    """Animations by name and by tag.
+
+    Attributes:
+        tags: Name to the tags of an animation, each once.
+        names: Tag, in lower case, to the names of those that have it.
+    """
+
+    def __init__(self, tags: Mapping[str, Iterable[str]]) -> None:
+        self.tags: dict[str, Tuple[str, ...]] = {}
+        self.names: dict[str, list[str]] = {}
+        for name, own in tags.items():
+            once: dict[str, str] = {}
+            for tag in own:
+                once.setdefault(tag.strip().lower(), tag)
+            self.tags[name] = tuple(once.values())
+            for tag in once:
+                self.names.setdefault(tag, []).append(name)
+
+
 class AnimationLibrary:
     """The animations that a robot knows, and the tags that words, in lower case, call for. Any thread.
 
@@ -50,11 +71,12 @@ class AnimationLibrary:
 
     def __init__(self) -> None:
         self.revision = 0
-        self._added: dict[str, Animation] = {}
+        self._added: Mapping[str, Animation] = {}
+        self._changing = threading.Lock()
 
     @property
     def names(self) -> list[str]:
-        return list(self._tags_by_name)
+        return list(self._index.tags)
 
     @property
     def body_language(self) -> str:
@@ -62,7 +84,7 @@ class AnimationLibrary:
         return _tables()["body_language"]
 
     def tags_of(self, name: str) -> Tuple[str, ...]:
-        return tuple(self._tags_by_name[name])
+        return self._index.tags[name]
 
     def get(self, name: str) -> Animation | None:
         """An animation by exactly its name."""
@@ -76,12 +98,13 @@ class AnimationLibrary:
 
         Of several that fit, one for the posture goes first.
         """
+        names = self._index.tags
         for path in paths_of(name, posture):
-            if path in self._tags_by_name:
+            if path in names:
                 return self.get(path)
         family = path.rsplit("/", 1)[-1].rsplit("_", 1)[0]
-        ends = [known for known in self._tags_by_name if known.endswith("/" + path)] or [
-            known for known in self._tags_by_name if known.rsplit("/", 1)[-1].rsplit("_", 1)[0] == family
+        ends = [known for known in names if known.endswith("/" + path)] or [
+            known for known in names if known.rsplit("/", 1)[-1].rsplit("_", 1)[0] == family
         ]
         ends.sort(key=lambda known: not is_for(known, posture))  # a stable sort
         return self.get(ends[0]) if ends else None
@@ -106,23 +129,25 @@ class AnimationLibrary:
         return self.tagged(tag, posture) or self.tagged(self.body_language, posture)
 
     def add(self, animations: Iterable[Animation]) -> None:
-        self.revision += 1
-        for animation in animations:
-            self._added[animation.name] = animation
-            self._tags_by_name[animation.name] = []
-            for tag in animation.tags:
-                self.add_tag(tag, [animation.name])
+        """Know further ones, or others of the same names."""
+        added = {animation.name: animation for animation in animations}
+        with self._changing:
+            self._added = {**self._added, **added}
+            self._change({name: animation.tags for name, animation in added.items()})
 
-    def add_tag(self, tag: str, names: Sequence[str]) -> None:
+    def add_tag(self, tag: str, names: Iterable[str]) -> None:
+        """Give animations one more tag; a KeyError where there is none of that name."""
+        with self._changing:
+            known = self._index.tags
+            self._change({name: (*known[name], tag) for name in names})
+
+    def _change(self, tags: Mapping[str, Sequence[str]]) -> None:
+        """Readers have what was before, or all of what is now."""
+        self._index = _Index({**self._index.tags, **tags})
         self.revision += 1
-        known = self._names_by_tag.setdefault(tag.strip().lower(), [])
-        for name in names:
-            if name not in known:
-                known.append(name)
-                self._tags_by_name[name].append(tag)
 
     def _with(self, tag: str) -> Sequence[str]:
-        return self._names_by_tag.get(tag.strip().lower(), ())
+        return self._index.names.get(tag.strip().lower(), ())
 
     def add_words(self, tag: str, words: Sequence[str]) -> None:
         """Let words call for a tag."""
@@ -136,20 +161,11 @@ class AnimationLibrary:
         self.__dict__.pop("_words", None)
 
     @cached_property
-    def _tags_by_name(self) -> dict[str, list[str]]:
-        tags = {name: list(animation.tags) for name, animation in _shipped().items()}
+    def _index(self) -> _Index:
+        tags = {name: animation.tags for name, animation in _shipped().items()}
         for name, naming in gesture_families.names().items():
-            known = tags.setdefault(name, [])
-            known.extend(tag for tag in naming.tags if tag not in known)
-        return tags
-
-    @cached_property
-    def _names_by_tag(self) -> dict[str, list[str]]:
-        names: dict[str, list[str]] = {}
-        for name, tags in self._tags_by_name.items():
-            for tag in tags:
-                names.setdefault(tag.lower(), []).append(name)
-        return names
+            tags[name] = (*tags.get(name, ()), *naming.tags)
+        return _Index(tags)
 
     @cached_property
     def _words(self) -> dict[str, list[str]]:

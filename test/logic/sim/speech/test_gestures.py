@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -44,6 +45,14 @@ def test_tags_and_words_lead_to_gestures(library):
     assert library.of_word("ship") == [library.find("Hey_1")]
     assert load_animations().of_word("ship") == []
     assert len(library.tagged(library.body_language)) >= 2
+
+
+def test_an_animation_that_is_declared_again_has_its_tags_and_no_others(library):
+    hey = library.find("Hey_1")
+    for tags in (("ahoy", "Hello"), ("ahoy",), ("ahoy",)):
+        library.add([replace(hey, tags=tags)])
+    assert library.tags_of(hey.name) == ("ahoy",) and [a.name for a in library.tagged("Ahoy")] == [hey.name]
+    assert hey.name not in [a.name for a in library.tagged("hello")]
 
 
 def curves_of(animation, home):
@@ -103,7 +112,7 @@ def hands(animation):
 
 def test_no_two_animations_are_the_same(library):
     names = list(FAMILIES)
-    paths = np.array([hands(gesture_families.build(name)) for name in names])
+    paths = np.array([hands(library.get(name)) for name in names])
     families = [name.rsplit("_", 1)[0].rsplit("_", 1)[-1].rsplit("/", 1)[-1] for name in names]
     for k, path in enumerate(paths[:-1]):
         apart = np.linalg.norm(paths[k + 1 :] - path, axis=3).max(axis=(1, 2))
@@ -113,8 +122,8 @@ def test_no_two_animations_are_the_same(library):
             assert other != families[k] or distance >= APART_IN_FAMILY, f"{names[k]}: {distance:.3f} m"
 
 
-def test_an_animation_is_as_its_name_says():
-    build, names = gesture_families.build, FAMILIES
+def test_an_animation_is_as_its_name_says(library):
+    build, names = library.get, FAMILIES
     folder = "animations/Stand/Affirmation/NAO/"
     for name in names:
         if "/Left_" in name:
