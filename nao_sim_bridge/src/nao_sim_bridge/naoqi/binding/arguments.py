@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Collection
+from typing import Any, Collection, Mapping
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 
@@ -88,3 +88,14 @@ def _range(low: float, high: float) -> str:
     if high == math.inf:
         return f"{low:g} or more"
     return f"{low:g} to {high:g}"
+
+
+def lists_by_tag(value: Any, field: str) -> dict[str, list[str]]:
+    """Lists of texts by tag, as clients send them; a BadValue when it is something else."""
+    if not isinstance(value, Mapping):
+        raise BadValue(field, value, "a map of tags to lists")
+    for tag, names in value.items():
+        fits = isinstance(names, (list, tuple)) and all(isinstance(name, str) for name in names)
+        if not isinstance(tag, str) or not fits:
+            raise BadValue(f"{field}[{tag!r}]", names, "a list of texts")
+    return {tag: list(names) for tag, names in value.items()}

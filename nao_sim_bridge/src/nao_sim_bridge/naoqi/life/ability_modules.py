@@ -9,13 +9,12 @@ from typing import Any, Sequence
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
-from nao_sim_bridge.naoqi.binding.arguments import one_of
+from nao_sim_bridge.naoqi.binding.arguments import lists_by_tag, one_of
 from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.life import abilities as ability_names
 from nao_sim_bridge.naoqi.life.abilities import Abilities
 from nao_sim_bridge.naoqi.life.movements import BackgroundMovement, ListeningMovement, SpeakingMovement
 from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
-from nao_sim_bridge.naoqi.speech.animated_speech import lists_by_tag
 from nao_sim_bridge.speech.animations import AnimationLibrary
 from nao_sim_bridge.speech.body_language import CONTEXTUAL, RANDOM, BodyLanguage
 

@@ -9,6 +9,7 @@ from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
+from nao_sim_bridge.naoqi.binding.arguments import lists_by_tag
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.speech.animated_talk import AnimatedTalk, Caller, PlaySound
 from nao_sim_bridge.naoqi.speech.voice_settings import VoiceSettings
@@ -134,14 +135,3 @@ def _mode(value: Any) -> str:
         return MODES[value]
     names = ", ".join(f"{number} ({name})" for number, name in enumerate(MODES))
     raise BadValue(MODE_KEY, value, f"one of {names}")
-
-
-def lists_by_tag(value: Any, field: str) -> dict[str, list[str]]:
-    """Lists of texts by tag, as clients send them; a BadValue when it is something else."""
-    if not isinstance(value, Mapping):
-        raise BadValue(field, value, "a map of tags to lists")
-    for tag, names in value.items():
-        fits = isinstance(names, (list, tuple)) and all(isinstance(name, str) for name in names)
-        if not isinstance(tag, str) or not fits:
-            raise BadValue(f"{field}[{tag!r}]", names, "a list of texts")
-    return {tag: list(names) for tag, names in value.items()}
