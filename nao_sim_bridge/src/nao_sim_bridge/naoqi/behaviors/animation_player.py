@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import random
-from typing import Any, Mapping, Sequence
+from typing import Mapping, Sequence
 
-from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.steps import Behavior
 from nao_sim_bridge.control.balance.posture_recognition import recognise
@@ -49,9 +48,7 @@ class ALAnimationPlayer:
             raise NaoqiError(f"there is no animation with the tag {tag!r} {place}")
         return self._play(self._chance.choice(fitting), "runTag")
 
-    def addTagForAnimations(self, tags: Any) -> None:
-        if not isinstance(tags, Mapping):
-            raise BadValue("tagsToAnimations", tags, "a map of tags to lists of animations")
+    def addTagForAnimations(self, tags: Mapping[str, Sequence[str]]) -> None:
         resolved = {tag: [self._running.installed.resolve(name).name for name in names] for tag, names in tags.items()}
         for tag, names in resolved.items():
             self._tags.setdefault(tag.lower(), []).extend(names)
