@@ -11,12 +11,11 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Callable
 
 import numpy as np
 import soundfile
 import soxr
-from make_sounds import PEAK, RATE, at, bell, faded, in_turn, note, seconds, silence
+from make_sounds import PEAK, RATE, Make, at, bell, faded, in_turn, note, put_into, seconds, silence
 
 from nao_sim_bridge.base.config import robot_files_directory
 from nao_sim_bridge.speech.flite import Flite
@@ -30,13 +29,8 @@ SAID = {
     "my_internet_address_is": "my internet address is",
 }
 """Name of a spoken sound -> what is said."""
-SOUNDS: dict[str, Callable[[np.random.Generator], np.ndarray]] = {}
-
-
-def sound(make: Callable[[np.random.Generator], np.ndarray]) -> Callable[[np.random.Generator], np.ndarray]:
-    """Put a function into the table of sounds."""
-    SOUNDS[make.__name__] = make
-    return make
+SOUNDS: dict[str, Make] = {}
+sound = put_into(SOUNDS)
 
 
 @sound

@@ -21,13 +21,16 @@ from nao_sim_bridge.base.config import sounds_directory
 RATE = 24000
 SET = "nao_library"
 PEAK = 0.7
-SOUNDS: dict[str, Callable[[np.random.Generator], np.ndarray]] = {}
+Make = Callable[[np.random.Generator], np.ndarray]
+SOUNDS: dict[str, Make] = {}
 
 
-def sound(make: Callable[[np.random.Generator], np.ndarray]) -> Callable[[np.random.Generator], np.ndarray]:
-    """Put a function into the table of sounds."""
-    SOUNDS[make.__name__] = make
-    return make
+def put_into(table: dict[str, Make]) -> Callable[[Make], Make]:
+    """What puts functions into a table of sounds, by their names."""
+    return lambda make: table.setdefault(make.__name__, make)
+
+
+sound = put_into(SOUNDS)
 
 
 @sound
