@@ -1,4 +1,4 @@
-"""A clock for tests."""
+"""Clocks for tests."""
 
 from __future__ import annotations
 
@@ -6,6 +6,16 @@ import threading
 from collections import Counter
 
 LIMIT = 10.0
+
+
+class CalledClock:
+    """Tells the time that the test has set, to who calls it."""
+
+    def __init__(self, now):
+        self.now = now
+
+    def __call__(self):
+        return self.now
 
 
 class SetClock:

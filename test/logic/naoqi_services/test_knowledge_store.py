@@ -6,6 +6,7 @@ import json
 from datetime import datetime, timedelta, timezone
 
 import pytest
+from set_clock import CalledClock
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
@@ -16,17 +17,9 @@ PIZZA = ("bob", "eat", "pizza")
 START = datetime(2030, 1, 1, 12, tzinfo=timezone.utc)
 
 
-class Clock:
-    def __init__(self):
-        self.now = START
-
-    def __call__(self):
-        return self.now
-
-
 @pytest.fixture
 def clock():
-    return Clock()
+    return CalledClock(START)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
+from set_clock import CalledClock
 
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.sizes import MemorySizes
@@ -14,16 +15,9 @@ from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import KEY_ADDED, KEY_REMOVED, MOST_WAITING, SIGNAL, MemoryStore
 
 
-class Clock:
-    now = 100.0
-
-    def __call__(self):
-        return self.now
-
-
 @pytest.fixture
 def clock():
-    return Clock()
+    return CalledClock(100.0)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from set_clock import CalledClock
 
 from nao_library_modules.owners.rules import rules
 from nao_library_modules.owners.watch import OwnershipTable
@@ -12,16 +13,9 @@ from nao_library_modules.owners.watch import OwnershipTable
 STOP_WALK = ["ALMotion", "stopMove", []]
 
 
-class Clock:
-    now = 0.0
-
-    def __call__(self):
-        return self.now
-
-
 @pytest.fixture
 def clock():
-    return Clock()
+    return CalledClock(0.0)
 
 
 @pytest.fixture
