@@ -170,6 +170,22 @@ def test_what_modules_have_made_can_be_forgotten_and_nothing_else(files, tmp_pat
     assert left == {"day/one.wav", "both.wav", "made/film.mp4"}
 
 
+def test_what_the_robot_remembers_is_again_what_it_was_at_the_start(files):
+    remembered = files.folder / "remembered.json"
+    remembered.write_bytes(b"old")
+    for content in (b"new", b"newer"):
+        files.to_change("remembered.json").write_bytes(content)
+        files.to_change("made.json").write_bytes(content)
+    files.to_change("brought.json").write_bytes(b"made")
+    files.to_keep("brought.json").write_bytes(b"brought")
+    files.forget()
+    assert remembered.read_bytes() == b"old" and not (files.folder / "made.json").exists()
+    assert (files.folder / "brought.json").read_bytes() == b"brought"
+    remembered.write_bytes(b"of another robot since")
+    files.forget()
+    assert remembered.read_bytes() == b"of another robot since"
+
+
 def ended(result=None, error=None):
     task = Task("glide", 1)
     task.finish(result, error)

@@ -21,6 +21,14 @@ def preferences(robot):
     return robot.ALPreferenceManager
 
 
+def test_a_factory_reset_brings_back_those_of_earlier_runs(robot, preferences):
+    robot.server.files.to_keep(FILE).write_text('{"com.example.chess": {"/game/level": "easy"}}')
+    assert preferences.getValue(CHESS, LEVEL) == "easy"
+    preferences.setValue(CHESS, LEVEL, "hard")
+    robot.server.factory_reset()
+    assert preferences.getValue(CHESS, LEVEL) == "easy"
+
+
 def test_preferences_are_kept_changed_and_removed(preferences):
     preferences.setValue(CHESS, LEVEL, "easy")
     preferences.setValues({CHESS: {"depth": "10"}, "other": {"a": "b"}})

@@ -14,7 +14,7 @@ from typing import Iterator, Sequence, Tuple
 
 from nao_sim_bridge.base.config import config_file, read_json, robot_files_directory, section
 from nao_sim_bridge.base.errors import did_you_mean
-from nao_sim_bridge.base.whole_file import DRAFT, tidy
+from nao_sim_bridge.base.whole_file import DRAFT, FileTrouble, tidy, write_whole
 
 DEFAULT_RECORD_DIR = Path("~/.ros/nao_recordings")
 # Longest part of a path, and longest path that clients may give, and that this system takes, in bytes.
@@ -79,7 +79,8 @@ class ClientFiles:
         self.folder = Path(folder).expanduser().absolute()
         self.shipped = tuple(shipped)
         tidy(self.folder)
-        self._made: dict[Path, None] = {}  # in the order in which they were asked for; any thread
+        # What modules of the robot have made or changed, and what was in it before; any thread.
+        self._written: dict[Path, bytes | None] = {}
 
     # --- from the robot's paths to those of this computer -------------------------------------------------------------
 
@@ -100,13 +101,21 @@ class ClientFiles:
             raise UnusableName(f"{name!r} cannot be written: {place.path} is only read; write to {writable}")
         _make_ready(path, name)
         if not path.exists():
-            self._made[path] = None
+            self._written[path] = None
+        return path
+
+    def to_change(self, name: str) -> Path:
+        """As `to_write`, for what the robot remembers from one run to the next: `forget` puts back what was in it."""
+        path = self.to_write(name)
+        if path not in self._written and path.exists():
+            self._written[path] = path.read_bytes()
         return path
 
     def to_keep(self, name: str) -> Path:
         """As `to_write`, for who runs the simulator: to any place, and `forget` leaves it."""
         path = self._placed(name)
         _make_ready(path, name)
+        self._written.pop(path, None)
         return path
 
     def to_read(self, name: str) -> Path:
@@ -179,12 +188,19 @@ class ClientFiles:
     # --- what was made ------------------------------------------------------------------------------------------------
 
     def forget(self) -> None:
-        """Remove the files that modules of the robot have made; what was there before they wrote to it stays."""
-        for path in list(self._made):
+        """Remove the files that modules of the robot have made, and put back what was in those that they remember by.
+
+        What was there before they wrote over it stays as they have written it.
+        """
+        while self._written:
+            path, content = self._written.popitem()
             try:
-                path.unlink(missing_ok=True)
-            except OSError as error:
-                log.warning("%s stays: %s", path, error.strerror)
+                if content is None:
+                    path.unlink(missing_ok=True)
+                else:
+                    write_whole(path, content)
+            except (OSError, FileTrouble) as error:
+                log.warning("%s stays as it is: %s", path, error)
             for folder in path.parents:
                 if folder == self.folder or self.folder not in folder.parents:
                     break

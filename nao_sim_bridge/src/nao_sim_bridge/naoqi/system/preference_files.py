@@ -69,11 +69,13 @@ class PreferenceFiles:
     def write(self, name: str, content: Preference) -> None:
         root = ElementTree.Element(ROOT, name=content.name, description=content.description, version="1.0")
         _add(root, content.value)
-        write_whole(self._files.to_write(_path(APPLICATION, name)), ElementTree.tostring(root))
+        write_whole(self._files.to_change(_path(APPLICATION, name)), ElementTree.tostring(root))
 
     def remove(self, name: str) -> None:
         """Remove a file; a NoSuchFile when there is none."""
-        self._files.to_read(_path(APPLICATION, name)).unlink()
+        path = _path(APPLICATION, name)
+        self._files.to_read(path)
+        self._files.to_change(path).unlink()
 
 
 class ALPreferences:

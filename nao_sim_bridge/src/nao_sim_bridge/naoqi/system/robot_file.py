@@ -44,8 +44,8 @@ class RobotFile:
             NaoqiError: It would be too large.
             FileTrouble: It cannot be written; the former content stays.
         """
-        text = json.dumps(content, indent=1).encode()
+        text = json.dumps(content).encode()
         most = load_sizes().kept.file_bytes
         if len(text) > most:
             raise NaoqiError(f"{self._name} would have {len(text)} bytes: {most} at most")
-        write_whole(self._files.to_write(self._name), text)
+        write_whole(self._files.to_change(self._name), text)

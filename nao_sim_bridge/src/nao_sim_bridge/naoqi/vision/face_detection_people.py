@@ -77,7 +77,7 @@ class KnownPeople:
             changed = self._known().copy()
             done = change(changed)
             if done:
-                changed.save(self._files.to_write(FILE))
+                changed.save(self._files.to_change(FILE))
                 self._memory = changed
         for call in list(self.changed) if done else ():
             call()

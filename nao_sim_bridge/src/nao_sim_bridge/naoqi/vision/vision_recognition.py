@@ -168,7 +168,7 @@ class ALVisionRecognition:
         changed = change(before)
         if len(changed) > MOST:
             raise BadValue("pictures", len(changed), f"at most {MOST} in a database")
-        save(changed, self._files.to_write(_file(self._path, self._name)))
+        save(changed, self._files.to_change(_file(self._path, self._name)))
         with self._lock:
             self._pictures = changed
         self._forget()
