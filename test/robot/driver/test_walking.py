@@ -154,7 +154,7 @@ def test_steps_queue_up_and_can_be_waited_for_or_stopped(walker, robot, until):
 def test_what_the_robot_refuses_is_told_and_not_repeated_with_every_message(walker, robot):
     robot.ALMotion.setStiffnesses("Body", 0.0)
     for order in (Target(1.0, 0.0, 0.0), FORWARD, FORWARD):
-        with pytest.raises(NaoError, match="stiff"):
+        with pytest.raises(NaoError, match="the legs are limp: wakeUp first"):
             done(walker.order(order, "a service of /me"))  # a velocity of a service is always sent
     for _ in range(3):
         done(steer(walker, FORWARD))  # of a stream it was
@@ -223,7 +223,7 @@ def test_sequences_are_of_left_and_right_in_turn_and_refusals_are_told(footsteps
     with pytest.raises(BadGoal, match=r"footsteps\[1\]\.leg"):
         footsteps.prepared([STEPS[0], STEPS[0]])
     robot.ALMotion.setStiffnesses("Body", 0.0)
-    with pytest.raises(NaoError, match="stiff"):
+    with pytest.raises(NaoError, match="the legs are limp: wakeUp first"):
         footsteps.walk(STEPS, 0.25, CancellationToken(), lambda made: None)
 
 
@@ -264,7 +264,7 @@ def test_a_walk_that_is_cancelled_or_stopped_by_others_is_told(moving, robot, un
         until(lambda: not walking(robot))
     robot.ALMotion.setStiffnesses("Body", 0.0)
     moving.go(goal("window", 1.0, 0.0, 0.0))
-    eventually(lambda: "window: " in moving.report().message and "stiff" in moving.report().message)
+    eventually(lambda: "window: " in moving.report().message and "limp" in moving.report().message)
     assert moving.report().level == Level.ERROR
 
 

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from ..base.errors import BadGoal, CannotWalk
 from ..base.field_checks import degrees_hint, require_within
 from ..base.limits import limit
+from ..nao.stiff_legs import require_stiff
 from .facts import ARMS, BODY, LEGS, JointState, MotionFacts
 from .health import Health
 
@@ -21,8 +22,6 @@ TOLERANCE = 1e-4
 SPEED_TOLERANCE = 1.001
 POSTURE_TIME = 2.0
 ANGLE = limit("angle")
-SOFTEST = 0.6
-"""A walk needs legs that are stiffer than this; NAOqi ends it otherwise."""
 NOT_ON_FEET = ("Sit", "Lying")
 """How names of postures and families begin from which nobody walks."""
 
@@ -267,11 +266,7 @@ class WalkPlan:
     def require_ready(self) -> None:
         """See that a walk can begin: on its feet, with stiff legs. Raises CannotWalk if it cannot."""
         legs = self._plan.legs()
-        softest = min(legs, key=self._plan.stiffnesses.__getitem__)
-        stiffness = self._plan.stiffnesses[softest]
-        if not stiffness > SOFTEST:
-            how = f"too soft to walk: {softest} has stiffness {stiffness:.2f}, above {SOFTEST:g} is needed"
-            raise CannotWalk("the legs are limp" if stiffness == 0.0 else f"the legs are {how}", "wakeUp first")
+        require_stiff({joint: self._plan.stiffnesses[joint] for joint in legs})
         posture = self._posture
         if posture is None and self._plan.moved.isdisjoint(legs) and not self.walking:
             posture = self._read_posture()

@@ -6,6 +6,7 @@ SimulationError (RuntimeError)
 ├── BadValue           an argument outside what is allowed
 ├── NotAllowed         something that a switch forbids
 ├── MoveRefused        a walk that cannot begin
+│   └── LegsTooSoft    because of its stiffness
 ├── TaskKilled         a task ended before its time
 ├── NotFinite          numbers for the physics engine, or of it, that are not finite
 └── SimulationStopped  the simulation thread ended while somebody waited for it
@@ -96,6 +97,10 @@ class NotAllowed(SimulationError):
 
 class MoveRefused(SimulationError):
     """A walk that cannot begin; the text says why."""
+
+
+class LegsTooSoft(MoveRefused):
+    """A walk that cannot begin because legs have too little stiffness."""
 
 
 class TaskKilled(SimulationError):

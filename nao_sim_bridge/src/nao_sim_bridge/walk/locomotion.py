@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 from typing import Callable, Sequence, Tuple
 
-from nao_sim_bridge.base.errors import MoveRefused
+from nao_sim_bridge.base.errors import LegsTooSoft, MoveRefused
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.base.tasks import Task, TaskIds
@@ -316,7 +316,7 @@ class Locomotion:
         cause = self._guard.hindrance(self._now())
         if cause:
             self._fail(cause, started=False)
-            raise MoveRefused(cause)
+            raise (LegsTooSoft if self._guard.too_soft else MoveRefused)(cause)
         self._course = course
         self._to_begin, self._hindered = course is not None, False
         self._obstructed = False

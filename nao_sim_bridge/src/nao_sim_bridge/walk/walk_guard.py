@@ -66,6 +66,11 @@ class WalkGuard:
             return f"the robot is {family}, it walks only from standing or crouching: goToPosture first"
         return ""
 
+    @property
+    def too_soft(self) -> bool:
+        """Whether legs have too little stiffness to walk."""
+        return bool(self._soft_joints())
+
     def danger(self, now: Snapshot, dt: float) -> str:
         """Why a walk must end at once; empty when it need not. Called at every tick of `dt` s."""
         self._lifted = 0.0 if self._on_ground(now) else self._lifted + dt

@@ -14,6 +14,7 @@ from naoqi.errors import NaoError, RobotError
 from ...base.cancellation import CancellationToken
 from ...base.places import Place
 from ...nao.joint_names import MOTION
+from ...nao.stiff_legs import ask_for_stiff_legs
 from ...owners.line import SERVICE
 from ...robot.robot_task import run_task
 from ...ros.node_interface import NodeInterface
@@ -64,6 +65,7 @@ class WalkTopics:
             raise NaoError(f"nobody listens to {self._node.resolve(self._topic)}: does nao_walker run?")
         self._failed_before = self._last_failure()
         if not self.walking():
+            ask_for_stiff_legs(self._robot)
             run_task(self._robot.proxy(MOTION).call_async("moveInit"), interrupt, self._stop_robot)
 
     def go_to(self, way: Place) -> None:

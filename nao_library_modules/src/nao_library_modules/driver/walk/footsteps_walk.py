@@ -19,6 +19,7 @@ from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.places import Place
 from ...nao.joint_names import MOTION
+from ...nao.stiff_legs import ask_for_stiff_legs
 from ..joints.joint_controller import QUICK_LIMIT
 from .walk_commands import LEFT, RIGHT, FootStep
 
@@ -100,6 +101,7 @@ class FootstepWalk:
 
         Raises NaoError if it is no step, or the robot refuses it.
         """
+        ask_for_stiff_legs(self._robot)
         self._send((self.clipped(step),), clear=False)
 
     def make(self, step: FootStep) -> None:
@@ -124,6 +126,7 @@ class FootstepWalk:
         Raises NaoError if the robot refuses them, is lost or stops by itself.
         """
         steps = tuple(steps)
+        ask_for_stiff_legs(self._robot)
         began = self._clock.now()
         self._send(steps, clear=True)
         ended = self._motion("waitUntilMoveIsFinished")

@@ -12,6 +12,7 @@ from naoqi.errors import NaoError
 
 from ...base.places import Place
 from ...nao.joint_names import MOTION
+from ...nao.stiff_legs import ask_for_stiff_legs
 from ...ros.health import Level, Report
 
 log = logging.getLogger(__name__)
@@ -94,6 +95,7 @@ class MoveToWalk:
 
     def _set_out(self, goal: WalkGoal) -> None:
         way = goal.way()
+        ask_for_stiff_legs(self._robot)
         call = self._robot.proxy(MOTION).call_async("moveTo", *way)
         self._newest = call
         self._report(Level.OK, f"walks to {goal.name}: {way.x:.2f} m ahead, {way.y:.2f} m left, {way.yaw:.2f} rad")

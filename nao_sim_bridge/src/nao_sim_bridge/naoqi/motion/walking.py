@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any, Callable, Iterable, Sequence
 
-from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue, LegsTooSoft
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
@@ -18,6 +19,8 @@ from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
 from nao_sim_bridge.walk.locomotion import Locomotion
 from nao_sim_bridge.walk.steps_course import Placement
+
+log = logging.getLogger("nao_sim.walk")
 
 FAILED = "ALMotion/MoveFailed"
 NOT_STARTED, STOPPED = 0, 1
@@ -46,11 +49,16 @@ class MoveFailures:
 
 
 class Walking(MotionPart):
-    """Moves. Those at a velocity return at once; those to a place return when the robot stands there, or elsewhere."""
+    """Moves. Those at a velocity return at once; those to a place return when the robot stands there, or elsewhere.
+
+    As on a robot, legs that are too soft prevent a move without an error: the log warns, `ALMotion/MoveFailed` is
+    raised, and moveTo answers False.
+    """
 
     def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
         super().__init__(runner)
         self._failures = MoveFailures(memory)
+        self._told_soft = False
 
     def moveInit(self) -> Task:
         return self._walk("moveInit", lambda locomotion: locomotion.init())
@@ -154,13 +162,21 @@ class Walking(MotionPart):
         enabled = self._robot.locomotion.arms.enabled
         return [enabled[arm] for arm in ARM_GROUPS["Arms"]]
 
-    def _walk(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
-        """Run a command of the robot's locomotion in the simulation thread."""
+    def _walk(self, call: str, command: Callable[[Locomotion], Any], prevented: Any = None) -> Task:
+        """Run a command of the robot's locomotion in the simulation thread; the answer of one that is `prevented`."""
 
         def run() -> Any:
             locomotion = self._robot.locomotion
             self._failures.watch(locomotion)
-            return command(locomotion)
+            try:
+                answer = command(locomotion)
+            except LegsTooSoft as error:
+                if not self._told_soft:  # somebody may ask again and again
+                    self._told_soft = True
+                    log.warning("ALMotion::%s does not move the robot: %s", call, error)
+                return prevented
+            self._told_soft = False
+            return answer
 
         return self._runner.execute(run, call)
 
@@ -175,7 +191,7 @@ class Walking(MotionPart):
     def _to(self, call: str, arguments: tuple[Any, ...]) -> Task:
         points, time, config = _destination(arguments)
         gait = gait_of(config)
-        return self._walk(call, lambda locomotion: locomotion.move_to(points, gait, time).then(bool))
+        return self._walk(call, lambda locomotion: locomotion.move_to(points, gait, time).then(bool), False)
 
 
 def _destination(arguments: tuple[Any, ...]) -> tuple[list[FootPose], float | None, Any]:
