@@ -61,6 +61,10 @@ def test_messages_go_to_files_of_the_robot_as_long_as_they_are_wanted(robot, log
 def test_what_cannot_be_logged_is_refused(refuses):
     refuses("ALLogger", """
         setVerbosity('loud') -> verbosity is 'loud', allowed is one of silent, fatal, error, warning, info
+        setVerbosity('\N{SUPERSCRIPT TWO}') -> verbosity is
+        setVerbosity(5000 * '9') -> verbosity is
+        setFilter('=debug') -> filter is '=debug', allowed is module=level
+        setFilter('+') -> filter is '\\+', allowed is module=level
         setFilter('Game') -> filter is 'Game', allowed is module=level, \\+module or -module
         logInSys() -> no system log: messages are in the log of the simulator
         logInForwarder('tcp://example.com:5099') -> not sent to other computers

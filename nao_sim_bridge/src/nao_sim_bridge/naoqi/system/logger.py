@@ -11,6 +11,7 @@ from typing import BinaryIO
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.written_numbers import written_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 SILENT, FATAL, ERROR, WARNING, INFO, VERBOSE, DEBUG = range(7)
@@ -120,9 +121,10 @@ def _level(field: str, text: str) -> int:
     """The number of a level, also of one that is given as a number."""
     if text in LEVELS:
         return LEVELS.index(text)
-    if text.isdecimal() and int(text) < len(LEVELS):
-        return int(text)
-    raise BadValue(field, text, f"one of {', '.join(LEVELS)}")
+    number = written_number(text, DEBUG)
+    if number is None:
+        raise BadValue(field, text, f"one of {', '.join(LEVELS)}")
+    return number
 
 
 def _rule(rule: str) -> tuple[str, int]:
@@ -130,6 +132,6 @@ def _rule(rule: str) -> tuple[str, int]:
     name, equals, level = rule.partition("=")
     if equals and name:
         return name, _level("filter", level)
-    if name[0] in "+-" and len(name) > 1:
+    if not equals and name[0] in "+-" and len(name) > 1:
         return name[1:], DEBUG if name[0] == "+" else SILENT
     raise BadValue("filter", rule, "module=level, +module or -module, several with : between them")
