@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Mapping, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.imports import imported
 from nao_sim_bridge.base.record_dir import ClientFiles
@@ -28,10 +28,12 @@ from nao_sim_bridge.naoqi.vision.names import (
 )
 from nao_sim_bridge.naoqi.vision.vision_extractor import Sight, VisionExtractor, in_picture
 from nao_sim_bridge.naoqi.vision.watching import QVGA, TOP, Watching
-from nao_sim_bridge.vision.ball import Ball
-from nao_sim_bridge.vision.barcodes import Barcode
 from nao_sim_bridge.vision.client import VisionProcess
-from nao_sim_bridge.vision.landmarks import Landmark
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.vision.ball import Ball
+    from nao_sim_bridge.vision.barcodes import Barcode
+    from nao_sim_bridge.vision.landmarks import Landmark
 
 VGA = 2
 SHAPE = 1
