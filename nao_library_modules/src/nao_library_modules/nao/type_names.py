@@ -22,6 +22,10 @@ from ..base.suggestion import did_you_mean
 FILE = "nao_robot_types.json"
 AUTO, OURS, THEIRS = "auto", "nao_library", "naoqi_bridge"
 """What `messages` may be: of what is installed; packages of this library; naoqi_bridge_msgs and humanoid_nav_msgs."""
+FOUND = (
+    f"messages {AUTO}: the driver speaks the types of naoqi_bridge_msgs and humanoid_nav_msgs, which are installed;"
+    f" clients have them from spoken(), messages:={OURS} keeps those of nao_library_msgs"
+)
 LONGEST_LIST = 5
 """Types that an error names one by one."""
 _SECTION = re.compile(r"^=+\nMSG: (\S+)\n", re.MULTILINE)
@@ -81,7 +85,7 @@ def type_names() -> TypeNames:
 
 
 def choose(wanted: object) -> tuple[str, str]:
-    """Which names a driver speaks: OURS or THEIRS, and why it is not THEIRS where AUTO found packages that do not fit.
+    """Which names a driver speaks, OURS or THEIRS, and what is to be told where AUTO found older packages; else empty.
 
     Raises NaoError if there is no such choice, or the packages that were named are not there or do not fit.
     """
@@ -95,7 +99,7 @@ def choose(wanted: object) -> tuple[str, str]:
         return OURS, ""
     problem = _problem(there)
     if not problem:
-        return THEIRS, ""
+        return THEIRS, FOUND if wanted == AUTO else ""
     if wanted == AUTO:
         return OURS, f"the driver keeps the types of nao_library_msgs, for {problem}"
     raise NaoError(f"messages {THEIRS}: {problem}; install or build what is missing, or say {OURS}")
@@ -150,12 +154,12 @@ def _some(names: Sequence[str]) -> str:
 def main(arguments: Sequence[str]) -> int:
     """Print the choice for a word, without the end of a line: it becomes a parameter. Returns the exit status."""
     try:
-        choice, warning = choose(arguments[0] if arguments else AUTO)
+        choice, told = choose(arguments[0] if arguments else AUTO)
     except NaoError as error:
         print(error, file=sys.stderr)
         return 1
-    if warning:
-        print(warning, file=sys.stderr)
+    if told:
+        print(told, file=sys.stderr)
     print(choice, end="")
     return 0
 
