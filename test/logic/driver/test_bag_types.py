@@ -51,8 +51,10 @@ def content(path):
 
 
 def test_an_old_bag_gets_our_types_and_keeps_bytes_times_publishers_and_compression(old, tmp_path):
-    new = tmp_path / "new.bag"
+    new, other = tmp_path / "new.bag", tmp_path / "new.bag.part"
+    other.write_text("somebody's")
     done = convert_bag(old, new, OURS)
+    assert {path.name for path in tmp_path.iterdir()} == {"old.bag", "new.bag", "new.bag.part"}
     assert dict(done.renamed) == {"naoqi_bridge_msgs/JointAnglesWithSpeed": 2, "naoqi_bridge_msgs/Bumper": 1}
     assert dict(done.refilled) == {"naoqi_bridge_msgs/JointTrajectoryActionFeedback": 1}
     assert dict(done.kept) == {"std_msgs/String": 1} and not done.foreign

@@ -19,7 +19,7 @@ import rosbag
 
 from naoqi.errors import NaoError
 
-from ..base.whole_file import move_whole, require_new
+from ..base.whole_file import draft_in, move_whole, require_new
 from ..nao.type_names import OURS, type_names
 from .driver_types import as_theirs
 
@@ -56,20 +56,20 @@ def convert_bag(source: Path, target: Path, names: str, overwrite: bool = False)
     target = require_new(target, overwrite)
     if target.exists() and source.exists() and target.samefile(source):
         raise NaoError(f"{target} is the bag itself: another name for the new one")
-    part = target.with_name(f"{target.name}.part")
+    draft = draft_in(target.parent)
     done = Conversion()
     try:
         with rosbag.Bag(str(source)) as old:
             compression = old.get_compression_info().compression
-            with rosbag.Bag(str(part), "w", compression=compression) as new:
+            with rosbag.Bag(str(draft), "w", compression=compression) as new:
                 _copy(old, new, _Names(names), done)
-        move_whole(part, target, overwrite)
+        move_whole(draft, target, overwrite)
     except rosbag.ROSBagUnindexedException:
         raise NaoError(f"{source} has no index, as one whose recording was cut off: rosbag reindex it first") from None
     except (rosbag.ROSBagException, OSError, genpy.MessageException) as error:
         raise NaoError(f"{source} cannot be converted: {error}") from error
     finally:
-        part.unlink(missing_ok=True)
+        draft.unlink(missing_ok=True)
     return done
 
 
