@@ -43,12 +43,14 @@ class TypeNames:
         ours: The other way round.
         sums: Type of theirs -> md5 sum.
         definitions: Type of theirs that has other fields than ours -> these fields, as in a .msg file.
+        former: Package that was there before -> the one of theirs that took its types over.
     """
 
     theirs: Mapping[str, str]
     ours: Mapping[str, str]
     sums: Mapping[str, str]
     definitions: Mapping[str, str]
+    former: Mapping[str, str]
 
     @property
     def packages(self) -> list[str]:
@@ -81,7 +83,8 @@ def type_names() -> TypeNames:
         for own_package, types in packages.items():
             theirs.update({f"{own_package}/{name}": f"{package}/{name}" for name in types})
             sums.update({f"{package}/{name}": value for name, value in types.items()})
-    return TypeNames(theirs, {name: own for own, name in theirs.items()}, sums, content["definitions"])
+    ours = {name: own for own, name in theirs.items()}
+    return TypeNames(theirs, ours, sums, content["definitions"], content["former"])
 
 
 def choose(wanted: object) -> tuple[str, str]:
