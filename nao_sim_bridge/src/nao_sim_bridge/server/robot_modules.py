@@ -44,7 +44,6 @@ from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.system.wiring import SystemModules
 from nao_sim_bridge.naoqi.users.wiring import UserModules
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
-from nao_sim_bridge.server.files_control import FilesControl
 from nao_sim_bridge.server.film import END_LIMIT
 from nao_sim_bridge.server.film_control import FilmControl
 from nao_sim_bridge.server.robot_control import HandsControl, HealthControl
@@ -116,7 +115,6 @@ class RobotModules:
         self.sounds = WorldSoundsControl(runner, sounds, workers.persons)
         self.things = ThingsControl(runner, files)
         self.hands = HandsControl(runner)
-        self.file_access = FilesControl(files)
         self.film = FilmControl(runner, files, options.renderer)
         self.health = HealthControl(runner)
         self._body = BodyModules(runner, memory)
