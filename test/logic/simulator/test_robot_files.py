@@ -57,13 +57,21 @@ def test_what_the_robot_has_of_its_own_is_read_and_not_written_by_its_modules(fi
 
 
 @pytest.mark.parametrize("name", [
-    "/etc/passwd", "/", "/home", "/home/nao", "~", "/tmp", "/tmp/..", "/home/nao/../naomi/a", "/tmpx/a",
-    "/usr/share/a", "/usr/share/naoqi/../a", "~/../a", "../../../../../../etc/passwd", "/tmp/../etc/passwd",
+    "/etc/passwd", "/", "/home", "/tmp/..", "/home/nao/../naomi/a", "/tmpx/a", "/usr/share/a",
+    "/usr/share/naoqi/../a", "~/../a", "../../../../../../etc/passwd", "/tmp/../etc/passwd",
     "/home/nao\0/a", "/root/~/a",
 ])  # fmt: skip
 def test_other_paths_are_refused_with_the_robots_places(files, name):
     for way in (files.to_write, files.to_keep, files.to_read):
         with pytest.raises(OutsideRecordDir, match="places /home/nao, /tmp, /usr/share/naoqi, which are kept in "):
+            way(name)
+    assert not files.folder.exists()
+
+
+@pytest.mark.parametrize("name", ["/home/nao", "~nao/", ".", "day/..", "/data/home/nao", "/tmp/../usr/share/naoqi"])
+def test_a_place_itself_is_no_file(files, name):
+    for way in (files.to_write, files.to_keep, files.to_read):
+        with pytest.raises(UnusableName, match=f"^'{name}' is a folder, not a file$"):
             way(name)
     assert not files.folder.exists()
 
