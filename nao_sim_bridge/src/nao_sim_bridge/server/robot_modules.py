@@ -52,7 +52,6 @@ from nao_sim_bridge.vision.client import VisionProcess
 
 if TYPE_CHECKING:
     from nao_sim_bridge.server.broker import Broker
-    from nao_sim_bridge.server.files_control import FilesControl
     from nao_sim_bridge.server.options import ServerOptions
 
 log = logging.getLogger("nao_sim.robot")
@@ -113,7 +112,6 @@ class RobotModules:
         self.sounds = WorldSoundsControl(runner, sounds, workers.persons)
         self.things = ThingsControl(runner, files)
         self.hands = HandsControl(runner)
-        self._file_access = later("server.files_control:FilesControl", files)
         self.film = FilmControl(runner, files, options.renderer)
         self.health = HealthControl(runner)
         self._body = BodyModules(runner, memory)
@@ -157,11 +155,6 @@ class RobotModules:
             **UserModules(simulation, memory, files, zone, self.vision.people).modules,
             **system_modules.modules,
         }
-
-    @property
-    def file_access(self) -> FilesControl:
-        """Reads and writes files for who runs the simulator."""
-        return self._file_access[0]
 
     def begin(self) -> None:
         """Have a look at every tick; before time passes. A SimulationError when a sound of the world cannot be had."""
