@@ -60,6 +60,19 @@ def test_the_timeout_is_in_simulated_time_and_a_wait_can_be_cancelled(manager, r
     assert manager.ownersGet() == []
 
 
+def test_who_waits_for_what_is_deleted_with_its_parent_is_told_and_others_go_on(manager, robot, begin):
+    manager.createResource("Ball", "")
+    manager.createResource("Red ball", "Ball")
+    manager.acquireResource("Head", "dance", "", 0)
+    lost = begin(MANAGER, "acquireResourcesTree", ["Red ball", "Head"], "play", "", 1)
+    waiting = begin(MANAGER, "acquireResource", "Head", "look", "", -1)
+    manager.deleteResource("Ball", True)
+    with pytest.raises(RuntimeError, match="acquireResourcesTree deleted meanwhile: Red ball"):
+        robot.answer(lost)
+    manager.releaseResource("Head", "dance")
+    assert robot.answer(waiting) is None and manager.ownersGet() == [["Head", "look"]]
+
+
 def test_a_disabled_state_is_waited_for(manager, robot, begin):
     manager.enableStateResource("Standing", False)
     waiting = begin(MANAGER, "acquireResource", "Standing", "walk", "", -1, after=0.1)

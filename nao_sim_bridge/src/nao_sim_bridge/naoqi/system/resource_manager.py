@@ -62,9 +62,11 @@ class ALResourceManager:
 
     def deleteResource(self, name: str, with_children: bool = False) -> None:
         with self._lock:
-            self._tree.delete(name, bool(with_children))
-            for request in [one for one in self._requests if name in one.names]:
-                request.task.finish(error=NaoqiError(f"{name} has been deleted"))
+            gone = self._tree.delete(name, bool(with_children))
+            for request in list(self._requests):
+                lost = [one for one in request.names if one in gone]
+                if lost:
+                    request.task.finish(error=NaoqiError(f"deleted meanwhile: {', '.join(lost)}"))
 
     def enableStateResource(self, name: str, enabled: bool) -> None:
         with self._lock:
