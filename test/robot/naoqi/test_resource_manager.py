@@ -73,6 +73,18 @@ def test_who_waits_for_what_is_deleted_with_its_parent_is_told_and_others_go_on(
     assert robot.answer(waiting) is None and manager.ownersGet() == [["Head", "look"]]
 
 
+def test_the_optional_ones_come_with_the_others_and_not_with_a_wait_that_was_cancelled(manager, robot, begin):
+    manager.acquireResource("Head", "dance", "", 0)
+    wait = ("waitForOptionalResourcesTree", ["Head"], "look", "", -1, ["Leds", "HeadYaw"])
+    cancelled, waiting = begin(MANAGER, *wait), begin(MANAGER, *wait)
+    cancelled.cancel()
+    assert cancelled.wait(int(1000 * PATIENCE)) is not None and cancelled.isCanceled()
+    assert manager.ownersGet() == [["Head", "dance"]]
+    manager.releaseResource("Head", "dance")
+    assert robot.answer(waiting) == ["Leds", "HeadYaw"]
+    assert sorted(manager.ownersGet()) == [["Head", "look"], ["HeadYaw", "look"], ["Leds", "look"]]
+
+
 def test_a_disabled_state_is_waited_for(manager, robot, begin):
     manager.enableStateResource("Standing", False)
     waiting = begin(MANAGER, "acquireResource", "Standing", "walk", "", -1, after=0.1)
@@ -96,11 +108,13 @@ def test_a_module_that_has_left_has_nothing(manager, robot, begin):
     assert robot.answer(waiting) is None and manager.ownersGet() == [["HeadYaw", "look"]]
 
 
-def test_what_cannot_be_had_is_refused(refuses):
+def test_what_cannot_be_had_is_refused(manager, refuses):
     refuses(MANAGER, """
         acquireResource('Hed', 'look', '', 0) -> unknown resource 'Hed': did you mean 'Head'
+        waitForOptionalResourcesTree(['Leds'], 'look', '', 0, ['Hed']) -> unknown resource 'Hed'
         acquireResource('Head', '', '', 0) -> moduleName is '', allowed is the name of the module
         releaseResource('Head', 'look') -> Head belongs to nobody, not to look
         deleteResource('Head') -> Head comes with the robot
         createResource('Head', '') -> resourceName is 'Head', allowed is a name that no resource has
     """)  # fmt: skip
+    assert manager.ownersGet() == []

@@ -126,6 +126,10 @@ class ResourceTree:
                     found[Conflict(one.name, "")] = None
         return list(found)
 
+    def free(self, names: Iterable[str], owner: str) -> list[str]:
+        """Those of these that an owner can have, each by itself; an UnknownName when there is no such resource."""
+        return [name for name in names if not self.conflicts([name], owner)]
+
     def take(self, names: Iterable[str], owner: str) -> None:
         """Have an owner have these, between whom and them there is no conflict."""
         for name in names:
