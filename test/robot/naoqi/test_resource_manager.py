@@ -1,7 +1,7 @@
 """ALResourceManager: programs agree on who has which part of the robot."""
 
 import pytest
-from simulator import PATIENCE
+from simulator import PATIENCE, connected
 
 MANAGER = "ALResourceManager"
 
@@ -101,11 +101,17 @@ def test_the_owner_is_asked_by_its_callback_and_may_release(manager, robot, list
     assert robot.answer(waiting) is None
 
 
-def test_a_module_that_has_left_has_nothing(manager, robot, begin):
+def test_a_module_that_has_left_has_nothing_and_waits_for_nothing(manager, robot, begin):
+    session = connected(robot.port)
+    session.listen("tcp://127.0.0.1:0")
+    session.registerService("dance", type("Dance", (), {})())
+    manager.acquireResource("Leds", "look", "", 0)
     manager.acquireResource("Head", "dance", "", 0)
+    given_up = begin(MANAGER, "acquireResource", "Leds", "dance", "", -1)
     waiting = begin(MANAGER, "acquireResource", "HeadYaw", "look", "", -1)
-    robot.server._robot.client_gone("dance")
-    assert robot.answer(waiting) is None and manager.ownersGet() == [["HeadYaw", "look"]]
+    session.close()
+    assert robot.answer(waiting) is None and robot.answer(given_up) is None
+    assert manager.ownersGet() == [["HeadYaw", "look"], ["Leds", "look"]]
 
 
 def test_what_cannot_be_had_is_refused(manager, refuses):
