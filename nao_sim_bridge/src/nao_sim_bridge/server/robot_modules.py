@@ -31,6 +31,7 @@ from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion import motion_recorder
 from nao_sim_bridge.naoqi.motion.wake import AWAKE
+from nao_sim_bridge.naoqi.motion.walking import Moves
 from nao_sim_bridge.naoqi.navigation import caution
 from nao_sim_bridge.naoqi.navigation.navigation import ALNavigation
 from nao_sim_bridge.naoqi.sound.sound_extractors import DETECTION, LOCALIZATIONS, ALSoundDetection, SoundLocalization
@@ -125,10 +126,11 @@ class RobotModules:
         films = lambda: ALVideoRecorder(self._recorder, files, cameras.tables)  # noqa: E731
         manager = behavior_manager.ALBehaviorManager(running, runner, memory, files)
         system_modules = SystemModules(simulation, broker, files, memory, self.speech.say, manager)
+        moves = Moves(memory)
         self.modules: dict[str, Sequence[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
             "ALLeds": leds.parts(runner),
-            "ALMotion": motion.parts(runner, memory),
+            "ALMotion": motion.parts(runner, memory, moves),
             "ALRobotPosture": [posture],
             **self._audio.modules,
             **self.speech.modules,
@@ -146,7 +148,7 @@ class RobotModules:
             vision_toolbox.NAME: Later(lambda: [vision_toolbox.ALVisionToolbox(photos(), films())]),
             **self._body.modules,
             motion_recorder.NAME: Later(lambda: [motion_recorder.ALMotionRecorder(runner)]),
-            caution.NAME: Later(lambda: [ALNavigation(runner, memory)]),
+            caution.NAME: Later(lambda: [ALNavigation(runner, memory, moves)]),
             sentinel.NAME: Later(
                 lambda: [
                     sentinel.ALSentinel(memory, self._body.power, self._body.temperature, of_robot, self.speech.say)
