@@ -121,6 +121,7 @@ class RobotModules:
         manager = behavior_manager.ALBehaviorManager(running, runner, memory, files)
         system_modules = SystemModules(simulation, broker, files, memory, self.speech.say, manager)
         moves = Moves(memory)
+        self._users = UserModules(simulation, memory, files, zone, self.vision.people)
         self.modules: dict[str, Sequence[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
             "ALLeds": leds.parts(runner),
@@ -152,7 +153,7 @@ class RobotModules:
                 self.speech.say,
             ),
             "ALSystem": [of_robot],
-            **UserModules(simulation, memory, files, zone, self.vision.people).modules,
+            **self._users.modules,
             **system_modules.modules,
         }
 
@@ -193,7 +194,7 @@ class RobotModules:
 
     def closing(self) -> list[Step]:
         """Last steps of the end, when the simulation has ended."""
-        return [self.speech.close, self.recognition.close]
+        return [self.speech.close, self.recognition.close, self._users.close]
 
     def _later(self) -> Iterator[Later]:
         """Modules that are made when they are first called."""

@@ -37,6 +37,11 @@ class UserModules:
         memory.listen(TRACKED, self._track, declare=False)
         people.changed.append(self._made)
 
+    def close(self) -> None:
+        """Returns when what is known of users is in the files."""
+        if self._users is not None:
+            self._users.close()
+
     def _session(self) -> list[Any]:
         return [imported("naoqi.users.user_session:ALUserSession")(self._made())]
 
