@@ -20,6 +20,7 @@ from nao_sim_bridge.naoqi.binding.arguments import known, text, whole_number
 from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.vision.names import PICTURE, RECOGNITION
 from nao_sim_bridge.naoqi.vision.vision_extractor import Sight
 from nao_sim_bridge.naoqi.vision.watching import Watching
 from nao_sim_bridge.vision.client import VisionProcess
@@ -27,7 +28,6 @@ from nao_sim_bridge.vision.picture_features import SeenPicture
 from nao_sim_bridge.vision.picture_memory import MOST, KnownPicture, load, save
 from nao_sim_bridge.world.pictures import read_picture_file
 
-NAME, EVENT = "ALVisionRecognition", "PictureDetected"
 DEFAULT_PATH, DEFAULT_NAME = "/home/nao/naoqi/.local/share/naoqi/vision/visionrecognition/", "current"
 PATH, DATABASE = "db_path", "db_name"
 RESOLUTION = "resolution"
@@ -56,14 +56,14 @@ class ALVisionRecognition:
         self._database = _file(DEFAULT_PATH, DEFAULT_NAME)
         self._pictures: Tuple[KnownPicture, ...] | None = None
         self._most = 1
-        self._sight = Sight(memory, EVENT, tell_end=True)
+        self._sight = Sight(memory, PICTURE, tell_end=True)
         self._work = Background(most=MOST_WAITING)
         # One looks through the camera, the other one at files.
         features = lambda: (tuple(one.features for one in self._known()),)  # noqa: E731
         self._detectors = [vision.detector("pictures", features) for _ in range(2)]
         self.watching = Watching(
             self._cameras,
-            NAME,
+            RECOGNITION,
             self._detectors[0],
             self._on_result,
             settings=lambda _: self._most,
