@@ -25,8 +25,9 @@ class FilesControl:
         self._lock = threading.Lock()  # one piece is written at a time
 
     def listed(self, folder: str) -> dict[str, int]:
-        """As `ClientFiles.listed`."""
-        return self._files.listed(folder)
+        r"""As `ClientFiles.listed`; bytes of names that are no UTF-8, which libqi does not carry, as `\xe9`."""
+        sizes = self._files.listed(folder)
+        return {os.fsencode(name).decode("utf-8", "backslashreplace"): size for name, size in sizes.items()}
 
     def read(self, name: str, offset: int) -> bytes:
         """At most `PIECE` bytes of a file, from a byte on; nothing behind its end.
