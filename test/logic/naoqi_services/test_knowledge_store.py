@@ -76,10 +76,23 @@ def test_a_triple_goes_and_another_comes_at_their_dates(store, clock):
     assert store.settle() is False and store.find(LEARNING, PIZZA) == [PIZZA]
 
 
+def test_a_count_that_is_none_begins_anew(store):
+    for text in ("\N{SUPERSCRIPT TWO}", 5000 * "9"):
+        store.add_data(LEARNING, PIZZA, "addingCount", text)
+        store.add(LEARNING, PIZZA)
+        assert store.find_data(LEARNING, PIZZA, "addingCount", ANY) == [(PIZZA, "addingCount", "1")]
+        store.clear(LEARNING)
+
+
 @pytest.mark.parametrize("text, durations", [("tomorrow", True), ("2030-1-1", False), ("P", True), ("PT1M", False)])
 def test_what_is_no_date_is_refused(store, text, durations):
     with pytest.raises(BadValue, match="allowed is a date such as 2030-12-31T23:59:59Z"):
         store.date("date", text, durations)
+
+
+def test_a_duration_that_nobody_can_read_is_refused(store):
+    with pytest.raises(BadValue, match="or a duration such as P1DT2H30M15S"):
+        store.date("date", f"P{5000 * '9'}D", durations=True)
 
 
 def test_all_of_it_comes_back_from_a_file(store, clock):

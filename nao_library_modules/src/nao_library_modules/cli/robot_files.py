@@ -84,13 +84,10 @@ class SimulatedFiles:
 
     def put(self, source: Path, path: str) -> None:
         with source.open("rb") as file:
-            offset, piece = 0, file.read(PIECE)
-            last = False
-            while not last:
-                following = file.read(PIECE)
-                last = not following
-                self._robot.call(SIMULATION, "writeFile", path, offset, piece, last)
-                offset, piece = offset + len(piece), following
+            number = self._robot.call(SIMULATION, "beginFile", path)
+            while piece := file.read(PIECE):
+                self._robot.call(SIMULATION, "writeFile", number, piece, False)
+            self._robot.call(SIMULATION, "writeFile", number, b"", True)
 
     def _there(self, folder: str) -> list[Entry] | None:
         """What is in a folder; None where there is no such folder, or none may be."""

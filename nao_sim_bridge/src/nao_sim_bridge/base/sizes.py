@@ -123,6 +123,7 @@ class ClientSizes:
     series: int
     faces: int
     things: int
+    uploads: int
 
 
 @dataclass(frozen=True)

@@ -76,8 +76,8 @@ class ResourceTree:
         for name in names:
             self._add(name, above, fixed=False)
 
-    def delete(self, name: str, with_children: bool = False) -> None:
-        """Remove a resource that somebody has created and nobody has.
+    def delete(self, name: str, with_children: bool = False) -> list[str]:
+        """Remove a resource that somebody has created and nobody has; its name and those of all that were in it.
 
         Raises:
             UnknownName: There is none of that name.
@@ -92,10 +92,12 @@ class ResourceTree:
             raise NaoqiError(f"{owned.name} belongs to {owned.owner}, who has to release it first")
         if inside and not with_children:
             raise NaoqiError(f"{name} has {', '.join(one.name for one in inside)} in it, to be deleted first")
-        for one in (resource, *inside):
-            del self._all[one.name]
+        gone = [one.name for one in (resource, *inside)]
+        for each in gone:
+            del self._all[each]
         if resource.parent is not None:
             del resource.parent.children[name]
+        return gone
 
     def enable(self, name: str, enabled: bool) -> None:
         """Have a resource be had, or not."""
@@ -123,6 +125,10 @@ class ResourceTree:
                 if not one.enabled:
                     found[Conflict(one.name, "")] = None
         return list(found)
+
+    def free(self, names: Iterable[str], owner: str) -> list[str]:
+        """Those of these that an owner can have, each by itself; an UnknownName when there is no such resource."""
+        return [name for name in names if not self.conflicts([name], owner)]
 
     def take(self, names: Iterable[str], owner: str) -> None:
         """Have an owner have these, between whom and them there is no conflict."""
