@@ -11,6 +11,8 @@ and typed errors that name the remedy (`naoqi.errors`).
 
 from __future__ import annotations
 
+import motion
+
 from .broker import ALBroker
 from .calls import Call
 from .errors import (
@@ -51,4 +53,5 @@ __all__ = [
     "UnknownModule",
     "close_all",
     "connection",
+    "motion",
 ]
