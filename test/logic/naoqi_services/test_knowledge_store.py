@@ -76,6 +76,17 @@ def test_a_triple_goes_and_another_comes_at_their_dates(store, clock):
     assert store.settle() is False and store.find(LEARNING, PIZZA) == [PIZZA]
 
 
+def test_a_triple_comes_at_its_date_also_when_there_are_too_many_by_then(store, clock):
+    store.add_data(LEARNING, PIZZA, "happeningDate", "2030-01-01T12:00:10Z")
+    for number in range(load_sizes().kept.triples - 1):
+        store.add("numbers", (str(number), "is", "a number"))
+    clock.now = START + timedelta(seconds=10)
+    assert store.settle() is True and store.find(LEARNING, PIZZA) == [PIZZA]
+    assert store.find_data(LEARNING, PIZZA, "addingCount", ANY) == [(PIZZA, "addingCount", "1")]
+    with pytest.raises(NaoqiError, match="known at most"):
+        store.add("numbers", ("pi", "is", "a number"))
+
+
 @pytest.mark.parametrize("text, durations", [("tomorrow", True), ("2030-1-1", False), ("P", True), ("PT1M", False)])
 def test_what_is_no_date_is_refused(store, text, durations):
     with pytest.raises(BadValue, match="allowed is a date such as 2030-12-31T23:59:59Z"):

@@ -93,8 +93,11 @@ class TripleStore:
 
     # --- triples -----------------------------------------------------------------------------------------------------
 
-    def add(self, domain: str, triple: Triple) -> None:
+    def add(self, domain: str, triple: Triple, promised: bool = False) -> None:
         """Add a triple, which may be there; in the domain `LEARNING`, when and how often is kept as its data.
+
+        Args:
+            promised: Whether it comes also where there are too many: it was taken on before.
 
         Raises:
             BadValue: It has a wildcard.
@@ -104,15 +107,15 @@ class TripleStore:
         place = self._domains.setdefault(domain, _Domain())
         subject, name, value = triple
         if subject in place.nodes:
-            self._put(place.nodes[subject].data, (name, value))
+            self._put(place.nodes[subject].data, (name, value), promised)
             return
-        self._put(place.triples, triple)
+        self._put(place.triples, triple, promised)
         if domain == LEARNING:
             node = self._node(domain, triple)
             count = next((int(text) for text in node.values(ADDING_COUNT) if text.isdigit()), 0)
             node.drop(ADDING_COUNT, ANY)
-            self._put(node.data, (ADDING_COUNT, str(count + 1)))
-            self._put(node.data, (ADDED_DATE, self._clock().astimezone(timezone.utc).strftime(DATE_FORMAT)))
+            self._put(node.data, (ADDING_COUNT, str(count + 1)), promised)
+            self._put(node.data, (ADDED_DATE, self._clock().astimezone(timezone.utc).strftime(DATE_FORMAT)), promised)
 
     def replace(self, domain: str, triple: Triple) -> None:
         """Add a triple instead of all of the same subject and predicate."""
@@ -194,7 +197,7 @@ class TripleStore:
             for name, text in ((name, text) for name, texts in over.items() for text in texts):
                 node.drop(name, text)
             if over[HAPPENING]:
-                self.add(LEARNING, node.triple)
+                self.add(LEARNING, node.triple, promised=True)
             if over[EXPIRATION]:
                 place.triples.pop(node.triple, None)
         self._look_for_dates()
@@ -223,9 +226,9 @@ class TripleStore:
     def _node(self, domain: str, triple: Triple) -> _Node:
         return self._domains[domain].nodes.setdefault(self.id_of(domain, triple), _Node(triple))
 
-    def _put(self, where: dict[Any, None], entry: Any) -> None:
+    def _put(self, where: dict[Any, None], entry: Any, promised: bool = False) -> None:
         most = load_sizes().kept.triples
-        if entry not in where and sum(map(len, self._domains.values())) >= most:
+        if not promised and entry not in where and sum(map(len, self._domains.values())) >= most:
             raise NaoqiError(f"{most} triples with their metadata are known at most: remove, or resetKnowledge, first")
         where[entry] = None
 
