@@ -67,6 +67,7 @@ class TripleStore:
     def __init__(self, clock: Callable[[], datetime]) -> None:
         self._clock = clock
         self._domains: dict[str, _Domain] = {}
+        self._count = 0  # of triples and data, with those removed since it was counted
         self._due: datetime | None = None  # the first date at which a triple comes or goes
 
     # --- to and from a file ------------------------------------------------------------------------------------------
@@ -89,6 +90,7 @@ class TripleStore:
             place.triples = {(s, p, o): None for s, p, o in _rows(entry, "triples", 3)}
             for s, p, o, key, value in _rows(entry, "data", 5):
                 self._node(name, (s, p, o)).data[key, value] = None
+        self._count = sum(map(len, self._domains.values()))
         self._look_for_dates()
 
     # --- triples -----------------------------------------------------------------------------------------------------
@@ -228,8 +230,13 @@ class TripleStore:
 
     def _put(self, where: dict[Any, None], entry: Any, promised: bool = False) -> None:
         most = load_sizes().kept.triples
-        if not promised and entry not in where and sum(map(len, self._domains.values())) >= most:
-            raise NaoqiError(f"{most} triples with their metadata are known at most: remove, or resetKnowledge, first")
+        if entry in where:
+            return
+        if not promised and self._count >= most:
+            self._count = sum(map(len, self._domains.values()))  # what was removed counts no more
+            if self._count >= most:
+                raise NaoqiError(f"{most} triples with metadata are known at most: remove, or resetKnowledge, first")
+        self._count += 1
         where[entry] = None
 
 
