@@ -52,9 +52,11 @@ def test_our_definitions_under_the_older_names_have_the_sums_of_the_table(instal
     assert len(type_names().sums) == 154
 
 
-def test_auto_speaks_what_is_installed_and_names_may_be_asked_for(installed):
-    assert choose(AUTO) == choose(THEIRS) == (THEIRS, "")
-    assert choose(OURS) == (OURS, "")
+def test_auto_speaks_what_is_installed_and_says_so_and_names_may_be_asked_for(installed, capsys):
+    assert main([AUTO]) == 0
+    printed = capsys.readouterr()
+    assert printed.out == THEIRS and "speaks the types of naoqi_bridge_msgs" in printed.err
+    assert choose(THEIRS) == (THEIRS, "") and choose(OURS) == (OURS, "")
 
 
 def test_without_the_packages_auto_is_ours_and_their_names_are_refused(monkeypatch, capsys):

@@ -76,6 +76,14 @@ def test_a_triple_goes_and_another_comes_at_their_dates(store, clock):
     assert store.settle() is False and store.find(LEARNING, PIZZA) == [PIZZA]
 
 
+def test_a_count_that_is_none_begins_anew(store):
+    for text in ("\N{SUPERSCRIPT TWO}", 5000 * "9"):
+        store.add_data(LEARNING, PIZZA, "addingCount", text)
+        store.add(LEARNING, PIZZA)
+        assert store.find_data(LEARNING, PIZZA, "addingCount", ANY) == [(PIZZA, "addingCount", "1")]
+        store.clear(LEARNING)
+
+
 def test_a_triple_comes_at_its_date_also_when_there_are_too_many_by_then(store, clock):
     store.add_data(LEARNING, PIZZA, "happeningDate", "2030-01-01T12:00:10Z")
     for number in range(load_sizes().kept.triples - 1):
@@ -91,6 +99,11 @@ def test_a_triple_comes_at_its_date_also_when_there_are_too_many_by_then(store, 
 def test_what_is_no_date_is_refused(store, text, durations):
     with pytest.raises(BadValue, match="allowed is a date such as 2030-12-31T23:59:59Z"):
         store.date("date", text, durations)
+
+
+def test_a_duration_that_nobody_can_read_is_refused(store):
+    with pytest.raises(BadValue, match="or a duration such as P1DT2H30M15S"):
+        store.date("date", f"P{5000 * '9'}D", durations=True)
 
 
 def test_all_of_it_comes_back_from_a_file(store, clock):

@@ -22,6 +22,10 @@ from ..base.suggestion import did_you_mean
 FILE = "nao_robot_types.json"
 AUTO, OURS, THEIRS = "auto", "nao_library", "naoqi_bridge"
 """What `messages` may be: of what is installed; packages of this library; naoqi_bridge_msgs and humanoid_nav_msgs."""
+FOUND = (
+    f"messages {AUTO}: the driver speaks the types of naoqi_bridge_msgs and humanoid_nav_msgs, which are installed;"
+    f" clients have them from spoken(), messages:={OURS} keeps those of nao_library_msgs"
+)
 LONGEST_LIST = 5
 """Types that an error names one by one."""
 _SECTION = re.compile(r"^=+\nMSG: (\S+)\n", re.MULTILINE)
@@ -39,12 +43,14 @@ class TypeNames:
         ours: The other way round.
         sums: Type of theirs -> md5 sum.
         definitions: Type of theirs that has other fields than ours -> these fields, as in a .msg file.
+        former: Package that was there before -> the one of theirs that took its types over.
     """
 
     theirs: Mapping[str, str]
     ours: Mapping[str, str]
     sums: Mapping[str, str]
     definitions: Mapping[str, str]
+    former: Mapping[str, str]
 
     @property
     def packages(self) -> list[str]:
@@ -77,11 +83,12 @@ def type_names() -> TypeNames:
         for own_package, types in packages.items():
             theirs.update({f"{own_package}/{name}": f"{package}/{name}" for name in types})
             sums.update({f"{package}/{name}": value for name, value in types.items()})
-    return TypeNames(theirs, {name: own for own, name in theirs.items()}, sums, content["definitions"])
+    ours = {name: own for own, name in theirs.items()}
+    return TypeNames(theirs, ours, sums, content["definitions"], content["former"])
 
 
 def choose(wanted: object) -> tuple[str, str]:
-    """Which names a driver speaks: OURS or THEIRS, and why it is not THEIRS where AUTO found packages that do not fit.
+    """Which names a driver speaks, OURS or THEIRS, and what is to be told where AUTO found older packages; else empty.
 
     Raises NaoError if there is no such choice, or the packages that were named are not there or do not fit.
     """
@@ -95,7 +102,7 @@ def choose(wanted: object) -> tuple[str, str]:
         return OURS, ""
     problem = _problem(there)
     if not problem:
-        return THEIRS, ""
+        return THEIRS, FOUND if wanted == AUTO else ""
     if wanted == AUTO:
         return OURS, f"the driver keeps the types of nao_library_msgs, for {problem}"
     raise NaoError(f"messages {THEIRS}: {problem}; install or build what is missing, or say {OURS}")
@@ -150,12 +157,12 @@ def _some(names: Sequence[str]) -> str:
 def main(arguments: Sequence[str]) -> int:
     """Print the choice for a word, without the end of a line: it becomes a parameter. Returns the exit status."""
     try:
-        choice, warning = choose(arguments[0] if arguments else AUTO)
+        choice, told = choose(arguments[0] if arguments else AUTO)
     except NaoError as error:
         print(error, file=sys.stderr)
         return 1
-    if warning:
-        print(warning, file=sys.stderr)
+    if told:
+        print(told, file=sys.stderr)
     print(choice, end="")
     return 0
 

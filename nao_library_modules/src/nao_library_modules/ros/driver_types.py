@@ -50,9 +50,9 @@ def require_types() -> None:
     Raises NaoError if the parameter asks for packages that are not there or do not fit, or is none of its words. A
     client needs no packages for the names, and is not held up by them.
     """
-    _, warning = choose(_own_parameter())
-    if warning:
-        log.warning("%s", warning)
+    choice, told = choose(_own_parameter())
+    if told:
+        log.log(logging.INFO if choice == THEIRS else logging.WARNING, "%s", told)
 
 
 def _own_parameter() -> Any:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Callable
+
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.cameras.photos_and_films import QVGA, ALPhotoCapture, ALVideoRecorder
 
-NAME = "ALVisionToolbox"
 PICTURES, VIDEOS = "/home/nao/recordings/cameras", "/home/nao/.local/share/naoqi/vision"
 PICTURE = "image"
 USUAL = 3
@@ -15,11 +16,11 @@ RATE, KIND = 15.0, "MJPG"
 
 
 class ALVisionToolbox:
-    """ALVisionToolbox as the simulated robot offers it; `photos` and `films` have settings of their own."""
+    """ALVisionToolbox as the simulated robot offers it, with `photos` and `films` of its own and their settings."""
 
-    def __init__(self, photos: ALPhotoCapture, films: ALVideoRecorder) -> None:
-        self._photos = photos
-        self._films = films
+    def __init__(self, photos: Callable[[], ALPhotoCapture], films: Callable[[], ALVideoRecorder]) -> None:
+        self._photos = photos()
+        self._films = films()
 
     def halfPress(self) -> None:
         self._photos.halfPress()

@@ -7,6 +7,7 @@ others by who has the id. Patterns with a wildcard for the subject do not find t
 from __future__ import annotations
 
 import json
+import math
 import re
 import uuid
 from dataclasses import dataclass, field
@@ -15,6 +16,7 @@ from typing import Any, Callable, Iterable, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.written_numbers import written_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 ANY, ASKED = "*", "?"
@@ -27,7 +29,7 @@ DATE_FORMAT = "%Y-%m-%dT%H:%M:%SZ"
 DATE_WORDS = "a date such as 2030-12-31T23:59:59Z"
 LONGEST_PART = 100_000
 """Days, hours, minutes or seconds of a duration."""
-_DURATION = re.compile(r"P(?=.)(?:(\d+)D)?(?:T(?=.)(?:(\d+)H)?(?:(\d+)M)?(?:(\d+)S)?)?")
+_DURATION = re.compile(r"P(?=.)(?:(\d{1,9})D)?(?:T(?=.)(?:(\d{1,9})H)?(?:(\d{1,9})M)?(?:(\d{1,9})S)?)?")
 _NAMES = uuid.UUID("1f7a3d0e-5c0b-4b0a-9a53-6d1f7be0a6c2")
 
 Triple = Tuple[str, str, str]
@@ -114,7 +116,7 @@ class TripleStore:
         self._put(place.triples, triple, promised)
         if domain == LEARNING:
             node = self._node(domain, triple)
-            count = next((int(text) for text in node.values(ADDING_COUNT) if text.isdigit()), 0)
+            count = next((written_number(text, math.inf) or 0 for text in node.values(ADDING_COUNT)), 0)
             node.drop(ADDING_COUNT, ANY)
             self._put(node.data, (ADDING_COUNT, str(count + 1)), promised)
             self._put(node.data, (ADDED_DATE, self._clock().astimezone(timezone.utc).strftime(DATE_FORMAT)), promised)

@@ -7,13 +7,18 @@ from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.settings import EXPOSURE, GAIN
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.vision.names import (
+    BACKLIGHT,
+    BACKLIGHT_VALUE,
+    BACKLIGHTING,
+    DARK,
+    DARKNESS,
+    DARKNESS_VALUE,
+)
 from nao_sim_bridge.naoqi.vision.watching import Watching
 from nao_sim_bridge.vision.client import VisionProcess
 from nao_sim_bridge.vision.light import BACKLIT, DARKEST
 
-DARKNESS, BACKLIGHTING = "ALDarknessDetection", "ALBacklightingDetection"
-DARK, DARKNESS_VALUE = "DarknessDetection/DarknessDetected", "DarknessDetection/DarknessValue"
-BACKLIGHT, BACKLIGHT_VALUE = "BacklightingDetection/BacklightingDetected", "BacklightingDetection/BacklightingValue"
 FPS = 5
 QQVGA = 0
 """Enough to tell how bright a picture is."""
