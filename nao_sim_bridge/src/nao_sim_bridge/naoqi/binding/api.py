@@ -6,7 +6,7 @@ Those of NAOqi 2.8 are in `config/naoqi_api.json`, modules of earlier versions i
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Mapping, Sequence, Tuple
 
@@ -112,8 +112,14 @@ def module_methods(module: str) -> Mapping[str, Method]:
     for table in (*shared, module):
         for name, entry in tables[table].items():
             if not name.startswith("_"):
-                methods[name] = make_method(name, entry, _older(tables[table], entry))
+                own = make_method(name, entry, _older(tables[table], entry))
+                methods[name] = _beside(own, methods[name]) if name in methods else own
     return methods
+
+
+def _beside(own: Method, shared: Method) -> Method:
+    """A method of a module that takes other numbers of arguments than one of this name that it shares with others."""
+    return replace(own, overloads=own.overloads + shared.overloads, summary=f"{own.summary}; {shared.summary}")
 
 
 def own_methods(module: str) -> list[str]:

@@ -94,7 +94,7 @@ class Service:
         table = published_methods(self._module)
         common = CommonModule(self._module, table, self._broker)
         for name, method in table.items():
-            target = None if name in NATIVE else _find(name, [*parts, common])
+            target = None if name in NATIVE else _target(name, parts, common)
             if target is not None:
                 common.targets[name] = _checked(self._module, method, target)
         for name, older in older_methods(self._module).items():
@@ -181,6 +181,15 @@ def offered(module: str, parts: Sequence[Any]) -> tuple[list[str], list[str]]:
     table = module_methods(module)
     answers = [n for n in table if n in NATIVE or _find(n, [*parts, CommonModule]) is not None]
     return answers, [n for n in table if n not in answers]
+
+
+def _target(name: str, parts: Sequence[Any], common: CommonModule) -> Callable[..., Any] | None:
+    """What answers a method: a part, or what all modules have; both, by the number of arguments, if it is of both."""
+    own, shared = _find(name, parts), getattr(common, name, None)
+    if own is None or shared is None:
+        return own or shared
+    count = len(inspect.signature(shared).parameters)
+    return lambda *args: (shared if len(args) == count else own)(*args)
 
 
 def _find(name: str, parts: Iterable[Any]) -> Callable[..., Any] | None:
