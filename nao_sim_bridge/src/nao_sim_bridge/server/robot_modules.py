@@ -140,7 +140,7 @@ class RobotModules:
             **self.vision.modules,
             PHOTOS: [photos()],
             FILMS: [films()],
-            "ALVisionToolbox": later("naoqi.cameras.vision_toolbox:ALVisionToolbox", photos, films),
+            "ALVisionToolbox": later("naoqi.cameras.vision_toolbox:ALVisionToolbox", photos, films, cameras),
             **self._body.modules,
             "ALMotionRecorder": later("naoqi.motion.motion_recorder:ALMotionRecorder", runner),
             "ALNavigation": later("naoqi.navigation.navigation:ALNavigation", runner, memory, moves),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from nao_sim_bridge.cameras.automatics import Exposure
+from nao_sim_bridge.cameras.cameras import Cameras
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.settings import EXPOSURE, GAIN
 from nao_sim_bridge.core.simulation import Simulation
@@ -25,6 +26,12 @@ QQVGA = 0
 DEFAULT_THRESHOLD = 60
 
 
+def exposed(cameras: Cameras, frame: Frame) -> float:
+    """How many times as bright as in a well-lit room a camera has made its last picture."""
+    exposure, gain = (cameras.parameter(frame.camera, number) for number in (EXPOSURE, GAIN))
+    return Exposure(exposure, gain).brightness(cameras.tables.sensor)
+
+
 class ALDarknessDetection:
     """Tells when it gets dark. Only NAOqi methods are public, `watching` and `close`.
 
@@ -43,7 +50,7 @@ class ALDarknessDetection:
             DARKNESS,
             vision.detector("darkness"),
             self._on_result,
-            settings=self._exposed,
+            settings=lambda frame: exposed(self._cameras, frame),
             on_stop=self._nothing,
             resolution=QQVGA,
             fps=FPS,
@@ -59,10 +66,6 @@ class ALDarknessDetection:
 
     def close(self) -> None:
         self.watching.stop()
-
-    def _exposed(self, frame: Frame) -> float:
-        exposure, gain = (self._cameras.parameter(frame.camera, number) for number in (EXPOSURE, GAIN))
-        return Exposure(exposure, gain).brightness(self._cameras.tables.sensor)
 
     def _on_result(self, _: Frame, darkness: int) -> None:
         self._memory.insert(DARKNESS_VALUE, darkness)
