@@ -101,21 +101,25 @@ def test_a_type_of_that_name_with_other_fields_stays_as_it_is_and_is_told(tmp_pa
 def test_types_of_nao_msgs_are_renamed_where_their_sums_agree(tmp_path):
     angles = named(JointAnglesWithSpeed, "nao_msgs/JointAnglesWithSpeed")
     touch, stranger = named(TactileTouch, "nao_msgs/TactileTouch"), named(String, "nao_msgs/Bumper")
+    fewer = named(Bumper, "naoqi_msgs/Bumper")
+    fewer._md5sum = "4d423b2a165337e812d1b5a1cbab6b8d"  # it had no constant for the bumper at Pepper's back
     reported = named(as_theirs(JointTrajectoryActionFeedback), "nao_msgs/JointTrajectoryActionFeedback")
     with rosbag.Bag(str(tmp_path / "old.bag"), "w") as bag:
         bag.write("joint_angles", angles(joint_names=["HeadYaw"]), Time(1))
-        bag.write("tactile_touch", touch(), Time(2))
+        bag.write("tactile_touch", touch(button=2), Time(2))
         bag.write("bumper", stranger("left"), Time(3))
+        bag.write("foot", fewer(bumper=1, state=1), Time(3))
         bag.write("joint_trajectory/feedback", feedback(reported), Time(4))
     done = convert_bag(tmp_path / "old.bag", tmp_path / "ours.bag", OURS)
-    assert set(done.renamed) == {"nao_msgs/JointAnglesWithSpeed", "nao_msgs/TactileTouch"}
+    assert set(done.renamed) == {"nao_msgs/JointAnglesWithSpeed", "nao_msgs/TactileTouch", "naoqi_msgs/Bumper"}
     assert set(done.foreign) == {f"nao_msgs/Bumper ({String._md5sum})"}
     assert set(done.refilled) == {"nao_msgs/JointTrajectoryActionFeedback"}
     convert_bag(tmp_path / "old.bag", tmp_path / "theirs.bag", THEIRS)
     assert types_in(tmp_path / "theirs.bag") == {
         "joint_angles": "naoqi_bridge_msgs/JointAnglesWithSpeed",
-        "tactile_touch": "nao_msgs/TactileTouch",
+        "tactile_touch": "naoqi_bridge_msgs/HeadTouch",
         "bumper": "nao_msgs/Bumper",
+        "foot": "naoqi_bridge_msgs/Bumper",
         "joint_trajectory/feedback": "naoqi_bridge_msgs/JointTrajectoryActionFeedback",
     }
 

@@ -23,9 +23,6 @@ from ..base.whole_file import draft_in, move_whole, require_new
 from ..nao.type_names import OURS, type_names
 from .driver_types import as_theirs
 
-OWN = "nao_library_msgs"
-"""Package that has also types of the former packages that nobody took over."""
-
 
 @dataclass
 class Conversion:
@@ -104,8 +101,7 @@ class _Names:
         """Our name of a type; empty where it has none."""
         package, _, word = name.partition("/")
         if package in self._table.former:
-            since = f"{self._table.former[package]}/{word}"
-            return self._table.ours.get(since, f"{OWN}/{word}" if self._to_ours else "")
+            return self._table.ours.get(f"{self._table.former[package]}/{word}", "")
         return self._table.ours.get(name, name if name in self._table.theirs else "")
 
 
@@ -122,7 +118,7 @@ def _copy(old: Any, new: Any, names: _Names, done: Conversion) -> None:
             new.write(topic, raw, time, raw=True, connection_header=header)
             continue
         before, after = pair
-        if md5sum != before._md5sum:
+        if type_names().former_sums.get(md5sum, md5sum) != before._md5sum:
             done.foreign[f"{name} ({md5sum})"] += 1
             new.write(topic, raw, time, raw=True, connection_header=header)
             continue
