@@ -25,7 +25,9 @@ def feedback(kind):
 
 def named(kind, name):
     """A class with the fields of another one and a name of its own."""
-    made = type(name.partition("/")[2], (kind,), {"_type": name, "__slots__": ()})
+    package, word = name.split("/")
+    text = kind._full_text.replace(kind._type.split("/")[0] + "/", f"{package}/")
+    made = type(word, (kind,), {"_type": name, "_full_text": text, "__slots__": ()})
     made.__slots__ = kind.__slots__
     return made
 
