@@ -325,10 +325,10 @@ def sizes() -> str:
 
 
 def animations() -> str:
-    """Folders of NAOqi's animations: how many there are, of which families, with which tags."""
+    """Folders of NAOqi 2.8's animations: how many there are, of which families, with which tags."""
     rows = []
     folders: dict[str, list[str]] = {}
-    for name in animation_names():
+    for name in (name for name, naming in animation_names().items() if naming.tags):
         folders.setdefault(name.rsplit("/", 1)[0], []).append(name)
     for folder, members in sorted(folders.items()):
         named = [animation_names()[name] for name in members]

@@ -14,6 +14,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+import motion
+
 from .errors import (
     BadArguments,
     BrokerError,
@@ -56,6 +58,7 @@ __all__ = [
     "UnknownModule",
     "close_all",
     "connection",
+    "motion",
 ]
 
 _HOMES = {

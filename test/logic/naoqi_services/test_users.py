@@ -83,6 +83,19 @@ def test_who_asks_while_users_come_is_answered(users):
     assert answered and sessions.getNumUsers() == 301
 
 
+@pytest.mark.parametrize("face", ["x", 7.0, True, -2, 2**31, [7], None])
+def test_what_is_no_face_is_not_followed(users, face):
+    users.track(face)
+    assert users.ask(lambda book: book.numbers) == [1]
+
+
+@pytest.mark.parametrize("value", ["x", 5, {"a": 1}, [0, 5], [0, [[5], []]], [0, [["a", ["x", 1.0, "Ada"]], []]]])
+def test_who_is_followed_is_known_also_when_clients_have_raised_anything_about_faces(users, memory, value):
+    memory.raise_event("FaceDetected", value)
+    users.track(7)
+    assert users.ask(lambda book: (book.open, book.user_of_face(7))) == ([2], 2)
+
+
 def test_the_simulation_goes_on_while_a_file_is_written(users, simulation, monkeypatch):
     users.close()
     begun, may_go_on, save = threading.Event(), threading.Event(), RobotFile.save

@@ -165,9 +165,35 @@ def test_raw_pictures_that_had_no_room_are_told_of_at_the_end_and_the_next_ones_
     assert (robot.server.files.folder / "raw.bin").stat().st_size == 2 * 160 * 120
 
 
+def test_calls_that_tell_success_are_false_for_a_handle_that_nobody_has(robot, video):
+    handle = video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15)
+    calls = (
+        ("unsubscribe",),
+        ("releaseImage",),
+        ("setCameraParameter", 18, 1),
+        ("setResolution", 1),
+        ("setFrameRate", 5),
+    )
+    assert [getattr(video, name)("looker", *rest) for name, *rest in calls] == [False] * len(calls)
+    assert video.getSubscribers() == [handle] and video.getActiveCamera(handle) == TOP
+
+
+def test_the_parameter_that_was_the_active_camera_selects_it(robot, video):
+    handle = video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15)
+    assert video.setCameraParameter(handle, vd.kCameraSelectID, 1) is True
+    assert video.getActiveCamera(handle) == 1
+
+
+def test_a_rate_above_that_of_the_camera_is_that_of_the_camera(robot, video):
+    handle = video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 60)
+    assert video.getFrameRate(handle) == 30
+    assert video.setFrameRate(handle, 10) is video.setFrameRate(handle, 100) is True
+    assert video.getFrameRate(handle) == 30
+
+
 NOBODY = "'nobody_0' is not subscribed; subscribed is 'looker_0'"
 REFUSED = [
-    *(("getImageRemote", ("nobody_0",), NOBODY), ("releaseImage", ("nobody_0",), NOBODY)),
+    ("getImageRemote", ("nobody_0",), NOBODY),
     ("subscribeCamera", ("looker", 2, 1, 11, 15), "camera is 2, allowed is one of 0"),
     ("subscribeCamera", ("looker", 0, 5, 11, 15), "resolution is 5, allowed is one of"),
     ("subscribeCamera", ("looker", 0, 1, 17, 15), "needs a depth camera"),

@@ -58,11 +58,15 @@ def test_another_motion_gives_way_and_apply_posture_wakes_nobody(robot, begin):
     assert robot.ALRobotPosture.getPosture() == "Crouch"
 
 
+def test_a_speed_above_1_is_the_top_speed(stiff_robot):
+    assert stiff_robot.finish(POSTURE, "goToPosture", "StandInit", 5, after=4.0) is True
+
+
 def test_what_is_wrong_is_named(refuses):
     refuses(POSTURE, """
         goToPosture('Standing', 0.5) -> postureName is 'Standing', allowed is one of Crouch, LyingBack
         goToPosture('Stand', 0.0) -> maxSpeedFraction is 0.0, allowed is above 0 to 1
-        goToPosture('Stand', 1.5) -> maxSpeedFraction is 1.5, allowed is 0 to 1
+        goToPosture('Stand', -0.5) -> maxSpeedFraction is -0.5, allowed is 0 to 1
         setMaxTryNumber(0) -> pMaxTryNumber is 0, allowed is 1 or more
     """)  # fmt: skip
 
@@ -76,6 +80,11 @@ def test_the_configuration_is_what_memory_has(robot):
     assert found["RobotConfig/Body/Version"] == "6.0.0" and len(found) > 15
     assert all(robot.value(key) == value for key, value in found.items())
     assert preferences(ALRobotModel("V5").getConfig())["RobotConfig/Body/Version"] == "5.0.0"
+
+
+def test_the_model_tells_kind_and_limbs(robot):
+    model = robot.ALRobotModel
+    assert model.getRobotType() == "Nao" and model.hasArms() and model.hasHands() and model.hasLegs()
 
 
 def test_the_pose_and_how_long_it_lasts(stiff_robot):

@@ -3,6 +3,8 @@
 import pytest
 from simulator import PATIENCE, connected
 
+from nao_sim_bridge.naoqi.system import resource_manager
+
 MANAGER = "ALResourceManager"
 
 
@@ -83,6 +85,16 @@ def test_the_optional_ones_come_with_the_others_and_not_with_a_wait_that_was_can
     manager.releaseResource("Head", "dance")
     assert robot.answer(waiting) == ["Leds", "HeadYaw"]
     assert sorted(manager.ownersGet()) == [["Head", "look"], ["HeadYaw", "look"], ["Leds", "look"]]
+
+
+def test_of_too_many_calls_that_wait_the_oldest_is_given_up(manager, robot, begin, monkeypatch):
+    monkeypatch.setattr(resource_manager, "MOST_WAITING", 2)
+    manager.acquireResource("Head", "dance", "", 0)
+    waiting = [begin(MANAGER, "acquireResource", "Head", "look", "", -1) for _ in range(3)]
+    with pytest.raises(RuntimeError, match="given up: more than 2 calls wait for resources"):
+        robot.answer(waiting[0])
+    manager.releaseResource("Head", "dance")
+    assert [robot.answer(call) for call in waiting[1:]] == [None, None]
 
 
 def test_a_disabled_state_is_waited_for(manager, robot, begin):

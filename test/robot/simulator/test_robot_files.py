@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import cv2
 import pytest
 from sounds import RATE, loudness, played, tone, write
@@ -120,6 +122,8 @@ def test_who_runs_the_simulator_has_the_files_in_pieces(robot, here):
     files.writeFile(number, content[100:], True)
     assert files.listFiles("/home/nao/sounds") == {"copy.wav": len(content)}
     assert here("sounds/copy.wav").read_bytes() == content
+    here(os.fsdecode(b"sounds/\xe9.wav")).touch()
+    assert files.listFiles("~/sounds") == {"copy.wav": len(content), "\\xe9.wav": 0}
     with pytest.raises(RuntimeError, match=f"number is {number}, allowed is that of a file that is begun"):
         files.writeFile(number, b"more", True)
     files.writeFile(files.beginFile("/usr/share/naoqi/wav/own.wav"), content[: 44 + RATE], True)

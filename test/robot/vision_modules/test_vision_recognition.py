@@ -67,7 +67,9 @@ def test_a_file_is_looked_at_as_well_and_as_many_are_told_as_wanted(robot, pictu
 
 
 def test_what_is_learnt_goes_into_the_database_of_the_call(robot, pictures):
-    calls = [robot.post("ALVisionRecognition", "learnFromFile", f"{name}.png", name, []) for name in ("city", "planets")]
+    calls = [
+        robot.post("ALVisionRecognition", "learnFromFile", f"{name}.png", name, []) for name in ("city", "planets")
+    ]
     robot.handed_over("ALVisionRecognition")
     pictures.changeDatabase("", "other")
     assert [robot.answer(call) for call in calls] == [True, True] and pictures.getSize() == 0

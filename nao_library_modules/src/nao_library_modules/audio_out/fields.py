@@ -24,7 +24,7 @@ PARAMETERS: dict[str, tuple[float, float]] = {
     "defaultVoiceSpeed": SPEED,
     "pitch": PITCH,
     "volume": (0.0, 100.0),
-    "pitchShift": (1.0, 4.0),
+    "pitchShift": (0.5, 4.0),
     "doubleVoice": (1.0, 4.0),
     "doubleVoiceLevel": (0.0, 4.0),
     "doubleVoiceTimeShift": (0.0, 0.5),

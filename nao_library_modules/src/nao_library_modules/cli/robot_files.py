@@ -104,7 +104,7 @@ class FilesOverSsh:
 
     Args:
         host: Name or IP of the robot.
-        limit: s that each of its programs may take; None for ever.
+        limit: s that each of its programs may take, with the time in which the password is typed; None for ever.
         quiet: Whether scp tells nothing of how far it is.
     """
 
@@ -145,7 +145,13 @@ class FilesOverSsh:
     def _run(self, command: list[str], output: int | None) -> str:
         try:
             done = subprocess.run(  # no shell on this computer
-                command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.PIPE, text=True, timeout=self._limit
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.PIPE,
+                encoding="utf-8",
+                errors="backslashreplace",  # names on the robot are any bytes
+                timeout=self._limit,
             )
         except FileNotFoundError:
             raise CommandFailed(

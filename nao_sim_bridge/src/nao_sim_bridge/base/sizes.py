@@ -124,6 +124,7 @@ class ClientSizes:
     faces: int
     things: int
     uploads: int
+    resource_calls: int
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,8 @@ from nao_sim_bridge.model.robot_model import Place, RobotModel
 
 TORSO, WORLD, ROBOT = 0, 1, 2
 FEET = ("LLeg", "RLeg")
+# The fingers' joints have no link of their own: they are where the arms end.
+HANDS = {"LHand": "LArm", "RHand": "RArm"}
 # Below this, m or rad, feet are equally high.
 EVEN = 1e-6
 
@@ -37,12 +39,12 @@ class Frame:
 
 
 def frame_of(model: RobotModel, name: str) -> Frame:
-    """The frame of an effector, a joint or a sensor.
+    """The frame of an effector, a joint or a sensor; that of a hand is that of its arm.
 
     Raises:
         UnknownName: The robot has no such place.
     """
-    place = model.effectors.get(name) or sensor_places(model).get(name)
+    place = model.effectors.get(HANDS.get(name, name)) or sensor_places(model).get(name)
     if place is not None:
         return Frame(place.parent_link, transform(rpy_matrix(place.rpy), place.position))
     if name in (link.name for link in model.links):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import threading
 from typing import Callable
 
@@ -32,8 +33,9 @@ class FilesControl:
         self._uploads: dict[int, WholeFile] = {}
 
     def listed(self, folder: str) -> dict[str, int]:
-        """As `ClientFiles.listed`."""
-        return self._files().listed(folder)
+        r"""As `ClientFiles.listed`; bytes of names that are no UTF-8, which libqi does not carry, as `\xe9`."""
+        sizes = self._files().listed(folder)
+        return {os.fsencode(name).decode("utf-8", "backslashreplace"): size for name, size in sizes.items()}
 
     def read(self, name: str, offset: int) -> bytes:
         """At most `PIECE` bytes of a file, from a byte on; nothing behind its end.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Iterator, Mapping, Sequence, Tuple
+from typing import Callable, Iterator, Mapping, Sequence, Tuple
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.speech.gesture import Animation, KeyFrames
 
 FILE = "gestures.json"
-TABLES = ("poses", "heads", "leans", "tempi", "play", "families", "names")
+TABLES = ("poses", "heads", "leans", "tempi", "play", "families", "names", "older")
 ARM = ("ShoulderPitch", "ShoulderRoll", "ElbowYaw", "ElbowRoll", "WristYaw", "Hand")
 # Which way a positive angle of a pose turns the joints of each arm.
 SIGNS = {"L": (1.0, 1.0, -1.0, -1.0, -1.0, 1.0), "R": (1.0, -1.0, 1.0, 1.0, 1.0, 1.0)}
@@ -110,7 +110,10 @@ class Family:
 
 @dataclass(frozen=True)
 class Naming:
-    """What the table of names says of one animation; its rank is that among the names of its family."""
+    """What the table of names says of one animation; its rank is that among the names of its family.
+
+    Those of robots before NAOqi 2.8 have no tags: programs name them, and nothing else chooses them.
+    """
 
     tags: Tuple[str, ...]
     family: str
@@ -130,32 +133,33 @@ class _Tables:
         self.tempi = {n: section(Tempo, entry, f"{FILE}: tempi: {n}") for n, entry in tables["tempi"].items()}
         self.play = section(Play, tables["play"], f"{FILE}: play")
         self.families = {name: _family(name, entry) for name, entry in tables["families"].items()}
-        self.names = dict(self._named(tables["names"]))
+        self._ranks: dict[tuple[str, str], int] = {}
+        self.names = dict(self._named(tables["names"], lambda tags: tuple(tags.split(", "))))
+        self.names.update(self._named(tables["older"], lambda _: ()))
 
-    def _named(self, folders: Mapping[str, Mapping[str, str]]) -> Iterator[Tuple[str, Naming]]:
-        ranks: dict[tuple[str, str], int] = {}
-        for folder, rows in folders.items():
-            for written, tags in rows.items():
-                for group in written.split(", "):
-                    yield from self._group(folder, group, tuple(tags.split(", ")), ranks)
-
-    def _group(
-        self, folder: str, group: str, tags: Tuple[str, ...], ranks: dict[tuple[str, str], int]
+    def _named(
+        self, folders: Mapping[str, Mapping[str, str]], tags_of: Callable[[str], Tuple[str, ...]]
     ) -> Iterator[Tuple[str, Naming]]:
+        for folder, rows in folders.items():
+            for written, said in rows.items():
+                for group in written.split(", "):
+                    yield from self._group(folder, group, said, tags_of(said))
+
+    def _group(self, folder: str, group: str, said: str, tags: Tuple[str, ...]) -> Iterator[Tuple[str, Naming]]:
         stem, *numbers = group.split(" ")
         for number in _numbers(numbers):
             names = [f"{stem}_{number}".replace("Side", side) for side in (SIDES if stem.startswith("Side") else [""])]
             side, tempo, base = NAME.fullmatch(names[0]).groups()
             posture = folder.split("/")[1]
-            candidates = [f"{posture}/{base}", base, *tags]
+            candidates = [f"{posture}/{base}", base, *tags] if tags else [said]
             family = next((name for name in candidates if name in self.families), None)
             if family is None:
                 raise ConfigError(f"{FILE}: {folder}/{names[0]}", f"has no family, which is one of {candidates}")
             kind = (family, "one" if side in SIDES else "both")
-            ranks[kind] = ranks.get(kind, -1) + 1
+            self._ranks[kind] = self._ranks.get(kind, -1) + 1
             for name in names:
                 side = NAME.fullmatch(name).group(1)
-                yield f"{folder}/{name}", Naming(tags, family, side, tempo, ranks[kind])
+                yield f"{folder}/{name}", Naming(tags, family, side, tempo, self._ranks[kind])
 
 
 @lru_cache(maxsize=None)

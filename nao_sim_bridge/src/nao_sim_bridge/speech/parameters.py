@@ -11,7 +11,8 @@ from nao_sim_bridge.base.errors import BadValue
 SPEED, DEFAULT_SPEED = "speed", "defaultVoiceSpeed"
 # Name -> (lowest, highest, default). Of PITCH_SHIFT and DOUBLE_VOICE 0 is allowed too: switched off.
 RANGES: Mapping[str, Tuple[float, float, float]] = {
-    "pitchShift": (1.0, 4.0, 1.0),
+    # NAOqi's documentation begins at 1; robots speak lower as well, and programs have them do so.
+    "pitchShift": (0.5, 4.0, 1.0),
     "doubleVoice": (1.0, 4.0, 0.0),
     "doubleVoiceLevel": (0.0, 4.0, 0.0),
     "doubleVoiceTimeShift": (0.0, 0.5, 0.0),

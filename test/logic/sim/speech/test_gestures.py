@@ -26,7 +26,10 @@ APART, APART_IN_FAMILY = 0.025, 0.04
 # The middle of a hand in the frame of its wrist, m.
 HAND = (0.05775, 0.0, -0.01231, 1.0)
 GESTURES = "animations/Stand/Gestures/"
-BY_HAND, FAMILIES = read_animations(config_file(FILE)), gesture_families.names()
+BY_HAND, ALL = read_animations(config_file(FILE)), gesture_families.names()
+FAMILIES = [name for name, naming in ALL.items() if naming.tags]
+# Those of robots before NAOqi 2.8.
+OLDER = [name for name in ALL if name not in FAMILIES]
 # How near limbs may come, m: the shapes that are looked at are wider than the limbs, and an arm is kept at -0.006.
 NEAREST = -0.004
 
@@ -72,14 +75,14 @@ def ways(animation, home, step):
 
 @pytest.mark.parametrize("start, names, step", [
     ("Stand", BY_HAND, 0.04), ("StandInit", BY_HAND, 0.04), ("Sit", BY_HAND, 0.04),
-    ("Stand", FAMILIES, 0.2), ("Sit", FAMILIES, 0.1),
+    ("Stand", FAMILIES, 0.2), ("Sit", FAMILIES, 0.1), ("Stand", OLDER, 0.4), ("Sit", OLDER, 0.2),
 ])  # fmt: skip
 def test_no_arm_comes_too_near_on_the_way(library, start, names, step):
     model = load_model()
     collision, home = SelfCollision(model), np.array(posture(model, start))
     nearest = np.minimum(collision.distances(home), NEAREST) - 1e-6
     for name in names:
-        if names is FAMILIES and not is_for(name, start):
+        if names is not BY_HAND and not is_for(name, start):
             continue
         for angles in ways(library.get(name), home, step):
             distances = collision.distances(angles)
@@ -88,8 +91,8 @@ def test_no_arm_comes_too_near_on_the_way(library, start, names, step):
 
 def test_all_animations_of_a_nao_are_there_within_limits_speeds_and_a_few_seconds(library):
     model = load_model()
-    assert len(FAMILIES) == 434 and set(FAMILIES) <= set(library.names)
-    for name in FAMILIES:
+    assert len(FAMILIES) == 434 and set(ALL) <= set(library.names)
+    for name in ALL:
         animation = library.get(name)
         assert 1.5 <= animation.length <= 5.0 and library.get(name) is animation
         for joint, frames in animation.joints.items():
@@ -111,7 +114,7 @@ def hands(animation):
 
 
 def test_no_two_animations_are_the_same(library):
-    names = list(FAMILIES)
+    names = FAMILIES
     paths = np.array([hands(library.get(name)) for name in names])
     families = [name.rsplit("_", 1)[0].rsplit("_", 1)[-1].rsplit("/", 1)[-1] for name in names]
     for k, path in enumerate(paths[:-1]):
@@ -154,6 +157,12 @@ def test_the_trunk_goes_to_the_side_of_the_arm_that_leads_and_stays_upright(libr
         for foot in ("LAnkleRoll", "RAnkleRoll"):
             moved = link_transforms(model, home)[foot][1, 3] - links[foot][1, 3]
             assert sign * moved > 0.005 and links[foot][1, 2] == pytest.approx(0.0, abs=0.01), animation.name
+
+
+def test_animations_of_earlier_robots_are_there_by_name_and_chosen_by_nothing_else(library):
+    assert library.get("animations/Stand/Waiting/TakePicture_1").joints and library.find("AirGuitar_1").length > 1.5
+    assert "animations/Sit/Emotions/Positive/Laugh_1" in library.names
+    assert {tag for name in OLDER for tag in library.tags_of(name)} == set()
 
 
 def test_a_contextual_name_is_that_of_the_posture(library):

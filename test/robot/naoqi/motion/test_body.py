@@ -43,6 +43,11 @@ def test_places_of_the_body_agree(robot, motion):
     assert [sum(both) / 2 for both in zip(*feet)] == pytest.approx([0.0] * 6, abs=0.01)
 
 
+def test_a_hand_is_where_its_arm_ends(motion):
+    for side in "LR":
+        assert motion.getPosition(f"{side}Hand", TORSO, True) == motion.getPosition(f"{side}Arm", TORSO, True)
+
+
 @pytest.mark.parametrize("space", [TORSO, WORLD, ROBOT])
 def test_a_hand_goes_where_it_is_sent(stiff_robot, motion, space):
     target = motion.getPosition("LArm", space, True)

@@ -88,7 +88,8 @@ class ALRobotPosture:
     ) -> Task:
         if name not in load_postures().by_name:
             raise BadValue("postureName", name, f"one of {', '.join(self.getPostureList())}")
-        fraction = speed_share(speed, "maxSpeedFraction")
+        # Robots take a speed above 1 for the top speed, which many programs rely on.
+        fraction = speed_share(min(speed, 1.0), "maxSpeedFraction")
         tries, moves, now = self._tries, load_moves(), lambda: self._simulation.snapshot
 
         def begin() -> Task:

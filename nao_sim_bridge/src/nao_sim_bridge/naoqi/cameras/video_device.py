@@ -13,7 +13,7 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.cameras.video_device_cameras import CameraStates, VideoDeviceAngles, VideoDeviceCameras
 from nao_sim_bridge.naoqi.cameras.video_device_recordings import RawRecordings
 from nao_sim_bridge.naoqi.cameras.video_device_settings import NATIVE, VideoDeviceSettings
-from nao_sim_bridge.naoqi.cameras.video_device_subscribers import VideoSubscribers, View
+from nao_sim_bridge.naoqi.cameras.video_device_subscribers import VideoSubscribers, View, tells_success
 
 NAME = "ALVideoDevice"
 
@@ -62,6 +62,7 @@ class ALVideoDevice:
         spaces = _whole_numbers(color_spaces, "colorSpaces", len(indexes))
         return self._subscribe(name, list(map(View, indexes, sizes, spaces)), fps, True)
 
+    @tells_success
     def unsubscribe(self, handle: str) -> bool:
         self._subscribers.remove(handle)
         return True
@@ -93,6 +94,7 @@ class ALVideoDevice:
         self._check_native(handle)
         return self._images(handle, "getDirectRawImagesRemote", _all)
 
+    @tells_success
     def releaseImage(self, handle: str) -> bool:
         self._subscribers.get(handle)
         return True

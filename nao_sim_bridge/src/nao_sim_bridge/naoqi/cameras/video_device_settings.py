@@ -9,7 +9,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.cameras.cameras import Cameras
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.cameras.video_device_cameras import CameraStates, of_active
-from nao_sim_bridge.naoqi.cameras.video_device_subscribers import Subscriber, VideoSubscribers
+from nao_sim_bridge.naoqi.cameras.video_device_subscribers import Subscriber, VideoSubscribers, tells_success
 
 NATIVE, IDLE_RESOLUTION, IDLE_RATE = 9, 1, 5
 """Colour space that the cameras themselves give, and size and rate of a camera that nobody looks through."""
@@ -63,6 +63,7 @@ class VideoDeviceSettings:
     def getActiveCamera(self, *handle: str) -> int:
         return self._one(*handle).views[0].camera if handle else self._cameras.active
 
+    @tells_success
     def setActiveCamera(self, *arguments: Any) -> bool:
         camera = self._cameras.tables.camera(arguments[-1])
         if len(arguments) == 1:
@@ -83,6 +84,7 @@ class VideoDeviceSettings:
         used = [stream.size for stream in self._cameras.streams if stream.camera == tables.camera(of)]
         return max(used, key=lambda size: size.width).id if used else IDLE_RESOLUTION
 
+    @tells_success
     def setResolution(self, handle: str, resolution: int) -> bool:
         return self._change_one(handle, resolution=resolution)
 
@@ -94,6 +96,7 @@ class VideoDeviceSettings:
         self._cameras.tables.camera(of)
         return NATIVE
 
+    @tells_success
     def setColorSpace(self, handle: str, color_space: int) -> bool:
         return self._change_one(handle, color_space=color_space)
 
@@ -104,6 +107,7 @@ class VideoDeviceSettings:
             return self._subscribers.get(of).fps
         return round(self._cameras.rate(of)) or IDLE_RATE
 
+    @tells_success
     def setFrameRate(self, handle: str, fps: int) -> bool:
         self._subscribers.change(handle, fps=fps)
         return True
@@ -164,10 +168,16 @@ class VideoDeviceSettings:
 
     # --- parameters by subscriber ---------------------------------------------------------------------------------
 
-    getCameraParameter, setCameraParameter = _by_handle(getParameter), _by_handle(setParameter)
+    getCameraParameter = _by_handle(getParameter)
     getCameraParameterRange, getCameraParameterInfo = _by_handle(getParameterRange), _by_handle(getParameterInfo)
-    setCameraParameterToDefault = _by_handle(setParameterToDefault)
+    setCameraParameterToDefault = tells_success(_by_handle(setParameterToDefault))
 
+    @tells_success
+    def setCameraParameter(self, handle: str, number: int, value: int) -> bool:
+        camera = self.getActiveCamera(handle)
+        return self.setActiveCamera(handle, value) if number == SELECT else self.setParameter(camera, number, value)
+
+    @tells_success
     def setAllCameraParametersToDefault(self, handle: str) -> bool:
         return all([self.setAllParametersToDefault(camera) for camera in self.getActiveCameras(handle)])
 

@@ -7,6 +7,7 @@ alive after all, its next call finds everything as it was.
 
 from __future__ import annotations
 
+import functools
 import logging
 import threading
 import time
@@ -30,6 +31,24 @@ REMEMBERED = load_sizes().clients.cameras_remembered
 """Handles of clients that seem to have gone, and that are found again when they are used."""
 MOST = load_sizes().clients.cameras
 """Subscribers at the same time."""
+
+
+class NotSubscribed(NaoqiError):
+    """Nobody has the handle of a call."""
+
+
+def tells_success(method: Callable[..., bool]) -> Callable[..., bool]:
+    """The method, which is false for a handle that nobody has, as NAOqi documents it; the log says what was wrong."""
+
+    @functools.wraps(method)
+    def tried(*arguments: Any) -> bool:
+        try:
+            return method(*arguments)
+        except NotSubscribed as error:
+            log.warning("a call for a camera subscriber does nothing: %s", error)
+            return False
+
+    return tried
 
 
 @dataclass(frozen=True)
@@ -74,7 +93,7 @@ class VideoSubscribers:
         """
         if not name:
             raise BadValue("name", name, "a name, not empty")
-        _check_fps(fps, self._cameras)
+        fps = _rate(fps, self._cameras)
         if len({view.camera for view in views}) < len(views) or not views:
             raise BadValue("cameraIndexes", [view.camera for view in views], "different cameras, one or more")
         with self._lock:
@@ -85,7 +104,7 @@ class VideoSubscribers:
         return handle
 
     def remove(self, handle: str) -> None:
-        """Let somebody look no more; a NaoqiError when there is no such handle."""
+        """Let somebody look no more; a NotSubscribed when there is no such handle."""
         with self._lock:
             if self._gone.pop(handle, None) is None:
                 _close(self._known.pop(self._find(handle).handle))
@@ -99,7 +118,7 @@ class VideoSubscribers:
                 _close(self._known.pop(subscriber.handle))
 
     def get(self, handle: str) -> Subscriber:
-        """The subscriber with a handle; it counts as used. A NaoqiError when there is no such handle."""
+        """The subscriber with a handle; it counts as used. A NotSubscribed when there is no such handle."""
         with self._lock:
             self.clean_up()
             back = self._gone.pop(handle, None)
@@ -123,8 +142,7 @@ class VideoSubscribers:
         with self._lock:
             subscriber = self.get(handle)
             wanted = tuple(views if views is not None else subscriber.views)
-            rate = subscriber.fps if fps is None else fps
-            _check_fps(rate, self._cameras)
+            rate = subscriber.fps if fps is None else _rate(fps, self._cameras)
             tables = self._cameras.tables
             for view in wanted:
                 tables.check_rate(tables.camera(view.camera), tables.resolution(view.resolution), rate)
@@ -216,7 +234,7 @@ class VideoSubscribers:
     def _find(self, handle: str) -> Subscriber:
         if handle not in self._known:
             known = ", ".join(map(repr, self._known)) or "nobody"
-            raise NaoqiError(f"{handle!r} is not subscribed; subscribed is {known}")
+            raise NotSubscribed(f"{handle!r} is not subscribed; subscribed is {known}")
         return self._known[handle]
 
     def _answered(self, subscriber: Subscriber, waiting: WaitingCall) -> None:
@@ -230,10 +248,12 @@ def _close(subscriber: Subscriber) -> None:
         stream.close()
 
 
-def _check_fps(fps: Any, cameras: Cameras) -> None:
+def _rate(fps: Any, cameras: Cameras) -> int:
+    """Frames a second for somebody who asks for `fps`: programs that ask for more than there are get all of them."""
     most = cameras.tables.most_fps
-    if isinstance(fps, bool) or not isinstance(fps, int) or not 1 <= fps <= most:
+    if isinstance(fps, bool) or not isinstance(fps, int) or fps < 1:
         raise BadValue("fps", fps, f"1 to {most} frames a second")
+    return min(fps, most)
 
 
 class WaitingCall:

@@ -69,6 +69,7 @@ class TripleStore:
     def __init__(self, clock: Callable[[], datetime]) -> None:
         self._clock = clock
         self._domains: dict[str, _Domain] = {}
+        self._count = 0  # of triples and data, with those removed since it was counted
         self._due: datetime | None = None  # the first date at which a triple comes or goes
 
     # --- to and from a file ------------------------------------------------------------------------------------------
@@ -91,12 +92,16 @@ class TripleStore:
             place.triples = {(s, p, o): None for s, p, o in _rows(entry, "triples", 3)}
             for s, p, o, key, value in _rows(entry, "data", 5):
                 self._node(name, (s, p, o)).data[key, value] = None
+        self._count = sum(map(len, self._domains.values()))
         self._look_for_dates()
 
     # --- triples -----------------------------------------------------------------------------------------------------
 
-    def add(self, domain: str, triple: Triple) -> None:
+    def add(self, domain: str, triple: Triple, promised: bool = False) -> None:
         """Add a triple, which may be there; in the domain `LEARNING`, when and how often is kept as its data.
+
+        Args:
+            promised: Whether it comes also where there are too many: it was taken on before.
 
         Raises:
             BadValue: It has a wildcard.
@@ -106,15 +111,15 @@ class TripleStore:
         place = self._domains.setdefault(domain, _Domain())
         subject, name, value = triple
         if subject in place.nodes:
-            self._put(place.nodes[subject].data, (name, value))
+            self._put(place.nodes[subject].data, (name, value), promised)
             return
-        self._put(place.triples, triple)
+        self._put(place.triples, triple, promised)
         if domain == LEARNING:
             node = self._node(domain, triple)
             count = next((written_number(text, math.inf) or 0 for text in node.values(ADDING_COUNT)), 0)
             node.drop(ADDING_COUNT, ANY)
-            self._put(node.data, (ADDING_COUNT, str(count + 1)))
-            self._put(node.data, (ADDED_DATE, self._clock().astimezone(timezone.utc).strftime(DATE_FORMAT)))
+            self._put(node.data, (ADDING_COUNT, str(count + 1)), promised)
+            self._put(node.data, (ADDED_DATE, self._clock().astimezone(timezone.utc).strftime(DATE_FORMAT)), promised)
 
     def replace(self, domain: str, triple: Triple) -> None:
         """Add a triple instead of all of the same subject and predicate."""
@@ -196,7 +201,7 @@ class TripleStore:
             for name, text in ((name, text) for name, texts in over.items() for text in texts):
                 node.drop(name, text)
             if over[HAPPENING]:
-                self.add(LEARNING, node.triple)
+                self.add(LEARNING, node.triple, promised=True)
             if over[EXPIRATION]:
                 place.triples.pop(node.triple, None)
         self._look_for_dates()
@@ -225,10 +230,15 @@ class TripleStore:
     def _node(self, domain: str, triple: Triple) -> _Node:
         return self._domains[domain].nodes.setdefault(self.id_of(domain, triple), _Node(triple))
 
-    def _put(self, where: dict[Any, None], entry: Any) -> None:
+    def _put(self, where: dict[Any, None], entry: Any, promised: bool = False) -> None:
         most = load_sizes().kept.triples
-        if entry not in where and sum(map(len, self._domains.values())) >= most:
-            raise NaoqiError(f"{most} triples with their metadata are known at most: remove, or resetKnowledge, first")
+        if entry in where:
+            return
+        if not promised and self._count >= most:
+            self._count = sum(map(len, self._domains.values()))  # what was removed counts no more
+            if self._count >= most:
+                raise NaoqiError(f"{most} triples with metadata are known at most: remove, or resetKnowledge, first")
+        self._count += 1
         where[entry] = None
 
 

@@ -8,6 +8,7 @@ from typing import Any, Sequence
 
 from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
@@ -15,6 +16,8 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.system.resources import ResourceTree
 
 FILE, MOTORS = "resources.json", "Motors"
+# Calls that wait; with one more the oldest is given up, as libqi does not tell when who waits has gone.
+MOST_WAITING = load_sizes().clients.resource_calls
 
 
 @dataclass(frozen=True)
@@ -48,7 +51,6 @@ class ALResourceManager:
         tree = read_json(config_file(FILE))["tree"]
         tree[MOTORS] = {chain: {joint: {} for joint in model.chains[chain]} for chain in model.chain_names}
         self._tree = ResourceTree(tree)
-        self._callbacks: dict[str, str] = {}  # resource that somebody has -> method of the owner
         self._requests: list[_Request] = []
         simulation.after_tick.append(self._tick)
 
@@ -159,11 +161,13 @@ class ALResourceManager:
             if not conflicts:
                 return self._take(request)
             for conflict in conflicts:
-                told = self._callbacks.get(conflict.resource)
-                if conflict.owner and told:
-                    self._broker.call(conflict.owner, told, [conflict.resource, conflict.owner])
+                if conflict.callback:
+                    self._broker.call(conflict.owner, conflict.callback, [conflict.resource, conflict.owner])
             if timeout == 0:
                 raise NaoqiError("; ".join(map(str, conflicts)))
+            if len(self._requests) >= MOST_WAITING:
+                given_up = NaoqiError(f"given up: more than {MOST_WAITING} calls wait for resources")
+                self._requests[0].task.finish(error=given_up)
             self._requests.append(request)
             task.add_done_callback(lambda _: self._requests.remove(request))
         return task
@@ -171,9 +175,7 @@ class ALResourceManager:
     def _take(self, request: _Request) -> list[str] | None:
         """Give a call what it wants; its answer."""
         free = None if request.optional is None else self._tree.free(request.optional, request.owner)
-        names = (*request.names, *(free or ()))
-        self._tree.take(names, request.owner)
-        self._callbacks.update(dict.fromkeys(names, request.callback))
+        self._tree.take((*request.names, *(free or ())), request.owner, request.callback)
         return free
 
     def _serve(self) -> None:

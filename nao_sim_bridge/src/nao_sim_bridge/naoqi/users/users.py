@@ -16,7 +16,7 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.system.robot_file import RobotFile
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
-from nao_sim_bridge.naoqi.users.book import News, UserBook
+from nao_sim_bridge.naoqi.users.book import NOBODY, News, UserBook
 from nao_sim_bridge.naoqi.vision import face_detection
 from nao_sim_bridge.naoqi.vision.face_detection_people import KnownPeople
 
@@ -89,9 +89,11 @@ class Users:
         simulation.after_tick.append(self._tick)
         self._learn()
 
-    def track(self, face: int) -> None:
-        """Basic awareness follows this face, or nobody (-1)."""
-        names = self._faces(self._memory.get_many([face_detection.EVENT])[0])
+    def track(self, face: Any) -> None:
+        """Basic awareness follows this face, or nobody (-1); anything else that a client may have raised is ignored."""
+        if face != NOBODY and not _is_face(face):
+            return
+        names = _faces(self._memory.get_many([face_detection.EVENT])[0])
         self._change(lambda book, time: (book.see(names, time), book.track(face, time)))
 
     def ask(self, question: Callable[[UserBook], Answer]) -> Answer:
@@ -170,17 +172,13 @@ class Users:
             self._change(lambda book, time: book.learn(names, time))
 
     def _see(self, value: Any) -> None:
-        names = self._faces(value)
+        names = _faces(value)
         self._change(lambda book, time: book.see(names, time))
 
     def _tick(self, snapshot: Snapshot) -> None:
         if snapshot.time >= self._next_look:
             self._next_look = snapshot.time + PERIOD
             self._change(lambda book, time: book.pass_time(time))
-
-    def _faces(self, value: Any) -> dict[int, str]:
-        """Name by number of the faces in a value of `FaceDetected`; the last of them is what is new about names."""
-        return {int(face[1][0]): str(face[1][2]) for face in value[1][:-1]} if value else {}
 
     def _change(self, change: Callable[[UserBook, float], Any]) -> None:
         with self._lock:
@@ -198,6 +196,19 @@ class Users:
                     self._memory.raise_event(SHOULD_EXIT, True)
             elif kind in (News.OPENED, News.CLOSED):
                 self._memory.put_quietly(OPEN_SESSIONS, sessions)
+
+
+def _faces(value: Any) -> dict[int, str]:
+    """Name by number of the faces in a value of `FaceDetected`, which clients may have raised with anything."""
+    try:
+        found = [(face[1][0], face[1][2]) for face in value[1][:-1]]  # behind them is what is new about names
+    except (TypeError, LookupError):
+        return {}
+    return {number: name for number, name in found if _is_face(number) and isinstance(name, str)}
+
+
+def _is_face(number: Any) -> bool:
+    return type(number) is int and 0 <= number < 2**31  # what NAOqi's calls can carry
 
 
 def _about(numbers: Iterable[int], data: Data) -> Data:

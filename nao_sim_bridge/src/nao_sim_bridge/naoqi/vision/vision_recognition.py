@@ -170,9 +170,7 @@ class ALVisionRecognition:
                 self._pictures = self._read(self._database)
             return self._pictures
 
-    def _change(
-        self, database: str, change: Callable[[Tuple[KnownPicture, ...]], Tuple[KnownPicture, ...]]
-    ) -> None:
+    def _change(self, database: str, change: Callable[[Tuple[KnownPicture, ...]], Tuple[KnownPicture, ...]]) -> None:
         """Change a database; it is on the disk before it counts."""
         with self._lock:
             changed = change(self._known(database))
