@@ -18,6 +18,7 @@ from older_packages import make_older_packages
 from ros_stack import start_program
 from rospy import Duration
 from services import action_client, publisher, service
+from std_srvs.srv import Empty, EmptyResponse
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
@@ -50,6 +51,7 @@ class OlderTypes(unittest.TestCase):
             (hidden / name / "__init__.py").touch()
         cls.without = {**os.environ, "PYTHONPATH": f"{hidden}:{os.environ['PYTHONPATH']}"}
         rospy.set_param(SPACE + PARAMETER, "naoqi_bridge")
+        cls.teleop = rospy.Service(f"{SPACE}inhibit_walk", Empty, lambda _: EmptyResponse())
         words = ("__ns:=older", "_parts:=controller walker", "--pport", os.environ["NAO_PORT"])
         cls.driver = start_program(*NODE, *words, env=cls.environment)
 
@@ -57,6 +59,7 @@ class OlderTypes(unittest.TestCase):
     def tearDownClass(cls):
         cls.driver.terminate()
         cls.driver.wait(LIMIT)
+        cls.teleop.shutdown()
         rospy.delete_param("/older")
         sys.path.remove(str(cls.packages))
         for name in [name for name in sys.modules if name.partition(".")[0] in os.listdir(cls.packages)]:
@@ -94,6 +97,10 @@ class OlderTypes(unittest.TestCase):
         name = f"{SPACE}enable_arms_walking_srv"
         service(name, SetArmsEnabled)(left_arm=True, right_arm=True)
         self.assertEqual(rosservice.get_service_type(name), "naoqi_bridge_msgs/SetArmsEnabled")
+
+    def test_a_walker_leaves_inhibition_to_nao_teleop_where_that_offers_it(self):
+        rospy.wait_for_service(f"{SPACE}cmd_vel_srv", LIMIT)
+        self.assertEqual(rosservice.get_service_node(f"{SPACE}inhibit_walk"), rospy.get_name())
 
     def test_their_action_is_served_to_them_and_to_our_clients(self):
         from naoqi_bridge_msgs.msg import JointTrajectoryAction as Theirs

@@ -25,6 +25,7 @@ class AlreadyOffered(NaoError):
 
     def __init__(self, service: str, node: str) -> None:
         super().__init__(f"{node} offers {service} already: leave the part out there (~parts of nao_driver), or here")
+        self.node = node
 
 
 class NodeInterface:

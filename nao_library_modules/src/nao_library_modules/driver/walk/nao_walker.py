@@ -18,7 +18,7 @@ from naoqi.errors import NaoError
 
 from ...nao.joint_names import MOTION
 from ...ros.health import Report
-from ...ros.node_interface import NodeInterface
+from ...ros.node_interface import AlreadyOffered, NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
 from ..base.node import number, whenever
@@ -166,8 +166,11 @@ class NaoWalker:
         walk("cmd_step_srv", StepTargetService, lambda request: read_step(request.step), to_the_end=True)
         serve("stop_walk_srv", Empty, self._serve_stop)
         serve("head_scan_srv", Empty, self._serve_scan)
-        serve("inhibit_walk", Empty, self._serve_inhibit)
-        serve("uninhibit_walk", Empty, self._serve_uninhibit)
+        try:
+            serve("inhibit_walk", Empty, self._serve_inhibit)
+            serve("uninhibit_walk", Empty, self._serve_uninhibit)
+        except AlreadyOffered as error:
+            rospy.loginfo("%s keeps itself from walking the robot when asked, as nao_teleop does", error.node)
         serve("needs_start_walk_pose_srv", Empty, self._serve_walk_pose)
         serve("read_foot_gait_config_srv", Empty, self._serve_gait)
         serve("enable_arms_walking_srv", SetArmsEnabled, self._serve_arms)
