@@ -87,7 +87,10 @@ def _sentence(counts: Mapping[str, _Counts]) -> str:
 def _modules(counts: Mapping[str, _Counts]) -> str:
     rows = []
     for module, each in counts.items():
-        refusals = [f"{code(name)}: {why}" for name, why in each.refused.items()]
+        names: dict[str, list[str]] = {}
+        for name, why in each.refused.items():
+            names.setdefault(why, []).append(code(name))
+        refusals = [f"{', '.join(refused_)}: {why}" for why, refused_ in names.items()]
         open_ = f"not there: {', '.join(map(code, each.open))}" if each.open else ""
         rows.append(
             (

@@ -1,6 +1,7 @@
 // The head turns to the left, as a client in C++ asks for it: the same actions, from a language of one's own.
 //
-// Where the driver was started with messages:=naoqi_bridge, naoqi_bridge_msgs takes the place of nao_library_actions.
+// Where the driver speaks the older types (messages:=naoqi_bridge; or auto, the default, where that package is
+// installed), naoqi_bridge_msgs takes the place of nao_library_actions.
 // In a catkin package that depends on roscpp, actionlib and nao_library_actions, linked with ${catkin_LIBRARIES}.
 #include <actionlib/client/simple_action_client.h>
 #include <nao_library_actions/JointTrajectoryAction.h>

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -15,6 +16,8 @@ from graphlib import TopologicalSorter
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = {name: ROOT / name / "src" for name in ("nao_library_modules", "nao_sim_bridge")}
+IMPORTED_LATER = re.compile(r"(\w+(?:\.\w+)+):\w*")
+"""How files of the simulator name what they import when they need it; see `nao_sim_bridge.base.imports`."""
 
 # Import names that stand for ROS: of its Python libraries, and of every message package but our own.
 ROS_LIBRARIES = set(
@@ -116,6 +119,9 @@ def imported(path: Path) -> Iterator[str]:
             base += node.module.split(".") if node.module else []
             # "from package import part" may name a module as well as something inside one.
             yield from (".".join([*base, alias.name]) for alias in node.names)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and package[:1] == ("nao_sim_bridge",):
+            later = IMPORTED_LATER.fullmatch(node.value)
+            yield from [f"nao_sim_bridge.{later[1]}"] if later else []
 
 
 def layer_of(module: str) -> str | None:
@@ -231,6 +237,12 @@ def test_the_package_of_the_simulator_alone_loads_neither_the_engine_nor_arrays(
     program = "import sys, nao_sim_bridge; print(sorted({'pybullet', 'numpy'} & {*sys.modules}), nao_sim_bridge.NaoSim)"
     told = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True).stdout
     assert told.endswith("[] <class 'nao_sim_bridge.library.nao_sim.NaoSim'>\n")
+
+
+def test_who_knows_the_errors_of_naoqi_alone_loads_no_libqi():
+    program = "import sys, naoqi, nao_library_modules.nao.type_names; print('qi' in sys.modules, naoqi.ALProxy)"
+    told = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True).stdout
+    assert told == "False <class 'naoqi.proxy.ALProxy'>\n"
 
 
 def test_messages_and_actions_are_apart():

@@ -11,10 +11,11 @@ and typed errors that name the remedy (`naoqi.errors`).
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 import motion
 
-from .broker import ALBroker
-from .calls import Call
 from .errors import (
     BadArguments,
     BrokerError,
@@ -27,11 +28,15 @@ from .errors import (
     UnknownMethod,
     UnknownModule,
 )
-from .module import ALModule
-from .proxy import ALProxy
-from .registry import close_all, connection
-from .robot_connection import Connection
-from .state import State, Timing
+
+if TYPE_CHECKING:
+    from .broker import ALBroker
+    from .calls import Call
+    from .module import ALModule
+    from .proxy import ALProxy
+    from .registry import close_all, connection
+    from .robot_connection import Connection
+    from .state import State, Timing
 
 __all__ = [
     "ALBroker",
@@ -55,3 +60,22 @@ __all__ = [
     "connection",
     "motion",
 ]
+
+_HOMES = {
+    "ALBroker": "broker",
+    "ALModule": "module",
+    "ALProxy": "proxy",
+    "Call": "calls",
+    "Connection": "robot_connection",
+    "State": "state",
+    "Timing": "state",
+    "close_all": "registry",
+    "connection": "registry",
+}
+"""What is loaded when it is first asked for: programs that know the errors alone need no libqi."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_HOMES[name]}", __name__), name)

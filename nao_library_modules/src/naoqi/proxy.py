@@ -124,10 +124,14 @@ class ALProxy:
             return self._remote.method("stop")(*arguments)
         return self._remote.connection.tasks.stop(task)
 
-    def isRunning(self, task: int) -> bool:
-        """Whether a posted call is still in progress."""
+    def isRunning(self, *arguments: Any) -> bool:
+        """Whether a posted call is still in progress, by its number.
+
+        A module may have an `isRunning` of its own, which gets the call as that of `stop` does.
+        """
+        task = arguments[0] if len(arguments) == 1 else None
         if self._is_the_robots(task, "isRunning"):
-            return self._remote.method("isRunning")(task)
+            return self._remote.method("isRunning")(*arguments)
         return self._remote.connection.tasks.is_running(task)
 
     def ping(self) -> bool:

@@ -73,7 +73,7 @@ def refusals():
         ("setOutputVolume", {}, "volume", [101, 0.5, -1, NAN, 1e300], "is not allowed: a whole number 0..100 (%)"),
         ("playFile", {}, "str_param", ["", " "], "it is empty: the name of a file"),
         ("playFile", {}, "str_param", ["/etc/a.wav", "/home/nao/../a.wav", "../a.wav"], "leads out of the folder"),
-        ("sayToFile", HI, "file_name", ["/usr/share/naoqi/a.wav"], "leads out of the folder for sounds"),
+        ("sayToFile", HI, "file_name", ["/usr/share/naoqi/a.wav"], "leads out of the folders for sounds"),
         ("playFile", {}, "str_param", ["sounds", "a.txt"], "is not a file of a known kind: a relative name or one in"),
         ("playFile", WAV, "pan", [-2, NAN], "is not allowed: -1 (left) .. 1 (right)"),
         ("playFile", WAV, "duration", [-1, NAN, 3601], "is not allowed: 0.001..3600 s, or 0"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 
 import pytest
 
@@ -73,6 +74,8 @@ def test_a_folder_of_a_real_robot_is_listed(run, home, called):
     assert called("ssh")[-2] == LOGIN
     told = json.loads(run("files", "list", "~/recordings/", "--json").stdout)
     assert told == {"folder": "/home/nao/recordings", "files": []}
+    (home / "recordings" / os.fsdecode(b"caf\xe9.wav")).touch()
+    assert run("files", "list", "recordings").stdout == "caf\\xe9.wav  0\n"
     missing = run("files", "list", "it's; touch x")
     assert missing.exit_code == 1 and "it's; touch x" in missing.stderr and not list(home.glob("x"))
 

@@ -13,7 +13,7 @@ from nao_library_modules.cli.app import nao
 from nao_library_modules.nao.type_names import OURS, THEIRS
 from nao_library_modules.ros.bag_types import convert_bag
 from nao_library_modules.ros.driver_types import as_theirs
-from nao_library_msgs.msg import Bumper, JointAnglesWithSpeed
+from nao_library_msgs.msg import Bumper, JointAnglesWithSpeed, TactileTouch
 from naoqi.errors import NaoError
 
 
@@ -21,6 +21,13 @@ def feedback(kind):
     message = kind()
     message.status.goal_id.id = "goal 1"
     return message
+
+
+def named(kind, name):
+    """A class with the fields of another one and a name of its own."""
+    made = type(name.partition("/")[2], (kind,), {"_type": name, "__slots__": ()})
+    made.__slots__ = kind.__slots__
+    return made
 
 
 @pytest.fixture
@@ -51,8 +58,10 @@ def content(path):
 
 
 def test_an_old_bag_gets_our_types_and_keeps_bytes_times_publishers_and_compression(old, tmp_path):
-    new = tmp_path / "new.bag"
+    new, other = tmp_path / "new.bag", tmp_path / "new.bag.part"
+    other.write_text("somebody's")
     done = convert_bag(old, new, OURS)
+    assert {path.name for path in tmp_path.iterdir()} == {"old.bag", "new.bag", "new.bag.part"}
     assert dict(done.renamed) == {"naoqi_bridge_msgs/JointAnglesWithSpeed": 2, "naoqi_bridge_msgs/Bumper": 1}
     assert dict(done.refilled) == {"naoqi_bridge_msgs/JointTrajectoryActionFeedback": 1}
     assert dict(done.kept) == {"std_msgs/String": 1} and not done.foreign
@@ -81,13 +90,38 @@ def test_there_and_back_is_the_same_bag(old, tmp_path):
 
 
 def test_a_type_of_that_name_with_other_fields_stays_as_it_is_and_is_told(tmp_path):
-    stranger = type("Bumper", (String,), {"_type": "naoqi_bridge_msgs/Bumper", "__slots__": ()})
-    stranger.__slots__ = String.__slots__
+    stranger = named(String, "naoqi_bridge_msgs/Bumper")
     with rosbag.Bag(str(tmp_path / "old.bag"), "w") as bag:
         bag.write("bumper", stranger("left"), Time(1))
     done = convert_bag(tmp_path / "old.bag", tmp_path / "new.bag", OURS)
     assert dict(done.foreign) == {f"naoqi_bridge_msgs/Bumper ({String._md5sum})": 1}
     assert types_in(tmp_path / "new.bag") == {"bumper": "naoqi_bridge_msgs/Bumper"}
+
+
+def test_types_of_nao_msgs_are_renamed_where_their_sums_agree(tmp_path):
+    angles = named(JointAnglesWithSpeed, "nao_msgs/JointAnglesWithSpeed")
+    touch, stranger = named(TactileTouch, "nao_msgs/TactileTouch"), named(String, "nao_msgs/Bumper")
+    fewer = named(Bumper, "naoqi_msgs/Bumper")
+    fewer._md5sum = "4d423b2a165337e812d1b5a1cbab6b8d"  # it had no constant for the bumper at Pepper's back
+    reported = named(as_theirs(JointTrajectoryActionFeedback), "nao_msgs/JointTrajectoryActionFeedback")
+    with rosbag.Bag(str(tmp_path / "old.bag"), "w") as bag:
+        bag.write("joint_angles", angles(joint_names=["HeadYaw"]), Time(1))
+        bag.write("tactile_touch", touch(button=2), Time(2))
+        bag.write("bumper", stranger("left"), Time(3))
+        bag.write("foot", fewer(bumper=1, state=1), Time(3))
+        bag.write("joint_trajectory/feedback", feedback(reported), Time(4))
+    done = convert_bag(tmp_path / "old.bag", tmp_path / "ours.bag", OURS)
+    assert set(done.renamed) == {"nao_msgs/JointAnglesWithSpeed", "nao_msgs/TactileTouch", "naoqi_msgs/Bumper"}
+    assert set(done.foreign) == {f"nao_msgs/Bumper ({String._md5sum})"}
+    assert set(done.refilled) == {"nao_msgs/JointTrajectoryActionFeedback"}
+    convert_bag(tmp_path / "old.bag", tmp_path / "theirs.bag", THEIRS)
+    assert types_in(tmp_path / "theirs.bag") == {
+        "joint_angles": "naoqi_bridge_msgs/JointAnglesWithSpeed",
+        "tactile_touch": "naoqi_bridge_msgs/HeadTouch",
+        "bumper": "nao_msgs/Bumper",
+        "foot": "naoqi_bridge_msgs/Bumper",
+        "joint_trajectory/feedback": "naoqi_bridge_msgs/JointTrajectoryActionFeedback",
+    }
 
 
 def test_what_cannot_be_read_or_written_is_refused_and_leaves_nothing(old, tmp_path):

@@ -10,14 +10,15 @@ from older_packages import make_older_packages
 
 from nao_library_actions import msg as actions
 from nao_library_modules.nao import type_names as names_of_types
-from nao_library_modules.nao.type_names import AUTO, OURS, THEIRS, choose, generated, main, sums_in, type_names
-from nao_library_modules.ros.driver_types import as_theirs
+from nao_library_modules.nao.type_names import AUTO, OURS, THEIRS, Choice, choose, generated, main, type_names
+from nao_library_modules.ros import driver_types
+from nao_library_modules.ros.driver_types import as_theirs, spoken
 from nao_library_msgs import msg, srv
 from naoqi.errors import NaoError
 
 PACKAGE = Path(__file__).resolve().parents[3] / "nao_library_modules"
 MAKERS = {"Publisher", "Subscriber", "Service", "ActionClient", "SimpleActionClient", "ActionServer"}
-OLDER = ("naoqi_bridge_msgs", "humanoid_nav_msgs")
+OLDER = ("naoqi_bridge_msgs", "humanoid_nav_msgs", "nao_interaction_msgs")
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +36,10 @@ def installed(packages, monkeypatch):
     """The older packages as a sourced workspace has them."""
     forget()
     monkeypatch.syspath_prepend(str(packages))
+    driver_types._not_here.cache_clear()
+    monkeypatch.setattr(driver_types, "_own_choice", lambda: THEIRS)
     yield packages
+    driver_types._not_here.cache_clear()
     forget()
 
 
@@ -47,21 +51,22 @@ def carried(message, kind):
 
 
 def test_our_definitions_under_the_older_names_have_the_sums_of_the_table(installed):
-    made = {package: sums_in(generated(package)) for package in OLDER}
-    assert {**made["naoqi_bridge_msgs"], **made["humanoid_nav_msgs"]} == dict(type_names().sums)
-    assert len(type_names().sums) == 154
+    assert names_of_types.installed() == dict(type_names().sums)
+    assert len(type_names().sums) == 176
 
 
 def test_auto_speaks_what_is_installed_and_names_may_be_asked_for(installed):
-    assert choose(AUTO) == choose(THEIRS) == (THEIRS, "")
-    assert choose(OURS) == (OURS, "")
+    told = f"messages: types of the driver have the names of {', '.join(OLDER)}; messages:=nao_library keeps those of "
+    told += "nao_library_msgs"
+    assert choose(AUTO) == choose(THEIRS) == Choice(THEIRS, told)
+    assert choose(OURS) == Choice(OURS)
 
 
 def test_without_the_packages_auto_is_ours_and_their_names_are_refused(monkeypatch, capsys):
     monkeypatch.setattr(names_of_types, "generated", lambda package: [])
-    assert choose(AUTO) == (OURS, "")
+    assert choose(AUTO) == Choice(OURS)
     assert main([AUTO]) == 0 and capsys.readouterr().out == OURS
-    with pytest.raises(NaoError, match="naoqi_bridge_msgs and humanoid_nav_msgs cannot be imported.* say nao_lib"):
+    with pytest.raises(NaoError, match="naoqi_bridge_msgs cannot be imported.* say nao_lib"):
         choose(THEIRS)
     assert main([THEIRS]) == 1 and "cannot be imported" in capsys.readouterr().err
     with pytest.raises(NaoError, match="'naoqi': it is auto, nao_library or naoqi_bridge"):
@@ -83,19 +88,45 @@ def changed(installed):
         file.write_text(text)
 
 
-def test_a_package_of_another_version_is_refused_with_its_sum_and_left_alone_by_auto(changed):
+def test_of_one_package_the_names_are_spoken_and_the_others_are_told(installed, monkeypatch, capsys):
+    """The types whose fields are others decide: without them a name is all that there is to gain."""
+    there = {"naoqi_bridge_msgs"}
+    monkeypatch.setattr(names_of_types, "generated", lambda package: generated(package) if package in there else [])
+    for wanted in (AUTO, THEIRS):
+        chosen = choose(wanted)
+        assert chosen.names == THEIRS and not chosen.problem
+        assert "but for all of humanoid_nav_msgs, all of nao_interaction_msgs, not on this computer;" in chosen.told
+    assert spoken(msg.Bumper)._type == "naoqi_bridge_msgs/Bumper" and spoken(msg.StepTarget) is msg.StepTarget
+    there = {"humanoid_nav_msgs"}
+    assert main([AUTO]) == 0
+    output = capsys.readouterr()
+    assert output.out == OURS and "keeps the types of nao_library_msgs, for naoqi_bridge_msgs cannot be" in output.err
+
+
+def test_what_a_package_of_another_version_lacks_or_has_otherwise_keeps_its_name(changed):
     wanted = type_names().sums["naoqi_bridge_msgs/Bumper"]
     changed("naoqi_bridge_msgs/msg/_Bumper.py", wanted, "0" * 32)
-    with pytest.raises(NaoError, match=f"naoqi_bridge_msgs/Bumper has md5 sum {'0' * 32} instead of {wanted}"):
-        choose(THEIRS)
-    choice, warning = choose(AUTO)
-    assert choice == OURS and "naoqi_bridge_msgs/Bumper" in warning
+    changed("naoqi_bridge_msgs/srv/_GetFloat.py", "naoqi_bridge_msgs/GetFloat", "naoqi_bridge_msgs/Other")
+    chosen = choose(THEIRS)
+    assert chosen.names == THEIRS and "but for naoqi_bridge_msgs/GetFloat, not on this computer;" in chosen.told
+    assert chosen.problem.startswith(f"naoqi_bridge_msgs/Bumper has md5 sum {'0' * 32} instead of {wanted}: clients")
+    assert spoken(msg.Bumper) is msg.Bumper and spoken(msg.HeadTouch)._type == "naoqi_bridge_msgs/HeadTouch"
 
 
-def test_a_type_that_a_package_lacks_is_named(changed):
-    changed("humanoid_nav_msgs/msg/_StepTarget.py", "humanoid_nav_msgs/StepTarget", "humanoid_nav_msgs/Other")
-    with pytest.raises(NaoError, match="humanoid_nav_msgs/StepTarget is not there: another version of the package"):
+def test_types_with_other_fields_go_by_what_the_driver_says_and_are_refused_in_another_version(changed):
+    empty = type_names().sums["naoqi_bridge_msgs/JointTrajectoryFeedback"]
+    changed("naoqi_bridge_msgs/msg/_JointTrajectoryFeedback.py", empty, "0" * 32)
+    changed("naoqi_bridge_msgs/msg/_JointTrajectoryAction.py", "/JointTrajectoryAction", "/OtherAction")
+    with pytest.raises(NaoError, match=f"JointTrajectoryFeedback has md5 sum {'0' * 32} instead of {empty}: another"):
         choose(THEIRS)
+    assert choose(AUTO).names == OURS
+    assert spoken(actions.JointTrajectoryAction)._type == "naoqi_bridge_msgs/JointTrajectoryAction"
+
+
+def test_the_topic_of_the_head_has_the_type_that_nao_robot_gives_it(installed):
+    """nao_robot renamed the type and kept the topic."""
+    assert as_theirs(msg.TactileTouch)._type == "naoqi_bridge_msgs/HeadTouch"
+    assert type_names().ours["naoqi_bridge_msgs/HeadTouch"] == "nao_library_msgs/HeadTouch"
 
 
 def test_a_message_by_the_older_name_is_read_by_their_class_and_theirs_by_it(installed):

@@ -15,7 +15,7 @@ from nao_sim_bridge.naoqi.body.leds import LedNames
 from nao_sim_bridge.naoqi.memory import live_keys
 from nao_sim_bridge.naoqi.memory.extractor import MOST, Extractor, Subscription
 from nao_sim_bridge.naoqi.memory.store import EVENT, MemoryStore
-from nao_sim_bridge.naoqi.motion.walking import FAILED, MoveFailures
+from nao_sim_bridge.naoqi.motion.walking import FAILED, Moves
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 
 LEDS = load_leds()
@@ -134,7 +134,7 @@ def test_every_led_has_its_key_the_status_of_a_motor_follows_its_warmth():
     [(False, None, [0, None]), (True, None, [1, None]), (True, (0.5, 0.1, 0.2), [1, [0.5, 0.1, 0.2]])],
 )
 def test_a_move_that_fails_tells_cause_status_and_obstacle_once(memory, started, obstacle, told):
-    heard, locomotion, failures = [], SimpleNamespace(failures=[]), MoveFailures(memory)
+    heard, locomotion, failures = [], SimpleNamespace(failures=[]), Moves(memory)
     assert FAILED in memory.names(EVENT)
     memory.subscribe(FAILED, "test", lambda name, value, message: heard.append(value))
     for _ in range(3):

@@ -76,10 +76,34 @@ def test_a_triple_goes_and_another_comes_at_their_dates(store, clock):
     assert store.settle() is False and store.find(LEARNING, PIZZA) == [PIZZA]
 
 
+def test_a_count_that_is_none_begins_anew(store):
+    for text in ("\N{SUPERSCRIPT TWO}", 5000 * "9"):
+        store.add_data(LEARNING, PIZZA, "addingCount", text)
+        store.add(LEARNING, PIZZA)
+        assert store.find_data(LEARNING, PIZZA, "addingCount", ANY) == [(PIZZA, "addingCount", "1")]
+        store.clear(LEARNING)
+
+
+def test_a_triple_comes_at_its_date_also_when_there_are_too_many_by_then(store, clock):
+    store.add_data(LEARNING, PIZZA, "happeningDate", "2030-01-01T12:00:10Z")
+    for number in range(load_sizes().kept.triples - 1):
+        store.add("numbers", (str(number), "is", "a number"))
+    clock.now = START + timedelta(seconds=10)
+    assert store.settle() is True and store.find(LEARNING, PIZZA) == [PIZZA]
+    assert store.find_data(LEARNING, PIZZA, "addingCount", ANY) == [(PIZZA, "addingCount", "1")]
+    with pytest.raises(NaoqiError, match="known at most"):
+        store.add("numbers", ("pi", "is", "a number"))
+
+
 @pytest.mark.parametrize("text, durations", [("tomorrow", True), ("2030-1-1", False), ("P", True), ("PT1M", False)])
 def test_what_is_no_date_is_refused(store, text, durations):
     with pytest.raises(BadValue, match="allowed is a date such as 2030-12-31T23:59:59Z"):
         store.date("date", text, durations)
+
+
+def test_a_duration_that_nobody_can_read_is_refused(store):
+    with pytest.raises(BadValue, match="or a duration such as P1DT2H30M15S"):
+        store.date("date", f"P{5000 * '9'}D", durations=True)
 
 
 def test_all_of_it_comes_back_from_a_file(store, clock):
@@ -100,6 +124,8 @@ def test_wildcards_data_of_other_domains_and_too_much_are_refused(store):
         store.add_data("things", PIZZA, "with", "eve")
     for number in range(load_sizes().kept.triples):
         store.add("numbers", (str(number), "is", "a number"))
-    with pytest.raises(NaoqiError, match="10000 triples with their metadata are known at most"):
+    with pytest.raises(NaoqiError, match="10000 triples with metadata are known at most"):
         store.add("things", PIZZA)
     store.add("numbers", ("0", "is", "a number"))  # it is there already
+    store.remove("numbers", ("0", ANY, ANY))
+    store.add("things", PIZZA)

@@ -223,10 +223,22 @@ def test_who_waits_for_a_change_gets_the_next_value_and_who_gives_up_leaves_noth
     assert store._changes == {}
 
 
-def test_a_change_of_what_is_only_ever_read_is_refused(store):
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda store: store.next_change("Sensor"),
+        lambda store: subscribe(store, [], "Sensor", kind="MicroEvent"),
+        lambda store: store.hold("Sensor"),
+        lambda store: store.listen("Sensor", print),
+        lambda store: store.declare_event("Sensor"),
+        lambda store: store.raise_event("Sensor", 2.0),
+    ],
+)
+def test_who_waits_for_what_is_only_ever_read_is_refused_and_it_stays_what_it_is(store, ask):
     store.add_live({"Sensor": lambda: 1.0})
     with pytest.raises(NaoqiError, match="Sensor is measured when it is read and never written; read it with getData"):
-        store.next_change("Sensor")
+        ask(store)
+    assert store.kind("Sensor") == "Data" and store.subscribers("Sensor") == []
 
 
 def test_of_too_many_that_wait_for_changes_the_oldest_is_given_up(store):

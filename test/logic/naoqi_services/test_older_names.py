@@ -8,13 +8,14 @@ import re
 import pytest
 
 from nao_sim_bridge.base.config import config_file, read_json
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.api import FILE, OLDER_FILE, module_methods, qi_type
 from nao_sim_bridge.naoqi.binding.older import older_events, older_methods, warning_once
 
 TABLES = read_json(config_file(OLDER_FILE))
 METHODS = [(module, name) for module, methods in TABLES["methods"].items() for name in methods]
-ENTRY = {"last", "returns", "summary", "ways", "pick", "answer"}
+ENTRY = {"last", "returns", "summary", "ways", "pick", "answer", "refuses"}
 
 
 def placeholders(template):
@@ -38,6 +39,9 @@ def test_an_older_method_is_none_of_today_and_calls_some_of_today_as_they_are_ca
         for target, *templates in calls:
             assert len(templates) in {len(way.types) for way in today[target].overloads}
             assert placeholders(templates) <= set(overload.names)
+        assert set(older.refuses) <= set(overload.names)
+        untold = set(overload.names) - placeholders(calls) - set(older.refuses)
+        assert not older.calls or untold <= set(re.findall(r"\w+", older.method.summary.partition("not used:")[2]))
 
 
 def test_modules_and_events_that_are_no_more_have_names_that_are():
@@ -80,6 +84,17 @@ def test_arguments_go_where_they_belong_today():
         ("setMoveArmsEnabled", True, False),
         ("setMoveArmsEnabled", False, False),
     ]
+
+
+def test_what_a_call_of_today_does_not_take_is_told_or_refused():
+    assert older_methods("ALMotion")["turn"].method.summary.endswith("; not used: samplesPerStep")
+    track = older_methods("ALMotion")["updateTrackerTarget"]
+    assert track.method.summary.endswith("rad; not used: pTimeSinceDetectionMs")
+    body = Module()
+    track.bound_to(body)(0.1, 0.2, 40, False)
+    with pytest.raises(BadValue, match="pUseOfWholeBody is True, allowed is False: the head moves alone"):
+        track.bound_to(body)(0.1, 0.2, 40, True)
+    assert body.calls == [("setAngles", ["HeadYaw", "HeadPitch"], [0.2, 0.1], 0.3)]
 
 
 def test_of_a_list_the_answer_may_be_one_entry():

@@ -52,8 +52,8 @@ def test_resources_are_created_and_deleted(tree):
     assert tree.tree()[2:] == [["Ball", [["Skin", []]]], ["Goal", []]]
     with pytest.raises(NaoqiError, match="Ball has Skin in it"):
         tree.delete("Ball")
-    tree.delete("Ball", with_children=True)
-    tree.delete("Goal")
+    assert tree.delete("Ball", with_children=True) == ["Ball", "Skin"]
+    assert tree.delete("Goal") == ["Goal"]
     assert tree.tree()[2:] == []
 
 

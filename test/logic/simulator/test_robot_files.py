@@ -5,7 +5,10 @@ from __future__ import annotations
 import pytest
 
 from nao_sim_bridge.base.config import robot_files_directory
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, UnusableName, load_places
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.server.files_control import FilesControl
 
 RANDOM = "/usr/share/naoqi/wav/random.wav"
 
@@ -54,13 +57,21 @@ def test_what_the_robot_has_of_its_own_is_read_and_not_written_by_its_modules(fi
 
 
 @pytest.mark.parametrize("name", [
-    "/etc/passwd", "/", "/home", "/home/nao", "~", "/tmp", "/tmp/..", "/home/nao/../naomi/a", "/tmpx/a",
-    "/usr/share/a", "/usr/share/naoqi/../a", "~/../a", "../../../../../../etc/passwd", "/tmp/../etc/passwd",
+    "/etc/passwd", "/", "/home", "/tmp/..", "/home/nao/../naomi/a", "/tmpx/a", "/usr/share/a",
+    "/usr/share/naoqi/../a", "~/../a", "../../../../../../etc/passwd", "/tmp/../etc/passwd",
     "/home/nao\0/a", "/root/~/a",
 ])  # fmt: skip
 def test_other_paths_are_refused_with_the_robots_places(files, name):
     for way in (files.to_write, files.to_keep, files.to_read):
         with pytest.raises(OutsideRecordDir, match="places /home/nao, /tmp, /usr/share/naoqi, which are kept in "):
+            way(name)
+    assert not files.folder.exists()
+
+
+@pytest.mark.parametrize("name", ["/home/nao", "~nao/", ".", "day/..", "/data/home/nao", "/tmp/../usr/share/naoqi"])
+def test_a_place_itself_is_no_file(files, name):
+    for way in (files.to_write, files.to_keep, files.to_read):
+        with pytest.raises(UnusableName, match=f"^'{name}' is a folder, not a file$"):
             way(name)
     assert not files.folder.exists()
 
@@ -117,6 +128,31 @@ def test_what_was_made_in_any_place_can_be_forgotten(files):
         files.to_write(name).touch()
     files.forget()
     assert [path for path in files.folder.rglob("*") if path.is_file()] == []
+
+
+def test_each_of_two_uploads_of_one_file_is_whole_and_nothing_else_removes_it(files):
+    control = FilesControl(lambda: files)
+    one, other = control.begin("~/a.wav"), control.begin("/home/nao/a.wav")
+    for number, piece in ((one, b"one "), (other, b"other ")):
+        assert control.write(number, piece, False) == "/home/nao/a.wav"
+    ClientFiles(files.folder)  # of a second simulator
+    assert files.listed("~") == {}
+    files.to_write("a.wav").touch()  # by a module of the robot
+    for number, content in ((one, b"one more"), (other, b"other more")):
+        control.write(number, b"more", True)
+        assert files.to_read("a.wav").read_bytes() == content
+    files.forget()
+    assert files.listed("~") == {"a.wav": 10}
+
+
+def test_of_too_many_uploads_the_oldest_is_given_up(files):
+    control = FilesControl(lambda: files)
+    first, *others = [control.begin("a.wav") for _ in range(load_sizes().clients.uploads + 1)]
+    with pytest.raises(BadValue, match=f"number is {first}, allowed is that of a file that is begun"):
+        control.write(first, b"old", True)
+    assert len([*files.folder.iterdir()]) == len(others)
+    control.write(others[0], b"new", True)
+    assert files.to_read("a.wav").read_bytes() == b"new"
 
 
 def test_no_place_is_in_another_but_in_the_home():

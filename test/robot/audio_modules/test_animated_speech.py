@@ -6,7 +6,7 @@ import logging
 
 import numpy as np
 import pytest
-from sounds import until
+from sounds import tone, until, write
 
 from nao_sim_bridge.naoqi.speech.annotated_text import ANIMATION, CALL, MODE, TAG, Instruction, method_call, read
 
@@ -131,6 +131,11 @@ def test_sounds_are_played_from_a_text_and_the_voice_waits_where_it_is_told_to(r
     sentences.clear()
     say(f"^startSound({SOUND}, 40) One. ^waitSound({SOUND}) Two.", QUIET)
     assert sentences[0][1] < times()[1] <= sentences[1][1] + 0.2
+    write(robot, "soundsets/mine/long.wav", tone(440.0, 20.0))
+    robot.answer(robot.ALAudioPlayer.loadSoundSet("mine", _async=True))
+    say("One. ^startSound(mine/long) Two and some more. ^stopSound(mine/long) Three.", QUIET)
+    onset, end = times()
+    assert sentences[-3][1] < onset < end <= sentences[-1][1] + 0.2
     say("One. ^runSound(nao_library/nothing) Two.", QUIET)
     assert sentences[-1][0] == "Two." and "is not played: " in caplog.text and "nothing" in caplog.text
 

@@ -14,6 +14,8 @@ from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import load_moves
 from nao_sim_bridge.speech.animations import load_animations
 from nao_sim_bridge.speech.animator import Animator
+from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.gait import FeetGait
 
 LONGEST = 40.0
 SPEAKS = 0.5
@@ -117,6 +119,22 @@ def test_a_gesture_that_leans_is_stopped_half_way_and_the_robot_stands(stage):
     stage.bench.run(1.5)
     assert stage.command("LHipPitch") == pytest.approx(hip, abs=1e-6)
     assert recognise(stage.bench.model, stage.bench.now).posture == "Stand"
+
+
+def test_a_walk_has_the_legs_when_a_gesture_that_leans_is_over_or_stopped(stage):
+    robot = stage.simulation.robot
+    moving = lambda: [task.name for task in robot.motion.tasks()]  # noqa: E731
+    stage.bench.run(0.3)
+    gesture = stage.play({"gesture": "animations/Stand/Gestures/BowShort_1"})
+    stage.bench.run(0.8)
+    walk = robot.locomotion.move_to([FootPose(0.1, 0.0, 0.0)], FeetGait())
+    stage.bench.run(0.4)
+    assert moving() == ["animation", "moveTo"] and robot.locomotion.velocity() == (0.0, 0.0, 0.0)
+    gesture.kill()
+    stage.bench.run(1.2)
+    assert moving() == ["moveTo"] and robot.locomotion.velocity()[0] > 0.0
+    stage.until_over(walk)
+    assert walk.value is True and moving() == []
 
 
 LEGS = {"LHipPitch", "LHipRoll"}

@@ -167,8 +167,13 @@ def test_raw_pictures_that_had_no_room_are_told_of_at_the_end_and_the_next_ones_
 
 def test_calls_that_tell_success_are_false_for_a_handle_that_nobody_has(robot, video):
     handle = video.subscribeCamera("looker", TOP, vd.kQVGA, RGB, 15)
-    calls = [("unsubscribe",), ("releaseImage",)]
-    calls += [("setCameraParameter", 18, 1), ("setResolution", 1), ("setFrameRate", 5)]
+    calls = (
+        ("unsubscribe",),
+        ("releaseImage",),
+        ("setCameraParameter", 18, 1),
+        ("setResolution", 1),
+        ("setFrameRate", 5),
+    )
     assert [getattr(video, name)("looker", *rest) for name, *rest in calls] == [False] * len(calls)
     assert video.getSubscribers() == [handle] and video.getActiveCamera(handle) == TOP
 

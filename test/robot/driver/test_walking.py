@@ -152,6 +152,8 @@ def test_steps_queue_up_and_can_be_waited_for_or_stopped(walker, robot, until):
 
 
 def test_what_the_robot_refuses_is_told_and_not_repeated_with_every_message(walker, robot):
+    done(walker.order(FORWARD, "cmd_vel_srv from /me"))
+    robot.ALMotion.killMove()  # not by this walker, for which it walks
     robot.ALMotion.setStiffnesses("Body", 0.0)
     for order in (Target(1.0, 0.0, 0.0), FORWARD, FORWARD):
         with pytest.raises(NaoError, match="the legs are limp: wakeUp first"):

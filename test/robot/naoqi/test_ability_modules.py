@@ -46,6 +46,16 @@ def test_the_breath_moves_the_arms_of_a_robot_that_stands_until_it_is_switched_o
     assert not breath.isEnabled() and not breath.isRunning() and not robot.ALMotion.getBreathEnabled("Body")
 
 
+def test_posted_calls_have_a_number_by_which_to_ask_whether_they_run(robot):
+    speech = robot.ALSpeakingMovement
+    call = speech.pCall("wait", speech.pCall("isRunning"))
+    robot.settled()
+    assert speech.isRunning(call) is False and speech.isRunning() is False
+    assert robot.proxy("ALSpeakingMovement").isRunning() is False
+    with pytest.raises(RuntimeError, match="ALSpeakingMovement::isRunning no posted call has the id 7"):
+        speech.isRunning(7)
+
+
 def test_a_limp_robot_may_be_told_to_breathe_and_does_not(robot):
     robot.ALMotion.setStiffnesses("Body", 0.0)
     robot.ALBackgroundMovement.setEnabled(True)

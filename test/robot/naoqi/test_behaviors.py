@@ -144,6 +144,17 @@ def test_the_player_knows_the_posture_and_chooses_by_tag(manager, stiff_robot, b
         player.runTag("salute")
 
 
+def test_a_path_for_tags_is_that_of_the_posture(manager, stiff_robot, begin):
+    player = stiff_robot.ALAnimationPlayer
+    (stiff_robot.server.files.folder / "mine.yaml").write_text(MINE.replace("mine/look", "mine/Sit/look"))
+    manager.installBehavior("mine.yaml")
+    player.declarePathForTags("mine/[posture]")
+    with pytest.raises(RuntimeError, match="no animation with the tag 'mine' for the posture Stand"):
+        player.runTag("mine")
+    begin("ALAnimationPlayer", "runTag", "Sit", "mine")
+    assert manager.getRunningBehaviors() == ["mine/Sit/look"]
+
+
 def test_frames_play_timelines_files_and_what_choregraphe_has_sent(stiff_robot):
     frames, folder = stiff_robot.ALFrameManager, stiff_robot.server.files.folder / "mine"
     folder.mkdir()

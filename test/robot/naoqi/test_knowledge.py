@@ -3,7 +3,7 @@
 import pytest
 
 from nao_sim_bridge.base.record_dir import ClientFiles
-from nao_sim_bridge.naoqi.system.knowledge import ALKnowledge
+from nao_sim_bridge.naoqi.system.knowledge import FILE, ALKnowledge
 from nao_sim_bridge.naoqi.system.knowledge_store import LEARNING
 
 MEAL = (LEARNING, "user1", "eat", "pizza")
@@ -75,6 +75,16 @@ def test_another_run_of_the_simulator_knows_it_but_nothing_that_was_refused(robo
     again = ALKnowledge(ClientFiles(robot.server.files.folder))
     for one in (knowledge, again):
         assert one.queryTriplet(LEARNING, "*", "*", "*") == [list(MEAL)]
+
+
+def test_questions_are_answered_also_when_the_file_cannot_be_written(robot, knowledge):
+    knowledge.addHappeningDate(*MEAL, "2000-01-01T00:00:00Z")
+    file = robot.server.files.folder / FILE
+    file.unlink()
+    file.mkdir()
+    assert knowledge.contains(*MEAL) is True
+    with pytest.raises(RuntimeError, match="knowledge.json' cannot be written"):
+        knowledge.add("tutorial", "sky", "hasColor", "blue")
 
 
 def test_questions_without_a_question_and_wildcards_that_are_no_questions_are_refused(refuses):

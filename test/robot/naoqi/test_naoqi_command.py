@@ -88,9 +88,11 @@ def raised_again_and_again(signal, value):
 
     thread = threading.Thread(target=run)
     thread.start()
-    yield
-    ended.set()
-    thread.join()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
 
 
 @pytest.mark.parametrize(
@@ -101,8 +103,10 @@ def raised_again_and_again(signal, value):
         ("call getAngles", "MEMBER is 'getAngles', allowed is SERVICE.NAME"),
         ("call ALMotion.getAngels Head true", "getAngels"),
         ("watch ALMotion.getAngles", "ALMotion has no signal and no property getAngles"),
+        ("post Counter.step 5", "Counter.step is a property, which nao naoqi call Counter.step VALUE sets"),
+        ("post Counter.add 5", "Counter has no pCall, which begins calls: nao naoqi call Counter.add waits"),
     ],
 )
-def test_what_is_not_there_is_told(nao, words, said):
+def test_what_cannot_be_is_told(nao, counter, words, said):
     status, told = nao(*words.split())
     assert status in (1, 2) and said in told

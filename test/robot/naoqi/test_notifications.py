@@ -36,6 +36,7 @@ def test_a_click_on_the_chest_has_them_read_and_those_go_that_are_to(robot, noti
 def test_what_is_no_notification_is_refused(refuses):
     refuses("ALNotificationManager", """
         add('Hello') -> notification is 'Hello', allowed is .*message.*severity.*removeOnRead.*, or these as pairs
+        add({}) -> notification is \\{\\}, allowed is .*message
         add({'text': 'Hello'}) -> allowed is .*message.*severity
         add({'message': 'Hello', 'severity': 'loud'}) -> severity is 'loud', allowed is one of info, warning, error
         remove(7) -> unknown notification 7

@@ -64,10 +64,20 @@ def test_a_package_is_installed_told_and_removed_with_its_behaviours(robot, pack
 
 
 def test_a_newer_package_replaces_the_one_of_its_uuid(robot, packages, pack):
+    removed = robot.heard("ALBehaviorManager/BehaviorRemoved")
     packages.install(pack("turn", "bow"))
-    packages.install(pack("turn", "jump"))
+    packages.install(pack("turn", "bow/low"))
+    assert removed.get(timeout=PATIENCE) == "dance-1/bow"
+    assert robot.ALBehaviorManager.getUserBehaviorNames() == ["dance-1/bow/low", "dance-1/turn"]
+    assert len(packages.packages2()) == 1
+
+
+def test_a_package_that_cannot_be_installed_leaves_the_former_one(robot, packages, pack):
+    packages.install(pack("turn", uuid="animations"))
+    with pytest.raises(RuntimeError, match="behavior is 'animations/Stand/Gestures/Hey_1', allowed is a name that is"):
+        packages.install(pack("Stand/Gestures/Hey_1", uuid="animations"))
     robot.settled()
-    assert robot.ALBehaviorManager.getUserBehaviorNames() == ["dance-1/jump", "dance-1/turn"]
+    assert robot.ALBehaviorManager.getUserBehaviorNames() == ["animations/turn"]
     assert len(packages.packages2()) == 1
 
 

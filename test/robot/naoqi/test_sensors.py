@@ -132,6 +132,7 @@ def test_the_level_of_stiffness_is_told_when_it_changes(robot):
     for stiffness in (0.5, 1.0, 1.0):
         robot.ALMotion.setStiffnesses("Body", stiffness)
         robot.advance(0.1)
-    assert [heard.get(timeout=PATIENCE) for _ in range(2)] == [1, 2] and heard.empty()
+    assert [heard.get(timeout=PATIENCE) for _ in range(2)] == [1, 2]
+    assert [value for value, *_ in robot.ALMemory.getEventHistory("BodyStiffnessChanged")] == [1, 2]
     assert robot.ALSensors.getEventList() == ["BodyStiffnessChanged"]
     assert robot.ALMemory.getExtractorEvent("ALFsr") == ["footContactChanged"]

@@ -73,7 +73,7 @@ def test_who_is_followed_has_a_session_that_events_and_signals_tell_of(robot, se
     }
 
 
-def test_learnt_faces_are_permanent_users_with_a_binding(robot, sessions, people, meet):
+def test_learnt_faces_are_permanent_users_with_a_binding(robot, sessions, people, meet, eventually):
     learn(people, "Ada", "Bob")
     assert sessions.getPermanentUserList() == [1, 2] and sessions.areUsersPermanent([1, 2]) is True
     assert sessions.getBindingList() == ["ALFaceDetection"] and sessions.doesBindingExist("ALFaceDetection") is True
@@ -83,7 +83,8 @@ def test_learnt_faces_are_permanent_users_with_a_binding(robot, sessions, people
     meet(5, "Bob")
     assert sessions.getFocusedUser() == 2 and sessions.areUserSessionsOpen([2]) is True
     assert robot.ALFaceDetection.forgetPerson("Ada") is True
-    assert sessions.getUserList() == [2] and (robot.server.files.folder / USERS_FILE).is_file()
+    assert sessions.getUserList() == [2]
+    eventually((robot.server.files.folder / USERS_FILE).is_file, "the file of users")
 
 
 def test_dates_of_encounters(robot, sessions, people, meet):

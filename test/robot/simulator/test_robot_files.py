@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import cv2
 import pytest
 from sounds import RATE, loudness, played, tone, write
@@ -99,7 +101,7 @@ def test_grammars_preferences_and_behaviors_are_found_by_the_paths_of_the_robot(
     ("NaoSimulation", "readFile", ["~/../x", 0], "is not inside"),
     ("NaoSimulation", "readFile", ["none.wav", 0], "no file 'none.wav'"),
     ("NaoSimulation", "readFile", ["/usr/share/naoqi/wav/random.wav", -1], "offset is -1"),
-    ("NaoSimulation", "writeFile", ["/root/x", 0, b"x", True], "is not inside"),
+    ("NaoSimulation", "beginFile", ["/root/x"], "is not inside"),
 ])  # fmt: skip
 def test_what_is_none_of_the_robots_files_is_refused(robot, module, method, arguments, told):
     with pytest.raises(RuntimeError, match=told):
@@ -113,14 +115,18 @@ def test_who_runs_the_simulator_has_the_files_in_pieces(robot, here):
     while piece := bytes(files.readFile("/home/nao/tone.wav", len(content))):
         content += piece
     assert content == here("tone.wav").read_bytes() and len(content) > 1 << 20
-    assert files.writeFile("~/sounds/copy.wav", 0, content[:100], False) == "/home/nao/sounds/copy.wav"
+    number = files.beginFile("~/sounds/copy.wav")
+    assert files.writeFile(number, content[:100], False) == "/home/nao/sounds/copy.wav"
     assert files.listFiles("~/sounds") == {}
-    with pytest.raises(RuntimeError, match="offset is 99, allowed is 100"):
-        files.writeFile("~/sounds/copy.wav", 99, content[100:], True)
-    files.writeFile("~/sounds/copy.wav", 100, content[100:], True)
+    files.factoryReset()
+    files.writeFile(number, content[100:], True)
     assert files.listFiles("/home/nao/sounds") == {"copy.wav": len(content)}
     assert here("sounds/copy.wav").read_bytes() == content
-    assert files.writeFile("/usr/share/naoqi/wav/own.wav", 0, content[: 44 + RATE], True)
+    here(os.fsdecode(b"sounds/\xe9.wav")).touch()
+    assert files.listFiles("~/sounds") == {"copy.wav": len(content), "\\xe9.wav": 0}
+    with pytest.raises(RuntimeError, match=f"number is {number}, allowed is that of a file that is begun"):
+        files.writeFile(number, b"more", True)
+    files.writeFile(files.beginFile("/usr/share/naoqi/wav/own.wav"), content[: 44 + RATE], True)
     assert "own.wav" in files.listFiles("/opt/aldebaran/share/naoqi/wav") and robot.ALAudioPlayer.loadFile(
         "/usr/share/naoqi/wav/own.wav"
     )

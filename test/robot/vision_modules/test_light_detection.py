@@ -10,6 +10,13 @@ BACKLIT, BACKLIGHT = "BacklightingDetection/BacklightingDetected", "Backlighting
 WALL = "{name: wall, box: [0.02, 2.0, 2.0], color: [0.0, 0.0, 0.0], position: [0.35, 0.0, 1.0], mass: 0.0}"
 
 
+def backlit(percent):
+    """A dim room with a window that is so much of the picture."""
+    picture = np.full((240, 320, 3), 25, np.uint8)
+    picture[: 240 * percent // 100] = 255
+    return picture
+
+
 def test_darkness_is_told_once_when_it_comes_however_long_the_camera_exposes(robot, witness):
     told, reader = witness(DARK), robot.ALDarknessDetection
     reader.subscribe("test")
@@ -29,11 +36,19 @@ def test_darkness_is_told_once_when_it_comes_however_long_the_camera_exposes(rob
     assert not reader.isProcessing()
 
 
+def test_the_older_toolbox_tells_the_light_when_it_is_asked(robot):
+    ask = lambda what: robot.finish("ALVisionToolbox", what, after=0.2)  # noqa: E731
+    assert 5 <= ask("isItDark") <= 100 and ask("backlighting") == 0
+    robot.NaoSimulation.placeObject(WALL)
+    assert 128 <= ask("isItDark") <= 255
+    robot.ALVideoDevice.putImage(0, 320, 240, backlit(38).tobytes())
+    assert ask("backlighting") == 2
+    assert robot.server.simulation.cameras.streams == ()
+
+
 @pytest.mark.parametrize("window, value", [(38, 2), (0, 0)])
 def test_a_window_behind_a_dim_room_is_backlight(robot, witness, window, value):
-    picture = np.full((240, 320, 3), 25, np.uint8)
-    picture[: 240 * window // 100] = 255
-    robot.ALVideoDevice.putImage(0, 320, 240, picture.tobytes())
+    robot.ALVideoDevice.putImage(0, 320, 240, backlit(window).tobytes())
     told = witness(BACKLIT)
     robot.ALBacklightingDetection.subscribe("test")
     robot.advance(1.0)

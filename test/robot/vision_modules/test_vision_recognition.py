@@ -66,13 +66,25 @@ def test_a_file_is_looked_at_as_well_and_as_many_are_told_as_wanted(robot, pictu
     assert outlines["town"] == pytest.approx(optics.angles(130 / 640, 0.5), abs=0.02)
 
 
+def test_what_is_learnt_goes_into_the_database_of_the_call(robot, pictures):
+    calls = [
+        robot.post("ALVisionRecognition", "learnFromFile", f"{name}.png", name, []) for name in ("city", "planets")
+    ]
+    robot.handed_over("ALVisionRecognition")
+    pictures.changeDatabase("", "other")
+    assert [robot.answer(call) for call in calls] == [True, True] and pictures.getSize() == 0
+    pictures.changeDatabase("", "")
+    assert pictures.getSize() == 2
+
+
 def test_databases_are_kept_apart_and_what_cannot_be_learnt_is_told(robot, pictures):
     assert pictures.learnFromFile("city.png", "town", [])
     assert (
         pictures.learnFromFile("city.png", "city", []) is False
         and pictures.learnFromFile("plain.png", "wall", []) is False
     )
-    assert pictures.learnFromFile("city.png", "city", [], True, True) and pictures.getSize() == 1
+    assert pictures.learnFromFile("/home/nao/city.png", "city", []) is False
+    assert pictures.learnFromFile("~/city.png", "city", [], True, True) and pictures.getSize() == 1
     assert pictures.changeDatabase("/home/nao/mine", "toys") and pictures.getSize() == 0
     assert pictures.getParam("db_path") == "/home/nao/mine" and pictures.getParam("db_name") == "toys"
     assert pictures.changeDatabase("", "") and pictures.getParam("db_name") == "current" and pictures.getSize() == 1

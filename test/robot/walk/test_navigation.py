@@ -107,11 +107,36 @@ def test_what_a_nao_cannot_do_is_refused_with_the_reason(robot):
         ("explore", (2.0,), "no laser or 3D camera"),
         ("navigateToInMap", (1.0, 0.0), "navigateTo goes by the sonars"),
         ("findFreeZone", (0.6, 0.5), "sonars see ahead only"),
-        ("navigateTo", (3.0, 0.5), "allowed is a place nearer than 3 m"),
         ("moveAlong", (["Line", [1.0, 0.0]],), "trajectory is"),
     ):
         with pytest.raises(RuntimeError, match=f"^ALNavigation::{method} .*{words}"):
             robot.ALNavigation.call(method, *arguments)
+
+
+def test_a_move_of_ALMotion_is_neither_watched_nor_stopped_for_a_way_before_it(robot, hear):
+    seen = hear("ObstacleDetected")
+    robot.ALNavigation.setSecurityDistance(0.6)
+    way = robot.post("ALNavigation", "navigateTo", 2.0, 0.0)
+    robot.handed_over("ALNavigation")
+    robot.advance(2.0)
+    robot.ALMotion.setExternalCollisionProtectionEnabled("Move", False)
+    robot.ALMotion.moveToward(0.5, 0.0, 0.0)
+    robot.advance(0.3)
+    assert robot.answer(way) is False
+    place(robot, "wall", 2.0, where(robot)[0] + 0.5, 0.0)
+    robot.ALNavigation.stopNavigateTo()
+    robot.advance(2.0)
+    assert robot.ALMotion.moveIsActive() and seen == []
+
+
+def test_a_goal_that_is_too_far_away_is_not_gone_to(robot, go, caplog):
+    assert go("navigateTo", 3.0, 0.5) is False and "allowed is a place nearer than 3 m" in caplog.text
+
+
+def test_soft_legs_prevent_a_way_without_an_error_and_say_so_once(robot, go):
     robot.ALMotion.setStiffnesses("Body", 0.0)
-    with pytest.raises(RuntimeError, match="wakeUp first"):
-        robot.ALNavigation.navigateTo(0.5, 0.0)
+    failed = []
+    robot.server.memory.listen("ALMotion/MoveFailed", failed.append)
+    assert robot.ALMotion.moveTo(0.2, 0.0, 0.0) is False
+    assert [go(name, 0.5, 0.0, *theta) for name, theta in (("navigateTo", ()), ("moveTo", (0.0,)))] == [False, None]
+    assert len(failed) == 3 and all("wakeUp first" in cause and status == 0 for cause, status, _ in failed)

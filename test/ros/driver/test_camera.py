@@ -140,6 +140,11 @@ class DriverCamera(unittest.TestCase):
             self.robot.advance(1.0)
         self.assertEqual(counts[0], counts[1])
 
+    def test_pictures_come_under_the_names_of_nao_robots_launch_files_too(self):
+        with Look(f"{FOLDERS[TOP]}camera/") as look:
+            image, info = look.now()
+        self.assertEqual((image.width, info.width, info.header.frame_id), (320, 320, FRAMES[TOP]))
+
     def test_diagnostics_tell_what_comes(self):
         with Look(FOLDERS[TOP]) as look, self.robot.at_speed(0.5):
             look.now()

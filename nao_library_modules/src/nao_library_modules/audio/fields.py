@@ -9,7 +9,7 @@ from typing import List
 from ..base.errors import BadGoal
 from ..base.field_checks import CONTROL, LONGEST_NAME, require_known, require_text
 from ..functions.fields import Annotated, Field, flag, free, whole, word
-from ..nao.robot_files import READ, is_in
+from ..nao.robot_files import HOME, READ, full_path, is_in
 
 OUTPUT_RATES = (16000, 22050, 44100, 48000)
 RATES = f"one of {', '.join(map(str, OUTPUT_RATES))} (Hz)"
@@ -22,7 +22,9 @@ SOUND_FILES = (".wav", ".ogg", ".flac", ".mp3")
 
 
 def require_file(field: str, name: str, suffixes: Sequence[str], folders: Sequence[str] = READ) -> str:
-    """Name of a file on the robot: relative to the home of its user, or in one of the folders; the robot knows it.
+    """Check the name of a file on the robot, relative to the home of its user or in one of the folders.
+
+    Whether the file is there is for the robot to say.
 
     Args:
         field: Of the message, for refusals.
@@ -31,14 +33,17 @@ def require_file(field: str, name: str, suffixes: Sequence[str], folders: Sequen
         folders: Where absolute names may lead.
 
     Returns the name without blanks around it.
+
+    Raises:
+        BadGoal: It is no such name.
     """
     path = require_text(field, name, "the name of a file")
     allowed = allowed_files(suffixes, folders)
     if CONTROL.search(path):
         raise BadGoal(field, name, allowed, problem=f"{name!r} has characters that names do not have")
-    if ".." in PurePosixPath(path).parts or (path.startswith("/") and not is_in(path, folders)):
-        raise BadGoal(field, name, allowed, problem=f"{name!r} leads out of the folder for sounds")
-    if path.startswith("~") or "\\" in path:
+    if ".." in PurePosixPath(path).parts or not is_in(path, folders):
+        raise BadGoal(field, name, allowed, problem=f"{name!r} leads out of the folders for sounds")
+    if full_path(path).startswith(f"{HOME}/~") or "\\" in path:
         raise BadGoal(field, name, allowed, problem=f"{name!r} is not the name of a file")
     if max(map(len, PurePosixPath(path).parts)) > LONGEST_NAME:
         raise BadGoal(field, name, f"up to {LONGEST_NAME} characters", problem="the name is too long")

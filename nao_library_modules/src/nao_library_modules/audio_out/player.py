@@ -11,6 +11,7 @@ from ..base.field_checks import require_known
 from ..base.suggestion import did_you_mean
 from ..functions.chain import checked_by
 from ..functions.parts import Part
+from ..nao.robot_files import without_sign
 from ..server.nao_basic import NaoBasic
 from .fields import (
     Address,
@@ -70,7 +71,7 @@ class PlayerFunctions(Part):
     ) -> None:
         """Play a file, and wait until it is over."""
         name = str_param.strip()
-        self._play(name, "playFile", name, *_level(volume, pan), duration=duration, background=background)
+        self._play(name, "playFile", without_sign(name), *_level(volume, pan), duration=duration, background=background)
 
     @checked_by(_check_background)
     def play_file_in_loop(
@@ -78,7 +79,9 @@ class PlayerFunctions(Part):
     ) -> None:
         """Play a file again and again, for `duration` or, with 0, until it is stopped."""
         name, endless = str_param.strip(), background or duration == 0.0
-        self._play(name, "playFileInLoop", name, *_level(volume, pan), duration=duration, background=endless)
+        self._play(
+            name, "playFileInLoop", without_sign(name), *_level(volume, pan), duration=duration, background=endless
+        )
 
     @checked_by(_check_background)
     def play_file_from_position(
@@ -92,7 +95,9 @@ class PlayerFunctions(Part):
     ) -> None:
         """Play a file from a time on, and wait until it is over."""
         name, level = str_param.strip(), _level(volume, pan)
-        self._play(name, "playFileFromPosition", name, position, *level, duration=duration, background=background)
+        self._play(
+            name, "playFileFromPosition", without_sign(name), position, *level, duration=duration, background=background
+        )
 
     @checked_by(_check_background)
     def play_web_stream(
@@ -120,7 +125,7 @@ class PlayerFunctions(Part):
     def load_file(self, str_param: SoundFile) -> int:
         """Load a file, so that it begins to play at once; answers the id of the sound."""
         name = str_param.strip()
-        number = int(self.call("loadFile", name))
+        number = int(self.call("loadFile", without_sign(name)))
         self.loaded.add(name, number)
         return number
 

@@ -14,6 +14,7 @@ from ..audio.sound_card import decimal, put_back
 from ..base.errors import BadGoal
 from ..functions.chain import checked_by
 from ..functions.parts import Part
+from ..nao.robot_files import without_sign
 from ..server.nao_basic import NaoBasic
 from .fields import (
     Background,
@@ -122,7 +123,7 @@ class SpeechFunctions(Part):
         file = file_name.strip()
         self._require_new_file(file, overwrite)  # which an earlier function may have written
         with self._spoken_with(language, voice, volume):
-            self._sounds.sound(SPEECH, "sayToFile", _tagged(str_param, speed, pitch), file)
+            self._sounds.sound(SPEECH, "sayToFile", _tagged(str_param, speed, pitch), without_sign(file))
         duration = self._length(file)
         self._sounds.note_file(file, duration)
         return duration
@@ -217,7 +218,7 @@ class SpeechFunctions(Part):
             return
         player = self._module.robot.proxy(PLAYER)
         try:
-            sound = self._module.call(player, "loadFile", file)
+            sound = self._module.call(player, "loadFile", without_sign(file))
         except NaoError:  # there is none that could be played
             return
         self._module.call_now(player, "unloadFile", sound)
@@ -228,7 +229,7 @@ class SpeechFunctions(Part):
         """Length of a file on the robot, s; 0 if the robot does not report it."""
         player = self._module.robot.proxy(PLAYER)
         try:
-            sound = self._module.call(player, "loadFile", file)
+            sound = self._module.call(player, "loadFile", without_sign(file))
             try:
                 return decimal(self._module.call(player, "getFileLength", sound))
             finally:

@@ -89,7 +89,7 @@ class WholeFile(io.RawIOBase):
         self._trouble: FileTrouble | None = None
         with self._telling():
             path.parent.mkdir(parents=True, exist_ok=True)
-            draft = path.parent / f".{uuid.uuid4().hex}{DRAFT}"
+            draft = draft_in(path.parent)
             self._file = draft.open("xb", buffering=0)  # whose rights are those of the umask
             self._draft: Path | None = draft
             with suppress(OSError):  # not every file system knows locks
@@ -198,6 +198,11 @@ class WholeFile(io.RawIOBase):
         if self._draft is not None:
             self._draft.unlink(missing_ok=True)
         super().close()
+
+
+def draft_in(folder: Path) -> Path:
+    """Path of a file that is not whole yet: no other one has it, and `tidy` removes it where nobody writes it."""
+    return folder / f".{uuid.uuid4().hex}{DRAFT}"
 
 
 def write_whole(path: Path, content: str | bytes, numbered: bool = False) -> Path:

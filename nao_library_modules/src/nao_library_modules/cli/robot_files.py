@@ -84,13 +84,10 @@ class SimulatedFiles:
 
     def put(self, source: Path, path: str) -> None:
         with source.open("rb") as file:
-            offset, piece = 0, file.read(PIECE)
-            last = False
-            while not last:
-                following = file.read(PIECE)
-                last = not following
-                self._robot.call(SIMULATION, "writeFile", path, offset, piece, last)
-                offset, piece = offset + len(piece), following
+            number = self._robot.call(SIMULATION, "beginFile", path)
+            while piece := file.read(PIECE):
+                self._robot.call(SIMULATION, "writeFile", number, piece, False)
+            self._robot.call(SIMULATION, "writeFile", number, b"", True)
 
     def _there(self, folder: str) -> list[Entry] | None:
         """What is in a folder; None where there is no such folder, or none may be."""
@@ -107,7 +104,7 @@ class FilesOverSsh:
 
     Args:
         host: Name or IP of the robot.
-        limit: s that each of its programs may take; None for ever.
+        limit: s that each of its programs may take, with the time in which the password is typed; None for ever.
         quiet: Whether scp tells nothing of how far it is.
     """
 
@@ -148,7 +145,13 @@ class FilesOverSsh:
     def _run(self, command: list[str], output: int | None) -> str:
         try:
             done = subprocess.run(  # no shell on this computer
-                command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.PIPE, text=True, timeout=self._limit
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.PIPE,
+                encoding="utf-8",
+                errors="backslashreplace",  # names on the robot are any bytes
+                timeout=self._limit,
             )
         except FileNotFoundError:
             raise CommandFailed(

@@ -113,10 +113,8 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
 
     ROS API:
         Parameters `~pip`, `~pport`: the robot; `nao_driver/messages`, see `driver_types`; `~parts` ("all"): words of
-        `PARTS`; `~watches` (false): whether the node
-        stops what others leave going that die, for one whose parts set nothing going themselves. Publishes
-        `/diagnostics`. Each part has the topics, services, actions and parameters that it has as a node of its own,
-        under the same names.
+        `PARTS`; `~watches` (false): as `run_module` takes it. Publishes `/diagnostics`. Each part has the topics,
+        services, actions and parameters that it has as a node of its own, under the same names.
     """
     options = start_node(NAME, description, argv)
     try:

@@ -21,7 +21,7 @@ from ..base.suggestion import did_you_mean
 
 FILE = "nao_robot_types.json"
 AUTO, OURS, THEIRS = "auto", "nao_library", "naoqi_bridge"
-"""What `messages` may be: of what is installed; packages of this library; naoqi_bridge_msgs and humanoid_nav_msgs."""
+"""What `messages` may be: by what is installed; names of this library; those of naoqi_bridge_msgs and its like."""
 LONGEST_LIST = 5
 """Types that an error names one by one."""
 _SECTION = re.compile(r"^=+\nMSG: (\S+)\n", re.MULTILINE)
@@ -36,20 +36,24 @@ class TypeNames:
 
     Attributes:
         theirs: Type of ours -> its name in the older packages.
-        ours: The other way round.
+        ours: The other way round, also from words that types had there before.
         sums: Type of theirs -> md5 sum.
         definitions: Type of theirs that has other fields than ours -> these fields, as in a .msg file.
+        former: Package that was there before -> the one of theirs that took its types over.
+        former_sums: Sum of a definition that had fewer constants -> that of the present one, with the same fields.
     """
 
     theirs: Mapping[str, str]
     ours: Mapping[str, str]
     sums: Mapping[str, str]
     definitions: Mapping[str, str]
+    former: Mapping[str, str]
+    former_sums: Mapping[str, str]
 
     @property
     def packages(self) -> list[str]:
-        """The older packages."""
-        return sorted({name.partition("/")[0] for name in self.ours}, reverse=True)
+        """The older packages; the first has the types whose fields are others."""
+        return list(dict.fromkeys(name.partition("/")[0] for name in self.sums))
 
     def their_definition(self, text: str) -> str:
         """The definition of a type of ours, with all types in it, as the older packages have it.
@@ -77,28 +81,58 @@ def type_names() -> TypeNames:
         for own_package, types in packages.items():
             theirs.update({f"{own_package}/{name}": f"{package}/{name}" for name in types})
             sums.update({f"{package}/{name}": value for name, value in types.items()})
-    return TypeNames(theirs, {name: own for own, name in theirs.items()}, sums, content["definitions"])
+    ours = {name: own for own, name in theirs.items()}
+    theirs.update(content["renamed"])
+    for own, name in content["renamed"].items():
+        ours[f"{name.partition('/')[0]}/{own.partition('/')[2]}"] = own
+    return TypeNames(theirs, ours, sums, content["definitions"], content["former"], content["former_sums"])
 
 
-def choose(wanted: object) -> tuple[str, str]:
-    """Which names a driver speaks: OURS or THEIRS, and why it is not THEIRS where AUTO found packages that do not fit.
+@dataclass(frozen=True)
+class Choice:
+    """What a driver speaks.
 
-    Raises NaoError if there is no such choice, or the packages that were named are not there or do not fit.
+    Attributes:
+        names: OURS or THEIRS.
+        told: Whose names that are, and which types keep those of this library; empty where nobody would ask.
+        problem: What will not work with it; empty if nothing.
+    """
+
+    names: str
+    told: str = ""
+    problem: str = ""
+
+
+def choose(wanted: object) -> Choice:
+    """Which names a driver speaks.
+
+    With THEIRS, types keep their names here that the packages on this computer lack or have otherwise: of nearly all
+    nothing but the name depends on it. The types whose fields are others have to be there.
+
+    Raises NaoError if there is no such choice, or what THEIRS needs is not there.
     """
     if wanted not in (AUTO, OURS, THEIRS):
         hint = did_you_mean(str(wanted), (AUTO, OURS, THEIRS))
         raise NaoError(f"messages {wanted!r}: it is {AUTO}, {OURS} or {THEIRS}{hint}")
     if wanted == OURS:
-        return OURS, ""
-    there = {package: generated(package) for package in type_names().packages}
-    if wanted == AUTO and not any(there.values()):
-        return OURS, ""
-    problem = _problem(there)
+        return Choice(OURS)
+    found = installed()
+    problem = _problem(found)
     if not problem:
-        return THEIRS, ""
-    if wanted == AUTO:
-        return OURS, f"the driver keeps the types of nao_library_msgs, for {problem}"
-    raise NaoError(f"messages {THEIRS}: {problem}; install or build what is missing, or say {OURS}")
+        return _their_choice(found)
+    if wanted == THEIRS:
+        raise NaoError(f"messages {THEIRS}: {problem}; install or build what is missing, or say {OURS}")
+    return Choice(OURS, problem=f"the driver keeps the types of nao_library_msgs, for {problem}" if found else "")
+
+
+def installed() -> dict[str, str]:
+    """Type -> md5 sum, of the older packages that are on this computer."""
+    return {name: value for package in type_names().packages for name, value in sums_in(generated(package)).items()}
+
+
+def unfit(found: Mapping[str, str]) -> dict[str, str]:
+    """Type of theirs that is not as in the table -> its md5 sum, empty if it is not there. `found`: as `installed`."""
+    return {name: found.get(name, "") for name, value in type_names().sums.items() if found.get(name) != value}
 
 
 def generated(package: str) -> list[Path]:
@@ -126,20 +160,31 @@ def _classes(text: str) -> Iterator[tuple[str, str]]:
             yield found[0][1], found[1][1]  # type: ignore[index]
 
 
-def _problem(there: Mapping[str, Sequence[Path]]) -> str:
-    """What is wrong with the older packages; empty if nothing is."""
-    absent = [package for package, files in there.items() if not files]
-    if absent:
-        return f"{' and '.join(absent)} cannot be imported: not built, or its workspace not sourced"
-    wanted, found = type_names().sums, {}
-    for files in there.values():
-        found.update(sums_in(files))
-    missing = [name for name in wanted if name not in found]
-    if missing:
-        return f"{_some(missing)} {'is' if len(missing) == 1 else 'are'} not there: another version of the package"
-    other = [name for name, value in wanted.items() if found[name] != value]
-    wrong = [f"{name} has md5 sum {found[name]} instead of {wanted[name]}" for name in other]
-    return f"{_some(wrong)}: another version of the package" if wrong else ""
+def _problem(found: Mapping[str, str]) -> str:
+    """Why their names cannot be spoken; empty if they can."""
+    package, *_ = type_names().packages
+    if not any(name.startswith(f"{package}/") for name in found):
+        return f"{package} cannot be imported: not built, or its workspace not sourced"
+    wrong = {name: value for name, value in unfit(found).items() if name in type_names().definitions}
+    return f"{_differing(wrong) or _some(list(wrong)) + ' is not there'}: another version of {package}" if wrong else ""
+
+
+def _their_choice(found: Mapping[str, str]) -> Choice:
+    packages, wrong = type_names().packages, unfit(found)
+    there = [package for package in packages if any(name.startswith(f"{package}/") for name in found)]
+    halves = {f"{name}{half}" for name in wrong for half in ("Request", "Response")}
+    absent = [f"all of {package}" for package in packages if package not in there]
+    absent += [name for name in wrong.keys() - halves if not wrong[name] and name.partition("/")[0] in there]
+    but = f", but for {_some(sorted(absent))}, not on this computer" if absent else ""
+    names = f"{', '.join(there)}{but}; messages:={OURS} keeps those of nao_library_msgs"
+    differing = _differing(wrong)
+    problem = f"{differing}: clients with another version of a type cannot connect" if differing else ""
+    return Choice(THEIRS, f"messages: types of the driver have the names of {names}", problem)
+
+
+def _differing(wrong: Mapping[str, str]) -> str:
+    wanted = type_names().sums
+    return _some([f"{name} has md5 sum {value} instead of {wanted[name]}" for name, value in wrong.items() if value])
 
 
 def _some(names: Sequence[str]) -> str:
@@ -150,13 +195,13 @@ def _some(names: Sequence[str]) -> str:
 def main(arguments: Sequence[str]) -> int:
     """Print the choice for a word, without the end of a line: it becomes a parameter. Returns the exit status."""
     try:
-        choice, warning = choose(arguments[0] if arguments else AUTO)
+        choice = choose(arguments[0] if arguments else AUTO)
     except NaoError as error:
         print(error, file=sys.stderr)
         return 1
-    if warning:
-        print(warning, file=sys.stderr)
-    print(choice, end="")
+    if choice.names == OURS and choice.problem:  # else the driver tells it
+        print(choice.problem, file=sys.stderr)
+    print(choice.names, end="")
     return 0
 
 

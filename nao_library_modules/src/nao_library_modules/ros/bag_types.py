@@ -19,7 +19,7 @@ import rosbag
 
 from naoqi.errors import NaoError
 
-from ..base.whole_file import move_whole, require_new
+from ..base.whole_file import draft_in, move_whole, require_new
 from ..nao.type_names import OURS, type_names
 from .driver_types import as_theirs
 
@@ -32,7 +32,7 @@ class Conversion:
         renamed: Those that only have another name now.
         refilled: Those that have other fields now: what both have was kept.
         kept: Those of other types, as they were.
-        foreign: Those whose type is called as one of the table and has other fields, as they were; with the sum.
+        foreign: Those whose type is called as one of the table and is defined otherwise, as they were; with the sum.
     """
 
     renamed: Counter[str] = field(default_factory=Counter)
@@ -56,20 +56,20 @@ def convert_bag(source: Path, target: Path, names: str, overwrite: bool = False)
     target = require_new(target, overwrite)
     if target.exists() and source.exists() and target.samefile(source):
         raise NaoError(f"{target} is the bag itself: another name for the new one")
-    part = target.with_name(f"{target.name}.part")
+    draft = draft_in(target.parent)
     done = Conversion()
     try:
         with rosbag.Bag(str(source)) as old:
             compression = old.get_compression_info().compression
-            with rosbag.Bag(str(part), "w", compression=compression) as new:
+            with rosbag.Bag(str(draft), "w", compression=compression) as new:
                 _copy(old, new, _Names(names), done)
-        move_whole(part, target, overwrite)
+        move_whole(draft, target, overwrite)
     except rosbag.ROSBagUnindexedException:
         raise NaoError(f"{source} has no index, as one whose recording was cut off: rosbag reindex it first") from None
     except (rosbag.ROSBagException, OSError, genpy.MessageException) as error:
         raise NaoError(f"{source} cannot be converted: {error}") from error
     finally:
-        part.unlink(missing_ok=True)
+        draft.unlink(missing_ok=True)
     return done
 
 
@@ -77,21 +77,32 @@ class _Names:
     """The new class of each type."""
 
     def __init__(self, names: str) -> None:
-        table = type_names()
+        self._table = type_names()
         self._to_ours = names == OURS
-        self._names = table.ours if self._to_ours else table.theirs
-        self._classes: dict[str, Any] = {}
+        self._classes: dict[str, tuple[Any, Any] | None] = {}
 
     def classes(self, name: str) -> tuple[Any, Any] | None:
         """The class of a type and the one that takes its place; None for a type that keeps its name."""
-        if name not in self._names:
-            return None
         if name not in self._classes:
-            package, _, word = (self._names[name] if self._to_ours else name).partition("/")
-            ours = getattr(importlib.import_module(f"{package}.msg"), word)
-            pair = (ours, as_theirs(ours))
-            self._classes[name] = pair[::-1] if self._to_ours else pair
+            self._classes[name] = self._pair(name)
         return self._classes[name]
+
+    def _pair(self, name: str) -> tuple[Any, Any] | None:
+        own = self._own(name)
+        package, _, word = own.partition("/")
+        ours = getattr(importlib.import_module(f"{package}.msg"), word, None) if own else None
+        if ours is None:
+            return None
+        theirs = as_theirs(ours) if own in self._table.theirs else ours
+        before, after = ours if own == name else theirs, ours if self._to_ours else theirs
+        return (before, after) if after._type != name else None
+
+    def _own(self, name: str) -> str:
+        """Our name of a type; empty where it has none."""
+        package, _, word = name.partition("/")
+        if package in self._table.former:
+            return self._table.ours.get(f"{self._table.former[package]}/{word}", "")
+        return self._table.ours.get(name, name if name in self._table.theirs else "")
 
 
 def _copy(old: Any, new: Any, names: _Names, done: Conversion) -> None:
@@ -107,7 +118,7 @@ def _copy(old: Any, new: Any, names: _Names, done: Conversion) -> None:
             new.write(topic, raw, time, raw=True, connection_header=header)
             continue
         before, after = pair
-        if md5sum != before._md5sum:
+        if type_names().former_sums.get(md5sum, md5sum) != before._md5sum:
             done.foreign[f"{name} ({md5sum})"] += 1
             new.write(topic, raw, time, raw=True, connection_header=header)
             continue

@@ -11,15 +11,12 @@ ROS API:
 
 from __future__ import annotations
 
-import logging
 from functools import lru_cache
 from typing import Any
 
 import rospy
 
-from ..nao.type_names import AUTO, OURS, THEIRS, choose, type_names
-
-log = logging.getLogger(__name__)
+from ..nao.type_names import AUTO, OURS, THEIRS, choose, installed, type_names, unfit
 
 PARAMETER = "nao_driver/messages"
 ACTION_SLOTS = {"action_goal", "action_result", "action_feedback"}
@@ -29,7 +26,8 @@ def spoken(kind: Any, namespace: str = "") -> Any:
     """The class to make a topic, a service or an action of the driver with. Any thread.
 
     Messages of `kind` can be published on such a topic, and those that come from it are of a class derived from `kind`;
-    where the older packages have other fields, they have these fields alone.
+    where the older packages have other fields, they have these fields alone. A type that the older packages of this
+    computer lack, as those of another version, keeps its name: nobody here could look the other one up.
 
     Args:
         kind: A message, service or action of this library, or of anybody else: then it stays as it is.
@@ -41,18 +39,25 @@ def spoken(kind: Any, namespace: str = "") -> Any:
     if kind._type not in type_names().theirs:
         return kind
     choice = _own_choice() if not namespace else _choice(rospy.get_param(namespace + PARAMETER, AUTO))
-    return as_theirs(kind) if choice == THEIRS else kind
+    if choice == OURS:
+        return kind
+    names = type_names()
+    name = names.theirs[kind._type]
+    is_only_a_name = names.sums[name] == kind._md5sum
+    return kind if is_only_a_name and name in _not_here() else as_theirs(kind)
 
 
 def require_types() -> None:
-    """Have a driver begin only with types that other programs can have as well.
+    """Have a driver begin only with types that other programs can have as well, and tell which names they have.
 
     Raises NaoError if the parameter asks for packages that are not there or do not fit, or is none of its words. A
     client needs no packages for the names, and is not held up by them.
     """
-    _, warning = choose(_own_parameter())
-    if warning:
-        log.warning("%s", warning)
+    choice = choose(_own_parameter())
+    if choice.told:
+        rospy.loginfo("%s", choice.told)
+    if choice.problem:
+        rospy.logwarn("%s", choice.problem)
 
 
 def _own_parameter() -> Any:
@@ -66,7 +71,14 @@ def _own_choice() -> str:
 
 
 def _choice(wanted: Any) -> str:
-    return wanted if wanted in (OURS, THEIRS) else choose(wanted)[0]
+    return wanted if wanted in (OURS, THEIRS) else choose(wanted).names
+
+
+@lru_cache(maxsize=None)
+def _not_here() -> frozenset[str]:
+    """Types of theirs that the older packages of this computer lack or have otherwise; none if none are there."""
+    found = installed()
+    return frozenset(unfit(found) if found else ())
 
 
 @lru_cache(maxsize=None)

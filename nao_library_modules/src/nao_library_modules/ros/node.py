@@ -95,8 +95,8 @@ def run_module(
         description: What `--help` says.
         argv: Arguments, those of the process by default.
         parameters: Name -> default of further private parameters, which the module takes by name.
-        watches: Whether the node stops what others leave going that die, and tells a new ROS master of all nodes; for
-            nodes that set nothing going themselves.
+        watches: Whether the node stops what nodes that have died left going, and tells a new ROS master of all nodes;
+            for nodes that set nothing going themselves.
 
     Returns:
         Exit status.

@@ -127,7 +127,7 @@ class ClientFiles:
         Raises:
             OutsideRecordDir: The name leads out of the robot's places.
             NoSuchFile: There is no such file.
-            UnusableName: It is too long.
+            UnusableName: It is too long, or that of a place itself.
         """
         place, inner = self._named(name)
         candidates = [_inside(self.folder, f"{place.folder}/{inner}")]
@@ -219,7 +219,7 @@ class ClientFiles:
 
         Raises:
             OutsideRecordDir: It leads to none of them.
-            UnusableName: It is too long.
+            UnusableName: It is too long, or that of a place which may not be named.
         """
         _check_length(name)
         if name and "\0" not in name:
@@ -228,7 +228,9 @@ class ClientFiles:
                 for known in (place.path, *place.other_names):
                     if full.startswith(known + "/"):
                         return place, full[len(known) + 1 :]
-                    if folder and full == known:
+                    if full == known:
+                        if not folder:
+                            raise UnusableName(f"{name!r} is a folder, not a file")
                         return place, "."
         raise self._outside(name)
 

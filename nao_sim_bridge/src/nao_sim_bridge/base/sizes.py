@@ -123,6 +123,8 @@ class ClientSizes:
     series: int
     faces: int
     things: int
+    uploads: int
+    resource_calls: int
 
 
 @dataclass(frozen=True)

@@ -49,14 +49,16 @@ class WholeFile(io.RawIOBase):
 
     Args:
         path: Where; folders on the way are made.
+        hidden: Whether it gets its name only when it is closed.
 
     Raises:
         FileTrouble: There can be no such file.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, hidden: bool = False) -> None:
         super().__init__()
         self.path = self._target = path
+        self._hidden = hidden
         self._waiting: list[tuple[int, bytes]] = []
         self._place = self._end = self._length = 0
         self._trouble: FileTrouble | None = None
@@ -99,7 +101,7 @@ class WholeFile(io.RawIOBase):
         if self._waiting:
             with self._telling():
                 self._put()
-                if self._draft is not None:
+                if self._draft is not None and not self._hidden:
                     self._show()
 
     def recover(self) -> None:

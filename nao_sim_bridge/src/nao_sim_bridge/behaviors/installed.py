@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import replace
 from functools import lru_cache
-from typing import Iterable, Mapping
+from typing import Collection, Iterable, Mapping
 
 from nao_sim_bridge.base.config import config_file
 from nao_sim_bridge.base.errors import BadValue, ConfigError, NotAllowed, UnknownName
@@ -82,8 +82,10 @@ class InstalledBehaviors:
             raise BadValue("behavior", name, f"one of {len(fitting)} behaviours in full: {names}...")
         raise UnknownName("behavior", name, known)
 
-    def install(self, behaviors: Iterable[Behavior], overwrite: bool = True) -> tuple[list[str], list[str]]:
-        """Add behaviours; names of those that are new, and of those that have replaced others.
+    def install(
+        self, behaviors: Iterable[Behavior], overwrite: bool = True, gone: Collection[str] = ()
+    ) -> tuple[list[str], list[str]]:
+        """Add behaviours, for which those of users that are `gone` go; names of the new, and of those that were there.
 
         Raises:
             BadValue: A name is that of a behaviour of the system, or, without `overwrite`, of any other.
@@ -95,10 +97,11 @@ class InstalledBehaviors:
                 if name in system or (name in self._user and not overwrite):
                     raise BadValue("behavior", name, "a name that is free")
             most = load_sizes().behaviors.installed
-            if len({*self._user, *new}) > most:
+            kept = {name: behavior for name, behavior in self._user.items() if name not in gone}
+            if len({*kept, *new}) > most:
                 raise NotAllowed(f"{most} behaviors are installed at most: removeBehavior first")
-            replaced = [name for name in new if name in self._user]
-            self._user.update(new)
+            replaced = [name for name in new if name in kept]
+            self._user = {**kept, **new}
         return [name for name in new if name not in replaced], replaced
 
     def remove(self, name: str) -> list[str]:

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from typing import Callable, Mapping, Sequence
 
-import cv2
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.imports import Library
+
+cv2 = Library("cv2")
 
 Y_OF_RGB = (0.299, 0.587, 0.114)
 
@@ -33,8 +35,9 @@ def luminance(rgb: np.ndarray) -> np.ndarray:
     return cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY)
 
 
-def _converted(code: int) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda rgb: cv2.cvtColor(rgb, code)
+def _converted(space: str) -> Callable[[np.ndarray], np.ndarray]:
+    """To a colour space that OpenCV has."""
+    return lambda rgb: cv2.cvtColor(rgb, getattr(cv2, f"COLOR_RGB2{space}"))
 
 
 def _plane(convert: Callable[[np.ndarray], np.ndarray], index: int) -> Callable[[np.ndarray], np.ndarray]:
@@ -85,12 +88,13 @@ def _argb(rgb: np.ndarray) -> np.ndarray:
     return cv2.merge((opaque, *cv2.split(rgb)))
 
 
-def _polar(code: int) -> Callable[[np.ndarray], np.ndarray]:
+def _polar(space: str) -> Callable[[np.ndarray], np.ndarray]:
     """Lightness, chroma and hue from a CIE colour space with two colour axes."""
+    to_space = _converted(space)
 
     def convert(rgb: np.ndarray) -> np.ndarray:
         # From floats: in bytes the axes have offsets and scales of their own.
-        lightness, a, b = cv2.split(cv2.cvtColor(rgb.astype(np.float32) / np.float32(255.0), code))
+        lightness, a, b = cv2.split(to_space(rgb.astype(np.float32) / np.float32(255.0)))
         chroma, hue = cv2.cartToPolar(a, b)
         planes = (lightness * 2.55, chroma, np.mod(hue * (256.0 / (2.0 * np.pi)), 256.0))
         return np.stack([np.clip(plane + 0.5, 0.0, 255.0).astype(np.uint8) for plane in planes], axis=-1)
@@ -116,15 +120,15 @@ ENCODERS: Mapping[int, Callable[[np.ndarray], np.ndarray]] = {
     10: _yuv,
     11: _same,
     12: _hsy,
-    13: _converted(cv2.COLOR_RGB2BGR),
+    13: _converted("BGR"),
     14: _of_pairs((0, 1, 2, 3)),
     15: _hue_as_color,
     16: _hue_saturation_mixed,
     18: _argb,
-    19: _converted(cv2.COLOR_RGB2XYZ),
-    22: _converted(cv2.COLOR_RGB2Lab),
-    24: _converted(cv2.COLOR_RGB2Luv),
-    25: _polar(cv2.COLOR_RGB2Lab),
-    26: _polar(cv2.COLOR_RGB2Luv),
+    19: _converted("XYZ"),
+    22: _converted("Lab"),
+    24: _converted("Luv"),
+    25: _polar("Lab"),
+    26: _polar("Luv"),
 }
 """By NAOqi's id. What is missing needs a depth camera."""

@@ -6,11 +6,11 @@ import threading
 from collections import OrderedDict, deque
 from typing import Any, Callable, Protocol
 
-import cv2
 import numpy as np
 
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.guard import Guard
+from nao_sim_bridge.base.imports import Library
 from nao_sim_bridge.base.rotations import Quaternion, Vector3, vector3
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.cameras.frame import Frame, Moment, Position6D
@@ -23,6 +23,7 @@ from nao_sim_bridge.model.kinematics import matrix_quaternion, matrix_rpy, quate
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.world.render_state import RenderState
 
+cv2 = Library("cv2")
 TIMEOUT = 30.0
 """Longest time for a picture, s of wall time; a busy machine may take a thousand times as long as an idle one."""
 CLOSING = 5.0

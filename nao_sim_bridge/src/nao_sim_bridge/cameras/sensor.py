@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Mapping
 
-import cv2
 import numpy as np
 
+from nao_sim_bridge.base.imports import Library
 from nao_sim_bridge.base.rotations import Quaternion, Vector3
 from nao_sim_bridge.cameras.automatics import Balance, balance_of, exposure_of, metered
 from nao_sim_bridge.cameras.color_spaces import Y_OF_RGB, encoded, luminance
@@ -35,6 +35,7 @@ from nao_sim_bridge.cameras.settings import (
     load_cameras,
 )
 
+cv2 = Library("cv2")
 MIDDLE = 128.0
 """What contrast leaves as it is."""
 LEAST_NOISE, MOST_NOISE = 0.9, 24.0

@@ -8,8 +8,6 @@ import threading
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from PIL import Image
-
 from nao_sim_bridge.base.errors import SimulationStopped
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.render.client import RenderError, Viewer
@@ -40,6 +38,8 @@ class Pictures:
 
     def png(self, view: str, width: int, height: int) -> bytes:
         """A PNG picture from outside; see `Simulation.picture`."""
+        from PIL import Image  # most simulations are not looked at from outside
+
         buffer = io.BytesIO()
         Image.fromarray(self._runner.simulation.picture(view, width, height), "RGB").save(buffer, "PNG")
         return buffer.getvalue()

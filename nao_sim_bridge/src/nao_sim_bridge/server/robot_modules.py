@@ -16,12 +16,12 @@ from nao_sim_bridge.hearing.recogniser import SpareProcess
 from nao_sim_bridge.naoqi import motion
 from nao_sim_bridge.naoqi.behaviors import animation_player, behavior_manager, frame_manager
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
-from nao_sim_bridge.naoqi.binding.later import Later, made
+from nao_sim_bridge.naoqi.binding.later import Later, later, made
 from nao_sim_bridge.naoqi.binding.older import older_events
 from nao_sim_bridge.naoqi.body import leds
 from nao_sim_bridge.naoqi.body.body_modules import BodyModules
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
-from nao_sim_bridge.naoqi.cameras import video_device, vision_toolbox
+from nao_sim_bridge.naoqi.cameras import video_device
 from nao_sim_bridge.naoqi.cameras.film_recorder import VideoRecorder
 from nao_sim_bridge.naoqi.cameras.photographer import Photographer
 from nao_sim_bridge.naoqi.cameras.photos_and_films import FILMS, PHOTOS, ALPhotoCapture, ALVideoRecorder
@@ -29,22 +29,18 @@ from nao_sim_bridge.naoqi.life.wiring import LifeModules
 from nao_sim_bridge.naoqi.memory.live_keys import constants, live_keys
 from nao_sim_bridge.naoqi.memory.memory import ALMemory
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.motion import motion_recorder
 from nao_sim_bridge.naoqi.motion.wake import AWAKE
-from nao_sim_bridge.naoqi.navigation import caution
-from nao_sim_bridge.naoqi.navigation.navigation import ALNavigation
+from nao_sim_bridge.naoqi.motion.walking import Moves
 from nao_sim_bridge.naoqi.sound.sound_extractors import DETECTION, LOCALIZATIONS, ALSoundDetection, SoundLocalization
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.sound.wiring import AudioModules, SpeechModules
 from nao_sim_bridge.naoqi.speech.recognition_engine import NAME as RECOGNITION
 from nao_sim_bridge.naoqi.speech.speech_recognition import ALSpeechRecognition
-from nao_sim_bridge.naoqi.system import sentinel
 from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.system.wiring import SystemModules
 from nao_sim_bridge.naoqi.users.wiring import UserModules
 from nao_sim_bridge.naoqi.vision.wiring import VisionModules
-from nao_sim_bridge.server.files_control import FilesControl
 from nao_sim_bridge.server.film import END_LIMIT
 from nao_sim_bridge.server.film_control import FilmControl
 from nao_sim_bridge.server.robot_control import HandsControl, HealthControl
@@ -116,7 +112,6 @@ class RobotModules:
         self.sounds = WorldSoundsControl(runner, sounds, workers.persons)
         self.things = ThingsControl(runner, files)
         self.hands = HandsControl(runner)
-        self.file_access = FilesControl(files)
         self.film = FilmControl(runner, files, options.renderer)
         self.health = HealthControl(runner)
         self._body = BodyModules(runner, memory)
@@ -125,10 +120,12 @@ class RobotModules:
         films = lambda: ALVideoRecorder(self._recorder, files, cameras.tables)  # noqa: E731
         manager = behavior_manager.ALBehaviorManager(running, runner, memory, files)
         system_modules = SystemModules(simulation, broker, files, memory, self.speech.say, manager)
+        moves = Moves(memory)
+        self._users = UserModules(simulation, memory, files, zone, self.vision.people)
         self.modules: dict[str, Sequence[Any]] = {
             "ALMemory": [ALMemory(memory, broker)],
             "ALLeds": leds.parts(runner),
-            "ALMotion": motion.parts(runner, memory),
+            "ALMotion": motion.parts(runner, memory, moves),
             "ALRobotPosture": [posture],
             **self._audio.modules,
             **self.speech.modules,
@@ -143,17 +140,20 @@ class RobotModules:
             **self.vision.modules,
             PHOTOS: [photos()],
             FILMS: [films()],
-            vision_toolbox.NAME: Later(lambda: [vision_toolbox.ALVisionToolbox(photos(), films())]),
+            "ALVisionToolbox": later("naoqi.cameras.vision_toolbox:ALVisionToolbox", photos, films, cameras),
             **self._body.modules,
-            motion_recorder.NAME: Later(lambda: [motion_recorder.ALMotionRecorder(runner)]),
-            caution.NAME: Later(lambda: [ALNavigation(runner, memory)]),
-            sentinel.NAME: Later(
-                lambda: [
-                    sentinel.ALSentinel(memory, self._body.power, self._body.temperature, of_robot, self.speech.say)
-                ]
+            "ALMotionRecorder": later("naoqi.motion.motion_recorder:ALMotionRecorder", runner),
+            "ALNavigation": later("naoqi.navigation.navigation:ALNavigation", runner, memory, moves),
+            "ALSentinel": later(
+                "naoqi.system.sentinel:ALSentinel",
+                memory,
+                self._body.power,
+                self._body.temperature,
+                of_robot,
+                self.speech.say,
             ),
             "ALSystem": [of_robot],
-            **UserModules(simulation, memory, files, zone, self.vision.people).modules,
+            **self._users.modules,
             **system_modules.modules,
         }
 
@@ -194,7 +194,7 @@ class RobotModules:
 
     def closing(self) -> list[Step]:
         """Last steps of the end, when the simulation has ended."""
-        return [self.speech.close, self.recognition.close]
+        return [self.speech.close, self.recognition.close, self._users.close]
 
     def _later(self) -> Iterator[Later]:
         """Modules that are made when they are first called."""

@@ -27,6 +27,7 @@ from nao_sim_bridge.naoqi.system.system import ALSystem
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.render.client import Renderer
 from nao_sim_bridge.server.broker import Broker
+from nao_sim_bridge.server.files_control import FilesControl
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.server.pictures import Pictures
 from nao_sim_bridge.server.robot_modules import RobotModules, Workers
@@ -79,6 +80,7 @@ class SimulatorServer:
         self.broker = Broker()
         self._workers = Workers()
         self._robot = self.modules_for(simulation)
+        self.file_access = FilesControl(lambda: self.files)
         self.pictures = Pictures(self._robot.runner)
         self._services: dict[str, Service] = {}
         self._outlets: list[SoundFile | SoundCard] = []
@@ -101,7 +103,6 @@ class SimulatorServer:
     hands = property(attrgetter("_robot.hands"))
     health = property(attrgetter("_robot.health"))
     film = property(attrgetter("_robot.film"))
-    file_access = property(attrgetter("_robot.file_access"))
     began = property(attrgetter("_robot.began"))
     sound_reader = property(attrgetter("_workers.sounds"), doc="What reads sound files.")
 

@@ -11,7 +11,6 @@ from nao_sim_bridge.base.config import array, check_keys, config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.control.balance.posture_recognition import CROUCHING, ON_CHAIR, SITTING, STANDING
 from nao_sim_bridge.model.model_reader import load_model
-from nao_sim_bridge.speech import gesture_families
 from nao_sim_bridge.speech.gesture import Animation, KeyFrames, is_of_legs
 
 FILE = "animations.json"
@@ -88,6 +87,8 @@ class AnimationLibrary:
 
     def get(self, name: str) -> Animation | None:
         """An animation by exactly its name."""
+        from nao_sim_bridge.speech import gesture_families  # a robot that does not talk needs nothing of it
+
         own = self._added.get(name) or _shipped().get(name)
         if own is None and name in gesture_families.names():
             return gesture_families.build(name)
@@ -162,6 +163,8 @@ class AnimationLibrary:
 
     @cached_property
     def _index(self) -> _Index:
+        from nao_sim_bridge.speech import gesture_families  # as above
+
         tags = {name: animation.tags for name, animation in _shipped().items()}
         for name, naming in gesture_families.names().items():
             tags[name] = (*tags.get(name, ()), *naming.tags)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Iterable, Sequence
+from typing import AbstractSet, Any, Sequence
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.control.balance.posture_recognition import STANDING, recognise
@@ -181,7 +181,11 @@ class Animator:
                 self._kill(task)
                 self._bring_back(move.indices - set(indices))
 
-    def _bring_back(self, indices: Iterable[int]) -> None:
+    def _bring_back(self, indices: AbstractSet[int]) -> None:
+        """Joints that others wait for stay: those take them from where they are."""
+        for index in indices:
+            if self._simulation.robot.motion.busy([index]):
+                self._home.pop(index, None)
         homes = {index: self._home[index] for index in indices if index in self._home}
         if not homes:
             return

@@ -266,7 +266,7 @@ class _Builder:
         points = [(pitch, mirror * roll) for pitch, roll in self._tables.leans[self._lean]]
         moved = {}
         for side in "LR":
-            legs = [(-pitch, ANKLE_SHARE * pitch, roll, -roll) for pitch, roll in points]
+            legs = [(-pitch, ANKLE_SHARE * pitch, -roll, roll) for pitch, roll in points]
             names = [f"{side}{joint}" for joint in ("HipPitch", "AnklePitch", "HipRoll", "AnkleRoll")]
             moved.update(_frames(names, legs, times[0], times[-2]))
         return moved

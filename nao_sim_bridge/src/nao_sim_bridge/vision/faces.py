@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Sequence, Tuple
 
-import cv2
 import numpy as np
 
+from nao_sim_bridge.base.imports import Library
 from nao_sim_bridge.cameras.optics import Optics
 from nao_sim_bridge.vision.faces_features import Box, FacePoints, Point, describe, find_eyes, find_points
 
+cv2 = Library("cv2")
 # Which cascade finds faces, and which has to agree in the place that it found.
 FINDER, SECOND_OPINION = "haarcascade_frontalface_alt.xml", "haarcascade_frontalface_default.xml"
 # Smallest face, px, step between the sizes, and how many windows have to agree.

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Tuple
 
-import cv2
 import numpy as np
+
+from nao_sim_bridge.base.imports import Library
+
+cv2 = Library("cv2")
 
 Point = Tuple[float, float]
 Box = Tuple[float, float, float, float]
@@ -60,7 +64,7 @@ def find_eyes(grey: np.ndarray, box: Box) -> tuple[Point, Point]:
     enlarged = np.float32(((scale, 0, -x * scale), (0, scale, -y * scale)))
     face = cv2.warpAffine(grey, enlarged, (SIZE, SIZE), borderMode=cv2.BORDER_REPLICATE)
     dark = _darkness(face.astype(np.float32))
-    middles_x, middles_y, halves, slopes, belief = _CANDIDATES
+    middles_x, middles_y, halves, slopes, belief = _candidates()
     rise = halves * slopes
     left_x, right_x = middles_x - halves, middles_x + halves
     score = _at(dark, left_x, middles_y - rise) + _at(dark, right_x, middles_y + rise)
@@ -111,6 +115,7 @@ def find_points(grey: np.ndarray, eyes: tuple[Point, Point]) -> FacePoints:
     )
 
 
+@lru_cache(maxsize=1)
 def _candidates() -> tuple[np.ndarray, ...]:
     """Places of a pair of eyes in the face of size `SIZE`, px, and how likely each is, at most 1."""
     rows, belief = [], []
@@ -120,9 +125,6 @@ def _candidates() -> tuple[np.ndarray, ...]:
         belief.append(1.0 - DOUBT * sum(d * d for d in doubts) / len(doubts))
     table = np.array(rows).T
     return table[0] * SIZE, table[1] * SIZE, table[2] * SIZE, table[3], np.array(belief)
-
-
-_CANDIDATES = _candidates()
 
 
 def _darkness(face: np.ndarray) -> np.ndarray:

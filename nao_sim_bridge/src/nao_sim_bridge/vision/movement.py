@@ -12,11 +12,12 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Sequence, Tuple
 
-import cv2
 import numpy as np
 
+from nao_sim_bridge.base.imports import Library
 from nao_sim_bridge.cameras.optics import Optics
 
+cv2 = Library("cv2")
 # By how much of 255 a pixel must have changed, at sensitivity 1 and at sensitivity 0.
 FINEST, COARSEST = 8.0, 80.0
 # Pictures are compared in this width at most, px: more costs time and finds the noise of the sensor.

@@ -104,6 +104,11 @@ class Locomotion:
         return self._job is not None
 
     @property
+    def course(self) -> Course | None:
+        """What the present walk follows: another one after each command."""
+        return self._course
+
+    @property
     def ahead(self) -> float:
         """How far the robot goes forward in a step, m; 0 when it does not walk."""
         return self._rate()[0] if self.active else 0.0

@@ -96,6 +96,7 @@ def test_rules_are_switched(contexts):
         ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: (b | c;", "line 4"),
         ("#BNF+EM V2.1;\n!grammar x;\n!stop <a>;", "line 3: unknown directive !stop"),
         ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: !repeat(b, 3, 2);", "line 4: !repeat from 3 to 2"),
+        ("#BNF+EM V2.1;\n!grammar x;\n!start <a>;\n<a>: !repeat(b, 3, \N{SUPERSCRIPT TWO});", "line 4: expected a"),
     ],
 )
 def test_a_bad_grammar_is_refused_with_its_place(text, problem):

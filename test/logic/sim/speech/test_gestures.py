@@ -144,6 +144,21 @@ def test_an_animation_is_as_its_name_says(library):
     assert "HeadPitch" in yes.joints and "HeadYaw" in no.joints
 
 
+@pytest.mark.parametrize("side, sign", [("Left", 1.0), ("Right", -1.0)])
+def test_the_trunk_goes_to_the_side_of_the_arm_that_leads_and_stays_upright(library, side, sign):
+    model, home = load_model(), np.array(posture(load_model(), "Stand"))
+    swaying = [a for a in map(library.get, FAMILIES) if f"/{side}_" in a.name and "LHipRoll" in a.joints]
+    assert len(swaying) > 5
+    for animation in swaying:
+        angles, time = home.copy(), animation.joints["LHipRoll"].times[0]
+        for index, curve in curves_of(animation, home).items():
+            angles[index] = curve.value(time)
+        links = link_transforms(model, angles)
+        for foot in ("LAnkleRoll", "RAnkleRoll"):
+            moved = link_transforms(model, home)[foot][1, 3] - links[foot][1, 3]
+            assert sign * moved > 0.005 and links[foot][1, 2] == pytest.approx(0.0, abs=0.01), animation.name
+
+
 def test_animations_of_earlier_robots_are_there_by_name_and_chosen_by_nothing_else(library):
     assert library.get("animations/Stand/Waiting/TakePicture_1").joints and library.find("AirGuitar_1").length > 1.5
     assert "animations/Sit/Emotions/Positive/Laugh_1" in library.names

@@ -18,8 +18,8 @@ from ..settings import NaoCommand, NaoGroup, OneOf, settings_of
 SAID = {
     "renamed": "renamed",
     "refilled": "renamed, with the fields that both types have",
-    "kept": "kept: no type of nao_robot's interface, or named as wanted",
-    "foreign": "kept: other fields than the type of that name",
+    "kept": "kept: named as wanted, or no type that has another name here",
+    "foreign": "kept: another definition than the type of that name",
 }
 """What became of messages -> how it is told."""
 
@@ -45,7 +45,8 @@ def bag_command() -> None:
 def convert(context: click.Context, old: Path, new: Path, names: str, overwrite: bool) -> None:
     """Write the bag OLD as NEW, with other names of its types; what was recorded stays as it is.
 
-    OLD was recorded from nao_robot, or from a driver of this library. No robot is needed, nor the older packages.
+    OLD was recorded from nao_robot, also of the time of nao_msgs, or from a driver of this library. No robot is needed,
+    nor the older packages.
     """
     from ...ros.bag_types import convert_bag
 

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import click
 
-from ...base.whole_file import DRAFT, NoPlaceForFile, move_whole, require_new
+from ...base.whole_file import NoPlaceForFile, draft_in, move_whole, require_new
 from ...nao.robot_files import HOME, full_path
 from ..errors import CommandFailed
-from ..files import overwrite_option, passing_name, wanted_file
+from ..files import overwrite_option, wanted_file
 from ..output import say_json, say_lines, table
 from ..robot_files import RobotFiles, files_of
 from ..robot_link import DirectRobot
@@ -62,7 +62,7 @@ def get_file(context: click.Context, remote: str, local: str, overwrite: bool) -
     path = full_path(remote)
     try:
         target = require_new(wanted / posixpath.basename(path) if wanted.is_dir() else wanted, overwrite)
-        draft = target.parent / f".{passing_name()}{DRAFT}"
+        draft = draft_in(target.parent)
         try:
             with _files(settings) as files:
                 files.get(path, draft)

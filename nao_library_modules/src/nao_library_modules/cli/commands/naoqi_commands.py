@@ -86,8 +86,13 @@ def post(context: click.Context, member: str, arguments: tuple[str, ...], url: s
     settings = settings_of(context)
     service, name = _member(member)
     with _robot(settings, url) as robot:
-        if name in _named(robot.service(service), "signals"):
-            getattr(robot.service(service), name)(*_values(arguments))
+        remote = robot.service(service)
+        if name in _named(remote, "properties"):
+            raise CommandFailed(f"{member} is a property, which nao naoqi call {member} VALUE sets")
+        if name in _named(remote, "signals"):
+            getattr(remote, name)(*_values(arguments))
+        elif "pCall" not in _named(remote, "methods"):
+            raise CommandFailed(f"{service} has no pCall, which begins calls: nao naoqi call {member} waits")
         else:
             posted = robot.call(service, "pCall", name, *_values(arguments))
             if settings.json:

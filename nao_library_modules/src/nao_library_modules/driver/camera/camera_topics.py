@@ -90,11 +90,13 @@ class CameraTopics:
         self._tuning.choose(camera, given, connected=False)
         compressed = f"{folder}image_raw/compressed"
         self._compression_server = serve(node, COMPRESSION, self._compress_as, node.resolve(compressed))
-        self._image = node.publisher(f"{folder}image_raw", Image, queue_size=QUEUE)
-        self._info = node.publisher(f"{folder}camera_info", CameraInfo, queue_size=QUEUE)
+        folders = (folder,) if alone else (folder, f"{folder}camera/")
+        self._images = [node.publisher(f"{each}image_raw", Image, queue_size=QUEUE) for each in folders]
+        self._info_topics = [node.publisher(f"{each}camera_info", CameraInfo, queue_size=QUEUE) for each in folders]
         self._compressed = node.publisher(compressed, CompressedImage, queue_size=QUEUE)
-        self._lazy = LazyTopic(self._stream.want, self._image, self._info, self._compressed)
-        node.service(f"{folder}set_camera_info", SetCameraInfo, self._set_camera_info)
+        self._lazy = LazyTopic(self._stream.want, *self._images, *self._info_topics, self._compressed)
+        for each in folders:
+            node.service(f"{each}set_camera_info", SetCameraInfo, self._set_camera_info)
 
     @property
     def camera(self) -> int:
@@ -115,11 +117,13 @@ class CameraTopics:
         """Publish a picture with its calibration; called in the thread of the pictures."""
         time = ros_time if self._config["use_ros_time"] else picture.time
         header = header_of(time, self._frames[picture.camera])
-        if self._image.get_num_connections():
-            publish(self._image, to_image(picture, header))
-        if self._info.get_num_connections():
-            calibration = self._infos[picture.camera].of(picture.width, picture.height)
-            publish(self._info, to_info(calibration, picture.width, picture.height, header))
+        for topic in self._images:
+            if topic.get_num_connections():
+                publish(topic, to_image(picture, header))
+        for topic in self._info_topics:
+            if topic.get_num_connections():
+                calibration = self._infos[picture.camera].of(picture.width, picture.height)
+                publish(topic, to_info(calibration, picture.width, picture.height, header))
         if self._compressed.get_num_connections():
             self._show_compressed(picture, header)
 

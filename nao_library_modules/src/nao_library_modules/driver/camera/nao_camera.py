@@ -23,7 +23,8 @@ class NaoCamera:
         Publishes `nao_robot/camera/top/image_raw` (sensor_msgs/Image), `nao_robot/camera/top/camera_info`
         (sensor_msgs/CameraInfo, with the stamps of the pictures), `nao_robot/camera/top/image_raw/compressed`
         (sensor_msgs/CompressedImage). Frame `CameraTop_optical_frame` (z ahead, x right, y down), after `tf_prefix`.
-        Service `nao_robot/camera/top/set_camera_info` (sensor_msgs/SetCameraInfo).
+        Service `nao_robot/camera/top/set_camera_info` (sensor_msgs/SetCameraInfo). Pictures, calibration and service
+        also in `nao_robot/camera/top/camera/`, where the launch files of nao_robot have them.
         Parameters, also by dynamic_reconfigure of `~top`: `~top/resolution` (NAOqi's number, 1: 320x240),
         `~top/frame_rate` (15), `~top/color_space` (NAOqi's number, 13: bgr8), `~top/camera_info_url`,
         `~top/use_ros_time` (true: stamps in ROS time; false: stamps of the robot's own clock. Default true; false on

@@ -5,8 +5,6 @@ from __future__ import annotations
 import threading
 from collections import Counter
 
-from naoqi.errors import NaoError
-
 from ...base.kept import Kept
 
 
@@ -33,13 +31,12 @@ class WalkInhibition:
     def let_go(self, owner: str) -> int:
         """Take a hold off, one of the node's own if it has any, else the first that was put on; how many are left.
 
-        A person who lets go at a command line has another name each time.
-
-        Raises NaoError if there is none.
+        A person who lets go at a command line has another name each time. Without any hold this is no error: clients
+        of nao_robot let go to be sure, or once more than they inhibited.
         """
         with self._lock:
             if not self._holds:
-                raise NaoError("walking is not inhibited, so there is nothing to let go")
+                return 0
             held = owner if owner in self._holds else next(iter(self._holds))
             self._holds[held] -= 1
             if not self._holds[held]:

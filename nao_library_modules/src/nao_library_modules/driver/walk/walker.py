@@ -186,7 +186,7 @@ class Walker:
         if order.halts:
             self._quick("moveToward", 0.0, 0.0, 0.0)
         else:
-            self._get_ready(order)
+            self._get_ready()
             if order.watched:
                 self._watchdog.feed(order.arrived)  # also if the call fails: the robot may have got it
             config = [["Frequency", self.frequency], *self.gait]
@@ -195,14 +195,14 @@ class Walker:
 
     def _go_to(self, order: Order, target: Target) -> None:
         self._begin(order)
-        self._get_ready(order)
+        self._get_ready()
         config = [self.gait] if self.gait else []
         call = self._start("moveTo", target.x, target.y, target.theta, *config)
         call.add_done_callback(partial(self._walked, order))
 
     def _step(self, order: Order, step: FootStep) -> None:
         self._begin(order)
-        self._get_ready(order)
+        self._get_ready()
         self._quick("setFootSteps", [step.leg], [[step.x, step.y, step.theta]], [STEP_TIME], False)
         if order.to_the_end:
             self._start("waitUntilMoveIsFinished").add_done_callback(partial(self._walked, order))
@@ -244,10 +244,9 @@ class Walker:
             old.superseded(f"{order.source} came after it")
         return []
 
-    def _get_ready(self, order: Order) -> None:
-        """See that a robot that stands can walk, and take the pose for it if that is wanted."""
-        if not order.replaces:
-            ask_for_stiff_legs(self._robot)
+    def _get_ready(self) -> None:
+        """See that the robot can walk, also if it did before, and take the pose for it if that is wanted."""
+        ask_for_stiff_legs(self._robot)
         if not self.needs_walk_pose:
             return
         self._halt.clear()

@@ -23,6 +23,7 @@ from dataclasses import dataclass, field
 from typing import Dict, Iterator, List, Sequence, Tuple, Union
 
 from nao_sim_bridge.base.errors import SimulationError
+from nao_sim_bridge.base.written_numbers import written_number
 from nao_sim_bridge.hearing.grammars import grammar as g
 
 TOKEN = re.compile(
@@ -232,9 +233,10 @@ class _Parser:
 
     def _count(self) -> int:
         token = self._next("word")
-        if not token.text.isdigit() or int(token.text) > MOST_REPEATS:
+        count = written_number(token.text, MOST_REPEATS)
+        if count is None:
             raise GrammarError(f"expected a number up to {MOST_REPEATS}, found {token.text!r}", token.line)
-        return int(token.text)
+        return count
 
     def _words(self, token: _Token, text: str) -> g.Words:
         try:

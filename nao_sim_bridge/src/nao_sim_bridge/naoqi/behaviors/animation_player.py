@@ -39,11 +39,11 @@ class ALAnimationPlayer:
         """
         posture, tag = self._posture(), first if second is None else second
         if second is None:
-            place, fitting = f"for the posture {posture}", self._tagged(tag, self._paths, posture)
+            place, fitting = f"for the posture {posture}", self._tagged_for(posture, tag)
         elif first in FOLDERS.values():
-            place, fitting = f"for the posture {first}", self._tagged(tag, self._paths, first)
+            place, fitting = f"for the posture {first}", self._tagged_for(first, tag)
         else:
-            place, fitting = f"in {first!r}", self._tagged(tag, paths_of(first, posture), None)
+            place, fitting = f"in {first!r}", self._tagged(tag, paths_of(first, posture))
         if not fitting:
             raise NaoqiError(f"there is no animation with the tag {tag!r} {place}")
         return self._play(self._chance.choice(fitting), "runTag")
@@ -54,23 +54,25 @@ class ALAnimationPlayer:
             self._tags.setdefault(tag.lower(), []).extend(names)
 
     def declarePathForTags(self, path: str) -> None:
-        """Animations of the path are found by their tags, too; [posture] in it stands for each posture."""
-        for posture in dict.fromkeys(FOLDERS.values()):
-            self._paths += [each for each in paths_of(path, posture) if each not in self._paths]
+        """Animations of the path are found by their tags, too; [posture] in it stands for the one that is asked for."""
+        if path not in self._paths:
+            self._paths.append(path)
 
     def reset(self) -> None:
         self._tags.clear()
         self._paths = [ANIMATIONS]
 
-    def _tagged(self, tag: str, paths: Sequence[str], posture: str | None) -> list[Behavior]:
-        """Animations below one of the paths, made for a posture if one is given."""
+    def _tagged_for(self, posture: str, tag: str) -> list[Behavior]:
+        """Those below the declared paths that are made for a posture."""
+        paths = [each for path in self._paths for each in paths_of(path, posture)]
+        return [behavior for behavior in self._tagged(tag, paths) if is_for(behavior.name, posture)]
+
+    def _tagged(self, tag: str, paths: Sequence[str]) -> list[Behavior]:
         added = self._tags.get(tag.lower(), ())
         return [
             behavior
             for name, behavior in self._running.installed.all.items()
-            if name.startswith(tuple(paths))
-            and (name in added or tag.lower() in map(str.lower, behavior.tags))
-            and (posture is None or is_for(name, posture))
+            if name.startswith(tuple(paths)) and (name in added or tag.lower() in map(str.lower, behavior.tags))
         ]
 
     def _posture(self) -> str:

@@ -73,12 +73,20 @@ class ALBehaviorManager:
 
     # --- coming and going -----------------------------------------------------------------------------------------
 
-    def installBehavior(self, path: str, name: str | None = None, overwrite: bool = True) -> bool:
-        """A file, or the folder of a package, in the folder for files of clients; see docs/robot_behaviors.md."""
+    def installBehavior(
+        self, path: str, name: str | None = None, overwrite: bool = True, gone: Sequence[str] = ()
+    ) -> bool:
+        """A file, or the folder of a package, in the folder for files of clients; see docs/robot_behaviors.md.
+
+        Args:
+            gone: Names in full of behaviours that are removed if all goes well.
+        """
         behaviors = read_package(self._file(path))
         if name:
             behaviors = renamed(behaviors, name)
-        added, updated = self._installed.install(behaviors, overwrite)
+        added, updated = self._installed.install(behaviors, overwrite, gone)
+        if gone:
+            self._end(gone)
         for event, names in ((ADDED, added), (UPDATED, updated)):
             for one in names:
                 self._memory.raise_event(event, one)
@@ -88,18 +96,7 @@ class ALBehaviorManager:
 
     def removeBehavior(self, name: str) -> Task:
         """Stops it, too."""
-        gone = self._installed.remove(name)
-        with self._lock:
-            self._preloaded = [one for one in self._preloaded if one not in gone]
-            self._defaults = [one for one in self._defaults if one not in gone]
-
-        def stop() -> bool:
-            self._running.stop_those(gone)
-            for one in gone:
-                self._memory.raise_event(REMOVED, one)
-            return True
-
-        return self._runner.execute(stop, "removeBehavior")
+        return self._end(self._installed.remove(name))
 
     def preloadBehavior(self, name: str) -> bool:
         full = self._installed.resolve(name).name
@@ -160,6 +157,20 @@ class ALBehaviorManager:
     def playDefaultProject(self) -> Task:
         behaviors = [self._installed.resolve(name) for name in self.getDefaultBehaviors()]
         return self._start([b for b in behaviors if b.name not in self._running.names], "playDefaultProject")
+
+    def _end(self, gone: Sequence[str]) -> Task:
+        """Stop and forget behaviours that are installed no more."""
+        with self._lock:
+            self._preloaded = [one for one in self._preloaded if one not in gone]
+            self._defaults = [one for one in self._defaults if one not in gone]
+
+        def stop() -> bool:
+            self._running.stop_those(gone)
+            for one in gone:
+                self._memory.raise_event(REMOVED, one)
+            return True
+
+        return self._runner.execute(stop, "removeBehavior")
 
     def _start(self, behaviors: Sequence[Behavior], call: str) -> Task:
         def start() -> None:

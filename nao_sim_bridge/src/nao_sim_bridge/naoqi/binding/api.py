@@ -6,9 +6,8 @@ Those of NAOqi 2.8 are in `config/naoqi_api.json`, modules of earlier versions i
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, Mapping, Sequence, Tuple
+from typing import Any, Mapping, NamedTuple, Sequence, Tuple
 
 from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import ConfigError
@@ -36,8 +35,7 @@ SIMPLE_TYPES = {
 }
 
 
-@dataclass(frozen=True)
-class Overload:
+class Overload(NamedTuple):
     """One way to call a method: parameter types as NAOqi writes them, and their names."""
 
     types: Tuple[str, ...]
@@ -53,8 +51,7 @@ class Overload:
         return ", ".join(f"{t} {n}" for t, n in zip(self.types, self.names))
 
 
-@dataclass(frozen=True)
-class Method:
+class Method(NamedTuple):
     """One method of a NAOqi module; `older` says what to use today, and is empty for a method of today."""
 
     name: str
@@ -68,6 +65,14 @@ class Method:
         return "\n".join(f"{self.returns} {self.name}({overload})" for overload in self.overloads)
 
 
+class Table(NamedTuple):
+    """Methods of a module that are its own, or that several share, and the names of the tables that it shares."""
+
+    shared: Tuple[str, ...]
+    methods: Mapping[str, Method]
+
+
+@lru_cache(maxsize=None)
 def qi_type(name: str) -> str:
     """Libqi's letter code of a type as NAOqi writes it; a ConfigError when it is unknown."""
     if name in SIMPLE_TYPES:
@@ -90,35 +95,42 @@ def older_tables() -> Mapping[str, Any]:
 
 
 @lru_cache(maxsize=1)
-def _tables() -> Mapping[str, Any]:
+def _tables() -> Mapping[str, Table]:
     tables = dict(read_json(config_file(FILE)))
+    del tables["_meta"]
     for module, methods in older_tables()["modules"].items():
         tables[module] = {**methods, **tables.get(module, {})}
-    return tables
+    return {name: _table(name, entries) for name, entries in tables.items()}
 
 
-@lru_cache(maxsize=None)
-def module_methods(module: str) -> Mapping[str, Method]:
-    """Methods of a module by name, those included that it shares with others: "_inherits" names their tables.
+def tables_of(module: str) -> list[str]:
+    """Names of the tables with the methods of a module, the last is its own: "_inherits" names the others.
 
     A ConfigError when the module is not in the table.
     """
     tables = _tables()
     if module not in tables:
         raise ConfigError(FILE, f"no module {module!r}")
+    return [*tables[module].shared, module]
+
+
+def module_methods(module: str) -> Mapping[str, Method]:
+    """Methods of a module by name, those included that it shares with others; see `tables_of`."""
     methods: dict[str, Method] = {}
-    # The common methods are of every module, also of one whose entry does not say so.
-    shared = [COMMON, *(table for table in tables[module].get("_inherits", ()) if table != COMMON)]
-    for table in (*shared, module):
-        for name, entry in tables[table].items():
-            if not name.startswith("_"):
-                methods[name] = make_method(name, entry, _older(tables[table], entry))
+    for table in tables_of(module):
+        for name, method in own_methods(table).items():
+            methods[name] = _beside(method, methods[name]) if name in methods else method
     return methods
 
 
-def own_methods(module: str) -> list[str]:
-    """Names of the methods of a module that are in no table it shares with others."""
-    return [name for name in _tables()[module] if not name.startswith("_")]
+def _beside(own: Method, shared: Method) -> Method:
+    """A method of a module that takes other numbers of arguments than one of this name that it shares with others."""
+    return own._replace(overloads=own.overloads + shared.overloads, summary=f"{own.summary}; {shared.summary}")
+
+
+def own_methods(table: str) -> Mapping[str, Method]:
+    """Methods of one table: what a module shares with no others, or what several share."""
+    return _tables()[table].methods
 
 
 def make_method(name: str, entry: Mapping[str, Any], older: str = "") -> Method:
@@ -131,6 +143,14 @@ def make_method(name: str, entry: Mapping[str, Any], older: str = "") -> Method:
             for types, names in zip(entry["overloads"], entry["params"])
         )
     return Method(name, overloads, entry["returns"], entry["summary"], older)
+
+
+def _table(name: str, entries: Mapping[str, Any]) -> Table:
+    # The common methods are of every module, also of one whose entry does not say so.
+    shared = dict.fromkeys([COMMON, *entries.get("_inherits", ())])
+    shared.pop(name, None)
+    own = {key: make_method(key, entry, _older(entries, entry)) for key, entry in entries.items() if key[0] != "_"}
+    return Table(tuple(shared), own)
 
 
 def _overload(takes: Sequence[str]) -> Overload:

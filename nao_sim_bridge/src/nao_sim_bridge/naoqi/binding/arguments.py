@@ -92,10 +92,24 @@ def _range(low: float, high: float) -> str:
 
 def lists_by_tag(value: Any, field: str) -> dict[str, list[str]]:
     """Lists of texts by tag, as clients send them; a BadValue when it is something else."""
-    if not isinstance(value, Mapping):
+    if not isinstance(value, Mapping) or not all(isinstance(tag, str) for tag in value):
         raise BadValue(field, value, "a map of tags to lists")
-    for tag, names in value.items():
-        fits = isinstance(names, (list, tuple)) and all(isinstance(name, str) for name in names)
-        if not isinstance(tag, str) or not fits:
-            raise BadValue(f"{field}[{tag!r}]", names, "a list of texts")
-    return {tag: list(names) for tag, names in value.items()}
+    return {tag: texts(names, f"{field}[{tag!r}]") for tag, names in value.items()}
+
+
+def map_or_pairs(value: Any, field: str, allowed: str = "[[key, value], ...]") -> dict[str, Any]:
+    """A map with texts for keys, at least one, as which clients also send pairs; errors say that `allowed` is."""
+    try:
+        found = dict(value)
+    except (TypeError, ValueError):
+        found = {}
+    if not found or not all(isinstance(key, str) for key in found):
+        raise BadValue(field, value, allowed)
+    return found
+
+
+def texts(value: Any, field: str) -> list[str]:
+    """A list of texts."""
+    if not isinstance(value, (list, tuple)) or not all(isinstance(one, str) for one in value):
+        raise BadValue(field, value, "a list of texts")
+    return list(value)

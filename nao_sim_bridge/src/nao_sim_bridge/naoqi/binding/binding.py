@@ -11,13 +11,13 @@ from __future__ import annotations
 import inspect
 import logging
 import threading
-from functools import partial, wraps
+from functools import lru_cache, partial, wraps
 from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import qi
 
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.naoqi.binding.api import Method, module_methods, qi_type
+from nao_sim_bridge.naoqi.binding.api import Method, module_methods, own_methods, qi_type, tables_of
 from nao_sim_bridge.naoqi.binding.common import CommonModule
 from nao_sim_bridge.naoqi.binding.later import Later, made
 from nao_sim_bridge.naoqi.binding.limits import check_sizes
@@ -28,6 +28,7 @@ log = logging.getLogger("nao_sim.services")
 
 # Every libqi object has these by itself.
 NATIVE = frozenset({"isStatsEnabled", "clearStats", "isTraceEnabled"})
+ANY_ARGUMENTS = "m"
 # Characters of an error text; what is between its ends is left out when somebody sent a book as a name.
 LONGEST_ERROR = 1200
 # The answer where something else was raised than what is raised on purpose.
@@ -58,19 +59,20 @@ class Service:
         table = published_methods(module)
         names = table.keys() - NATIVE if isinstance(parts, Later) else self._targets.methods
         body: dict[str, Any] = {}
-        for name, method in table.items():
+        for name, functions in _functions(module).items():
             if name in names:
-                for position, overload in enumerate(method.overloads):
-                    call = self._published(name, method.summary, qi_type(method.returns))
-                    call.__qi_signature__ = overload.signature
-                    body[name if position == 0 else f"{name}_{position}"] = call
-        body["pCall"] = self._published("pCall", inspect.getdoc(CommonModule.pCall), qi.Dynamic, qi.AnyArguments)
+                body.update(functions)
         self.object = type(module, (), body)()
+        self.object.__service__ = self  # what the functions, which services share, ask
         signals = [getattr(part, "signals", {}) for part in made(parts)]
         if isinstance(parts, Later) and parts.signals is not None:
             signals = [parts.signals.published]
         for name, signal in (entry for one in signals for entry in one.items()):
             setattr(self.object, name, signal)
+
+    def answer(self, method: str, args: Sequence[Any]) -> Any:
+        """What goes back to who calls a method; see `answer`."""
+        return self._targets.answer(self._module, method, args)
 
     def rebind(self, parts: Sequence[Any]) -> Callable[[], None]:
         """Have other objects of the same kinds do the work from now on.
@@ -94,20 +96,13 @@ class Service:
         table = published_methods(self._module)
         common = CommonModule(self._module, table, self._broker)
         for name, method in table.items():
-            target = None if name in NATIVE else _find(name, [*parts, common])
+            target = None if name in NATIVE else _target(name, parts, common)
             if target is not None:
                 common.targets[name] = _checked(self._module, method, target)
         for name, older in older_methods(self._module).items():
             if older.calls and all(target in common.targets for target in older.targets):
                 common.targets[name] = _checked(self._module, older.method, older.bound_to(common.targets))
         return {**common.targets, "pCall": common.pCall}
-
-    def _published(self, name: str, summary: str | None, returns: Any, types: Any = None) -> Any:
-        def published(_: Any, *args: Any) -> Any:
-            return self._targets.answer(self._module, name, args)
-
-        published.__doc__, published.__name__ = summary, name
-        return qi.bind(returns, types, name)(published)
 
 
 class _Targets:
@@ -176,11 +171,53 @@ def published_methods(module: str) -> dict[str, Method]:
     return {**module_methods(module), **{name: older.method for name, older in older_methods(module).items()}}
 
 
+def _functions(module: str) -> Mapping[str, Methods]:
+    """What services publish for each of the `published_methods`: a function for every overload, by names in a class."""
+    functions: dict[str, Methods] = {}
+    for table in tables_of(module):
+        for name, each in _functions_of(table).items():
+            functions[name] = _published(module_methods(module)[name]) if name in functions else each
+    return {**functions, **{name: _published(older.method) for name, older in older_methods(module).items()}}
+
+
+@lru_cache(maxsize=None)
+def _functions_of(table: str) -> Mapping[str, Methods]:
+    """Those of a table; all services of modules that share it share them."""
+    return {name: _published(method) for name, method in own_methods(table).items()}
+
+
+def _published(method: Method) -> Methods:
+    name = method.name
+    if name == "pCall":
+        return {name: _function(name, inspect.getdoc(CommonModule.pCall), qi.Dynamic, ANY_ARGUMENTS)}
+    ways = [_function(name, method.summary, qi_type(method.returns), way.signature) for way in method.overloads]
+    return {name if i == 0 else f"{name}_{i}": way for i, way in enumerate(ways)}
+
+
+def _function(name: str, summary: str | None, returns: Any, signature: str) -> Callable[..., Any]:
+    def published(service: Any, *args: Any) -> Any:
+        return service.__service__.answer(name, args)
+
+    published.__doc__, published.__name__ = summary, name
+    published = qi.bind(returns, methodName=name)(published)
+    published.__qi_signature__ = signature
+    return published
+
+
 def offered(module: str, parts: Sequence[Any]) -> tuple[list[str], list[str]]:
     """Names of the table's methods that a service of these parts answers, and those it does not."""
     table = module_methods(module)
     answers = [n for n in table if n in NATIVE or _find(n, [*parts, CommonModule]) is not None]
     return answers, [n for n in table if n not in answers]
+
+
+def _target(name: str, parts: Sequence[Any], common: CommonModule) -> Callable[..., Any] | None:
+    """What answers a method: a part, or what all modules have; both, by the number of arguments, if it is of both."""
+    own, shared = _find(name, parts), getattr(common, name, None)
+    if own is None or shared is None:
+        return own or shared
+    count = len(inspect.signature(shared).parameters)
+    return lambda *args: (shared if len(args) == count else own)(*args)
 
 
 def _find(name: str, parts: Iterable[Any]) -> Callable[..., Any] | None:

@@ -1,4 +1,4 @@
-"""Modules that cost nothing until somebody calls them."""
+"""Modules that cost nothing until somebody calls them: neither are they made before, nor is their code read."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import threading
 from collections.abc import Sequence
 from typing import Any, Callable
 
+from nao_sim_bridge.base.imports import imported
 from nao_sim_bridge.naoqi.binding.signals import Signals
 
 
@@ -44,6 +45,11 @@ class Later(Sequence):
             if self._parts is None:
                 self._parts = self._make()
             return self._parts
+
+
+def later(where: str, *arguments: Any, signals: Signals | None = None) -> Later:
+    """A module of one part that is made later: the class at `where` with these arguments; see `imported`."""
+    return Later(lambda: [imported(where)(*arguments)], signals)
 
 
 def made(parts: Sequence[Any]) -> Sequence[Any]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import logging
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Callable, Mapping, Sequence
 
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.api import Method, make_method, older_tables
 
@@ -25,6 +27,7 @@ class OlderMethod:
             the module has such a method itself.
         pick: Number of the entry of the last answer that is the answer; None for all of it.
         answer: What it answers instead; None for what the last call does.
+        refuses: Parameters that have to be false, and what would be right.
     """
 
     method: Method
@@ -32,6 +35,7 @@ class OlderMethod:
     calls: Sequence[Sequence[Sequence[Any]]]
     pick: int | None
     answer: Any
+    refuses: Mapping[str, str]
 
     @property
     def targets(self) -> list[str]:
@@ -44,6 +48,9 @@ class OlderMethod:
         def call(*arguments: Any) -> Any:
             way = next(i for i, each in enumerate(self.method.overloads) if len(each.names) == len(arguments))
             given = dict(zip(self.method.overloads[way].names, arguments))
+            for name, right in self.refuses.items():
+                if given[name]:
+                    raise BadValue(name, given[name], right)
             return _in_turn([(methods[name], _filled(templates, given)) for name, *templates in self.calls[way]], end)
 
         def end(value: Any) -> Any:
@@ -90,7 +97,18 @@ def _older_method(name: str, entry: Mapping[str, Any]) -> OlderMethod:
     calls = [way["calls"] for way in entry["ways"] if "calls" in way]
     now = dict.fromkeys(target for way in calls for target, *_ in way)
     text = f"of NAOqi {entry['last']} and before" + (f"; today it is {', '.join(now)}" if now else "")
-    return OlderMethod(make_method(name, entry, text), entry["last"], calls, entry.get("pick"), entry.get("answer"))
+    refuses, unused = entry.get("refuses", {}), _unused(entry)
+    if unused:
+        entry = {**entry, "summary": f"{entry['summary']}; not used: {', '.join(unused)}"}
+    method = make_method(name, entry, text)
+    return OlderMethod(method, entry["last"], calls, entry.get("pick"), entry.get("answer"), refuses)
+
+
+def _unused(entry: Mapping[str, Any]) -> list[str]:
+    """Parameters that are given to no call, and not refused."""
+    ways = [(way["takes"], json.dumps(way["calls"])) for way in entry["ways"] if "calls" in way]
+    names = [(each.split()[-1], calls) for takes, calls in ways for each in takes]
+    return [name for name, calls in names if f'"${name}"' not in calls and name not in entry.get("refuses", ())]
 
 
 def _filled(template: Any, given: Mapping[str, Any]) -> Any:

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Sequence
 
-import cv2
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, SimulationError
+from nao_sim_bridge.base.imports import Library
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
@@ -20,6 +20,7 @@ from nao_sim_bridge.base.whole_file import write_whole
 from nao_sim_bridge.cameras.stream import CameraClosed
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
+cv2 = Library("cv2")
 log = logging.getLogger("nao_sim.photos")
 
 HIGHEST_RATE = 30.0

@@ -5,31 +5,22 @@ Life switches abilities by its state; each of these modules switches one at once
 
 from __future__ import annotations
 
-from typing import Any, Sequence
+from typing import Any
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import lists_by_tag, one_of
-from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.life import abilities as ability_names
 from nao_sim_bridge.naoqi.life.abilities import Abilities
-from nao_sim_bridge.naoqi.life.movements import BackgroundMovement, ListeningMovement, SpeakingMovement
-from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
+from nao_sim_bridge.naoqi.life.movements import SpeakingMovement
 from nao_sim_bridge.speech.animations import AnimationLibrary
 from nao_sim_bridge.speech.body_language import CONTEXTUAL, RANDOM, BodyLanguage
-
-BLINKING, BACKGROUND, LISTENING, SPEAKING = (
-    "ALAutonomousBlinking",
-    "ALBackgroundMovement",
-    "ALListeningMovement",
-    "ALSpeakingMovement",
-)
 
 
 class AbilityModule:
     """An ability that is switched on and off. Only NAOqi methods are public."""
 
-    def __init__(self, name: str, abilities: Abilities, runner: RobotRunner) -> None:
+    def __init__(self, abilities: Abilities, runner: RobotRunner, name: str) -> None:
         self._name = name
         self._abilities = abilities
         self._runner = runner
@@ -47,8 +38,8 @@ class AbilityModule:
 class MovementModule(AbilityModule):
     """An ability that moves joints."""
 
-    def __init__(self, name: str, abilities: Abilities, runner: RobotRunner, movement: Any) -> None:
-        super().__init__(name, abilities, runner)
+    def __init__(self, abilities: Abilities, runner: RobotRunner, name: str, movement: Any) -> None:
+        super().__init__(abilities, runner, name)
         self._movement = movement
 
     def isRunning(self) -> Task:
@@ -67,7 +58,7 @@ class ALSpeakingMovement(MovementModule):
         body_language: BodyLanguage,
         library: AnimationLibrary,
     ) -> None:
-        super().__init__(ability_names.SPEAKING, abilities, runner, movement)
+        super().__init__(abilities, runner, ability_names.SPEAKING, movement)
         self._body_language = body_language
         self._library = library
 
@@ -90,26 +81,3 @@ class ALSpeakingMovement(MovementModule):
     def _switch(self, on: bool) -> None:
         self._body_language.enabled = on
         super()._switch(on)
-
-
-def modules(
-    abilities: Abilities,
-    runner: RobotRunner,
-    background: BackgroundMovement,
-    listening: ListeningMovement,
-    speaking: SpeakingMovement,
-    speech: SpeechModules,
-) -> dict[str, Sequence[Any]]:
-    """The modules by name."""
-
-    def movement(name: str, moves: Any) -> Later:
-        return Later(lambda: [MovementModule(name, abilities, runner, moves)])
-
-    return {
-        BLINKING: Later(lambda: [AbilityModule(ability_names.BLINKING, abilities, runner)]),
-        BACKGROUND: movement(ability_names.BACKGROUND, background),
-        LISTENING: movement(ability_names.LISTENING, listening),
-        SPEAKING: Later(
-            lambda: [ALSpeakingMovement(abilities, runner, speaking, speech.body_language, speech.library)]
-        ),
-    }

@@ -7,10 +7,10 @@ from typing import Any, Sequence
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
 from nao_sim_bridge.naoqi.binding.background import ModuleCalls
-from nao_sim_bridge.naoqi.binding.later import Later
+from nao_sim_bridge.naoqi.binding.later import Later, later
 from nao_sim_bridge.naoqi.body.posture import ALRobotPosture
 from nao_sim_bridge.naoqi.life import abilities as ability_names
-from nao_sim_bridge.naoqi.life import ability_modules, autonomous_life, awareness, movements
+from nao_sim_bridge.naoqi.life import autonomous_life, awareness, movements
 from nao_sim_bridge.naoqi.life.abilities import Abilities
 from nao_sim_bridge.naoqi.life.autonomous_life import ALAutonomousLife
 from nao_sim_bridge.naoqi.life.awareness import Awareness
@@ -31,11 +31,12 @@ from nao_sim_bridge.naoqi.sound.wiring import SpeechModules
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.tracker import tracking
 from nao_sim_bridge.naoqi.tracker.looking import Looking
-from nao_sim_bridge.naoqi.tracker.older_trackers import TARGETS, older_tracker
 from nao_sim_bridge.naoqi.tracker.tracker import ALTracker
 from nao_sim_bridge.naoqi.tracker.tracking import Tracking
 
 STAND, STAND_SPEED = "Stand", 0.8
+OLDER_TRACKERS = {"ALRedBallTracker": ("RedBall", 0.06), "ALFaceTracker": ("Face", 0.15)}
+"""The target of each module, and its size where a client does not say it, m."""
 
 
 class LifeModules:
@@ -82,6 +83,13 @@ class LifeModules:
         launchpad = Launchpad(simulation, self._life, memory, lambda: self._awareness.human, zone)
         safeguards = Safeguards(self._life, runner, memory, wake.rest)
         tracker = ALTracker(self._tracking, runner)
+
+        def ability(kind: str, *arguments: Any) -> Later:
+            return later(f"naoqi.life.ability_modules:{kind}", abilities, runner, *arguments)
+
+        def older_tracker(target: str, size: float) -> Later:
+            return later("naoqi.tracker.older_trackers:OlderTracker", target, size, tracker)
+
         self.modules: dict[str, Sequence[Any]] = {
             autonomous_life.NAME: [
                 ALAutonomousLife(self._life, running.installed, self._awareness.stimuli, runner),
@@ -91,10 +99,13 @@ class LifeModules:
                 safeguards,
             ],
             movements.NAME: [ALAutonomousMoves(background, listening, runner)],
-            **ability_modules.modules(abilities, runner, background, listening, speaking, speech),
+            "ALAutonomousBlinking": ability("AbilityModule", ability_names.BLINKING),
+            "ALBackgroundMovement": ability("MovementModule", ability_names.BACKGROUND, background),
+            "ALListeningMovement": ability("MovementModule", ability_names.LISTENING, listening),
+            "ALSpeakingMovement": ability("ALSpeakingMovement", speaking, speech.body_language, speech.library),
             awareness.NAME: [ALBasicAwareness(self._awareness, runner)],
             tracking.NAME: [tracker, Looking(self._tracking, runner)],
-            **{module: Later(older_tracker(module, tracker)) for module in TARGETS},
+            **{module: older_tracker(*target) for module, target in OLDER_TRACKERS.items()},
         }
 
     def close(self) -> None:

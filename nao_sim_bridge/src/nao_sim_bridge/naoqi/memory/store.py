@@ -159,8 +159,7 @@ class MemoryStore:
         change = Task("getDataOnChange", 0, ask=lambda task: task.kill())
         with self._lock:
             self.kind(key)
-            if key in self._live:
-                raise NaoqiError(f"{key} is measured when it is read and never written; read it with getData")
+            self._check_written(key)
             given_up = next(iter(self._changes)) if len(self._changes) >= MOST_WAITING else None
             self._changes[change] = key
         change.add_done_callback(self._forget_change)
@@ -254,9 +253,10 @@ class MemoryStore:
     def hold(self, name: str, what: Hashable = SIGNAL, *values: Any) -> None:
         """Count what a client has made beside keys: the signal of an event, or something else with its values.
 
-        A NaoqiError when there is no room for it.
+        A NaoqiError when there is no room for it, or the key is never written.
         """
         with self._lock:
+            self._check_written(name)
             self._room.hold((what, name), name, *values)
 
     def release(self, name: str, what: Hashable) -> None:
@@ -292,13 +292,18 @@ class MemoryStore:
             self._guard.call(watcher, name, self.subscribers(name))
 
     def _made(self, key: str, kind: str, by_client: bool, extractor: str = "") -> _Entry:
-        """The entry of a key, made when there is none."""
+        """The entry of a key, made when there is none; a NaoqiError for one that is never written."""
+        self._check_written(key)
         entry = self._entries.get(key)
         if entry is None:
             if by_client:
                 self._room.hold((KEY, key), key, extractor)
             entry = self._entries[key] = _Entry(kind)
         return entry
+
+    def _check_written(self, key: str) -> None:
+        if key in self._live:
+            raise NaoqiError(f"{key} is measured when it is read and never written; read it with getData")
 
     def _write(self, key: str, value: Any, kind: str, by_client: bool = False) -> None:
         now, size = self._clock(), size_of(value) if by_client else 0

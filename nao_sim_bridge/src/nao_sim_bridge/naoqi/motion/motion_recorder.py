@@ -17,7 +17,6 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.motion.arguments import bezier_curve, bezier_key_points
 from nao_sim_bridge.naoqi.motion.part import MotionPart
 
-NAME = "ALMotionRecorder"
 WITH_BUMPERS, WITH_BUTTON = MODES = (1, 2)
 LEFT, RIGHT = frozenset(BUMPERS["LFoot"]), frozenset(BUMPERS["RFoot"])
 LEAST_STEP, LONGEST_STEP = 0.01, 3600.0

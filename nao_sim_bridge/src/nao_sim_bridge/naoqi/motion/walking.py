@@ -31,15 +31,33 @@ ROUNDING = 1e-6
 MOST = 1e6
 
 
-class MoveFailures:
-    """Raises `ALMotion/MoveFailed`: [cause, 0 not started or 1 stopped on the way, place of an obstacle or None]."""
+class Moves:
+    """Begins moves of a robot, one object for all modules that do. Simulation thread only.
+
+    Those that fail raise `ALMotion/MoveFailed`: [cause, 0 not started or 1 stopped on the way, place of an obstacle or
+    None]. As on a robot, legs that are too soft prevent a move without an error: the log warns, once until one begins.
+    """
 
     def __init__(self, memory: MemoryStore) -> None:
         self._memory = memory
+        self._told_soft = False
         memory.declare_event(FAILED, "ALMotion")
 
+    def begin(self, locomotion: Locomotion, call: str, command: Callable[[Locomotion], Any], prevented: Any) -> Any:
+        """What a command of the robot's locomotion answers, or `prevented` when soft legs have prevented it."""
+        self.watch(locomotion)
+        try:
+            answer = command(locomotion)
+        except LegsTooSoft as error:
+            if not self._told_soft:  # somebody may ask again and again
+                self._told_soft = True
+                log.warning("%s does not move the robot: %s", call, error)
+            return prevented
+        self._told_soft = self._told_soft and not locomotion.active
+        return answer
+
     def watch(self, locomotion: Locomotion) -> None:
-        """Tell of the moves of this one; more than once is as good as once. Simulation thread only."""
+        """Tell of the failures of this one; more than once is as good as once."""
         if self._tell not in locomotion.failures:
             locomotion.failures.append(self._tell)
 
@@ -51,14 +69,12 @@ class MoveFailures:
 class Walking(MotionPart):
     """Moves. Those at a velocity return at once; those to a place return when the robot stands there, or elsewhere.
 
-    As on a robot, legs that are too soft prevent a move without an error: the log warns, `ALMotion/MoveFailed` is
-    raised, and moveTo answers False.
+    When soft legs prevent one, moveTo answers False.
     """
 
-    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
+    def __init__(self, runner: RobotRunner, moves: Moves) -> None:
         super().__init__(runner)
-        self._failures = MoveFailures(memory)
-        self._told_soft = False
+        self._moves = moves
 
     def moveInit(self) -> Task:
         return self._walk("moveInit", lambda locomotion: locomotion.init())
@@ -165,20 +181,10 @@ class Walking(MotionPart):
     def _walk(self, call: str, command: Callable[[Locomotion], Any], prevented: Any = None) -> Task:
         """Run a command of the robot's locomotion in the simulation thread; the answer of one that is `prevented`."""
 
-        def run() -> Any:
-            locomotion = self._robot.locomotion
-            self._failures.watch(locomotion)
-            try:
-                answer = command(locomotion)
-            except LegsTooSoft as error:
-                if not self._told_soft:  # somebody may ask again and again
-                    self._told_soft = True
-                    log.warning("ALMotion::%s does not move the robot: %s", call, error)
-                return prevented
-            self._told_soft = False
-            return answer
+        def begin() -> Any:
+            return self._moves.begin(self._robot.locomotion, f"ALMotion::{call}", command, prevented)
 
-        return self._runner.execute(run, call)
+        return self._runner.execute(begin, call)
 
     def _read(self, call: str, reading: Callable[[Locomotion], Iterable[float]]) -> Task:
         # Between two ticks: plan, commands and sensors are of one moment there.

@@ -9,7 +9,7 @@ from nao_sim_bridge.base.rotations import Vector3, plus, rotate
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.motion.walking import MoveFailures
+from nao_sim_bridge.walk.courses import Course
 from nao_sim_bridge.walk.footsteps import FootPose
 
 log = logging.getLogger("nao_sim.navigation")
@@ -24,7 +24,7 @@ Place = Tuple[float, float]
 
 
 class Caution:
-    """Looks ahead while a move lasts that was begun with `begin`.
+    """Looks ahead while a move lasts, from `begin` until it ends or makes room for another one.
 
     It ends the move, and raises `Navigation/AvoidanceNavigator/ObstacleDetected` with [x, y] in FRAME_ROBOT, when
     something ahead is nearer than ALMotion's orthogonal security distance, however slow the robot is.
@@ -39,8 +39,7 @@ class Caution:
         self.free_side = 0
         self._simulation = simulation
         self._memory = memory
-        self._failures = MoveFailures(memory)
-        self._looks = False
+        self._course: Course | None = None  # of the move
         self._echoes: Sequence[float] = ()
         memory.declare_event(OBSTACLE, NAME)
         simulation.after_tick.append(self._tick)
@@ -55,21 +54,20 @@ class Caution:
         self._simulation.robot.reflexes.external_collision.orthogonal = distance
 
     def begin(self) -> None:
-        """A move is about to begin."""
+        """A move has just begun."""
         locomotion = self._simulation.robot.locomotion
-        self._failures.watch(locomotion)
         if self._failed not in locomotion.failures:
             locomotion.failures.append(self._failed)
         self.obstacle = None
-        self._looks = True
+        self._course = locomotion.course
         self._echoes = ()
 
     def _tick(self, now: Snapshot) -> None:
-        if not self._looks:
+        if self._course is None:
             return
         locomotion = self._simulation.robot.locomotion
-        if not locomotion.active:
-            self._looks = False
+        if locomotion.course is not self._course:
+            self._course = None
         elif now.sonars is not self._echoes:
             self._echoes = now.sonars
             if locomotion.ahead > SLOWEST and min(now.sonars) < self.distance:
@@ -79,7 +77,7 @@ class Caution:
 
     def _failed(self, _: str, started: bool, obstacle: Vector3 | None) -> None:
         """ALMotion's own protection was quicker."""
-        if self._looks and started and obstacle is not None:
+        if self._course is not None and started and obstacle is not None:
             self._stop_at(obstacle)
 
     def _stop_at(self, place: Any) -> None:

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from typing import Any, Callable, NoReturn
 
-from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.move_config import gait_of
+from nao_sim_bridge.naoqi.motion.walking import Moves
 from nao_sim_bridge.naoqi.navigation.caution import Caution
 from nao_sim_bridge.naoqi.navigation.navigator import Navigator
 from nao_sim_bridge.naoqi.navigation.trajectory import read_trajectory
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.gait import FeetGait
 from nao_sim_bridge.walk.locomotion import Locomotion
+
+log = logging.getLogger("nao_sim.navigation")
 
 FARTHEST_GOAL = 3.0
 """Goals of navigateTo are nearer than this, m."""
@@ -34,8 +37,9 @@ class ALNavigation:
     are; that is ALMotion's orthogonal one.
     """
 
-    def __init__(self, runner: RobotRunner, memory: MemoryStore) -> None:
+    def __init__(self, runner: RobotRunner, memory: MemoryStore, moves: Moves) -> None:
         self._runner = runner
+        self._moves = moves
         self._caution = Caution(runner.simulation, memory)
         self._navigator = Navigator(runner.simulation, memory, self._caution)
 
@@ -64,19 +68,23 @@ class ALNavigation:
 
     # --- ways -----------------------------------------------------------------------------------------------------
 
-    def navigateTo(self, x: float, y: float, *others: Any) -> Task:
-        """(x, y), then theta, a configuration, both or neither; answers whether the robot got there."""
+    def navigateTo(self, x: float, y: float, *others: Any) -> Task | bool:
+        """(x, y), then theta, a configuration, both or neither; answers whether the robot got there.
+
+        As on a robot, a goal that is too far away is not gone to, and the log says so.
+        """
         theta = next((value for value in others if not isinstance(value, (list, tuple))), None)
         config = next((value for value in others if isinstance(value, (list, tuple))), ())
         goal, gait = FootPose(*_three(x, y, theta or 0.0)), gait_of(config)
         if math.hypot(x, y) >= FARTHEST_GOAL:
-            raise BadValue("x, y", [x, y], f"a place nearer than {FARTHEST_GOAL:g} m")
-        return self._runner.execute(lambda: self._navigator.go_to(goal, theta is not None, gait), "navigateTo")
+            log.warning("navigateTo: (%g, %g) is not gone to, allowed is a place nearer than %g m", x, y, FARTHEST_GOAL)
+            return False
+        return self._go("navigateTo", lambda: self._navigator.go_to(goal, theta is not None, gait))
 
     def moveAlong(self, trajectory: Any) -> Task:
         """Answers True also when an obstacle has ended it."""
         stretches = read_trajectory(trajectory)
-        return self._runner.execute(lambda: self._navigator.go_along(stretches, FeetGait()), "moveAlong")
+        return self._go("moveAlong", lambda: self._navigator.go_along(stretches, FeetGait()))
 
     def stopNavigateTo(self) -> Task:
         return self._runner.execute(self._navigator.stop, "stopNavigateTo")
@@ -99,10 +107,21 @@ class ALNavigation:
     def _cautiously(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
         def run() -> Any:
             self._navigator.stop()
+            answer = command(self._locomotion)
             self._caution.begin()
-            return command(self._runner.simulation.robot.locomotion)
+            return answer
+
+        return self._go(call, run, None)
+
+    def _go(self, call: str, begin: Callable[[], Any], prevented: Any = False) -> Task:
+        def run() -> Any:
+            return self._moves.begin(self._locomotion, f"ALNavigation::{call}", lambda _: begin(), prevented)
 
         return self._runner.execute(run, call)
+
+    @property
+    def _locomotion(self) -> Locomotion:
+        return self._runner.simulation.robot.locomotion
 
 
 def _three(x: Any, y: Any, theta: Any) -> tuple[float, float, float]:

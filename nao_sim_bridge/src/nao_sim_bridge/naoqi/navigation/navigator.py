@@ -145,8 +145,9 @@ class Navigator:
 
     def _walk(self, poses: Sequence[FootPose], gait: FeetGait, time: float | None = None) -> Legs:
         """Whether the robot got there."""
+        move = self._simulation.robot.locomotion.move_to(poses, gait, time)
         self._caution.begin()
-        return (yield self._simulation.robot.locomotion.move_to(poses, gait, time))
+        return (yield move)
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
@@ -166,8 +167,11 @@ class Navigator:
         if self._task is None:
             return
         self._tell_progress()
-        # A walk that is stopped has told so already, and makes its last steps.
-        if self._leg is not None and self._leg.finished and not self._simulation.robot.walking:
+        if self._leg is None or not self._leg.finished:
+            return
+        # A walk that an obstacle has ended has told so already, and makes its last steps; others may have another walk.
+        hindered = self._caution.obstacle is not None and not self._leg.value
+        if not hindered or not self._simulation.robot.walking:
             self._proceed(bool(self._leg.value), self._leg.error)
 
     def _proceed(self, reached: bool, error: Exception | None = None) -> None:

@@ -218,22 +218,14 @@ def _after(tasks: Sequence[Task], then: Callable[[], Any]) -> None:
 
 
 def until_over(command: Task) -> Task:
-    """A task that ends when a command and what it has begun have ended; killing it ends that."""
-    now = [command]
-
-    def stop(_: Task) -> None:
-        if now[0] is not command:
-            now[0].kill()
-        else:  # it has not run yet, and cannot be stopped before
-            command.add_done_callback(lambda done: done.value.kill() if isinstance(done.value, Task) else None)
+    """A task that ends when a command and what it has begun have ended; killing it ends that, or what it will begin."""
 
     def settle(done: Task) -> None:
         if isinstance(done.value, Task):
-            now[0] = done.value
             done.value.add_done_callback(settle)
         elif not whole.finished:
             whole.finish(error=done.error)
 
-    whole = Task(command.name, 0, on_kill=stop)
+    whole = Task(command.name, 0, on_kill=lambda _: command.request_kill())
     command.add_done_callback(settle)
     return whole

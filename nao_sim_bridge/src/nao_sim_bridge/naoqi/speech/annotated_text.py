@@ -8,6 +8,8 @@ import re
 from dataclasses import dataclass
 from typing import Any, Iterator, Tuple, Union
 
+from nao_sim_bridge.base.written_numbers import written_number
+
 log = logging.getLogger("nao_sim.speech")
 
 ANIMATION, TAG, SOUND, MODE, CALL = "animation", "tag", "sound", "mode", "call"
@@ -80,9 +82,10 @@ def sound_and_volume(text: str) -> Tuple[str, float]:
     sound, comma, percent = text.rpartition(",")
     if not comma:
         return text.strip(), 1.0
-    if not percent.strip().isdigit() or int(percent) > 100:
+    volume = written_number(percent.strip(), 100)
+    if volume is None:
         raise ValueError(f"{percent.strip()[:20]!r} is no volume, which is 0 to 100")
-    return sound.strip(), int(percent) / 100.0
+    return sound.strip(), volume / 100.0
 
 
 def method_call(text: str) -> Tuple[str, str, list[Any]]:

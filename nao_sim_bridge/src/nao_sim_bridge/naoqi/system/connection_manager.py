@@ -6,7 +6,7 @@ from typing import Any
 
 from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.naoqi.binding.arguments import known
+from nao_sim_bridge.naoqi.binding.arguments import known, map_or_pairs, texts
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.system.network import EVENTS, TECHNOLOGIES, WIFI, Network
@@ -54,7 +54,7 @@ class ALConnectionManager:
         self._network.forget(service_id)
 
     def setServiceInput(self, answer: Any) -> None:
-        self._network.give_input(_map("input", answer))
+        self._network.give_input(map_or_pairs(answer, "input"))
 
     def setServiceIPv4(self, service_id: str, ipv4: dict[str, str]) -> None:
         self._network.set_ipv4(service_id, ipv4)
@@ -70,17 +70,17 @@ class ALConnectionManager:
 
     def setServiceConfiguration(self, configuration: Any) -> None:
         """The older way for addresses, domains and name servers: a NetworkInfo."""
-        given = _map("configuration", configuration)
+        given = map_or_pairs(configuration, "configuration")
         service_id = given.get("ServiceId")
         if not isinstance(service_id, str):
             raise BadValue("configuration", given, 'a NetworkInfo with "ServiceId"')
         self._network.service(service_id)
         if "IPv4" in given:
-            self._network.set_ipv4(service_id, _map("IPv4", given["IPv4"]))
+            self._network.set_ipv4(service_id, map_or_pairs(given["IPv4"], "IPv4"))
         if "Domains" in given:
-            self._network.set_domains(service_id, _texts("Domains", given["Domains"]))
+            self._network.set_domains(service_id, texts(given["Domains"], "Domains"))
         if "Nameserver" in given:
-            self._network.set_nameservers(service_id, _texts("Nameserver", given["Nameserver"]))
+            self._network.set_nameservers(service_id, texts(given["Nameserver"], "Nameserver"))
 
     def provisionService(self, provision: dict[str, str]) -> None:
         self._network.provision(provision)
@@ -134,20 +134,3 @@ class ALConnectionManager:
 def _tetherable(technology: str) -> None:
     if technology != WIFI:
         raise BadValue("technology", technology, f"{WIFI}, the only one of this robot that can be a network itself")
-
-
-def _map(field: str, value: Any) -> dict[str, Any]:
-    """A map with texts for keys, as which a client may also give pairs."""
-    try:
-        found = dict(value)
-    except (TypeError, ValueError):
-        found = {}
-    if not found or not all(isinstance(key, str) for key in found):
-        raise BadValue(field, value, "[[key, value], ...]")
-    return found
-
-
-def _texts(field: str, value: Any) -> list[str]:
-    if not isinstance(value, (list, tuple)) or not all(isinstance(text, str) for text in value):
-        raise BadValue(field, value, "a list of texts")
-    return list(value)

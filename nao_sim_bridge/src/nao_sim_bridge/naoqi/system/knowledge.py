@@ -17,7 +17,8 @@ FILE = ".local/share/ALKnowledge/knowledge.json"
 class ALKnowledge:
     """ALKnowledge as the simulated robot offers it, kept in a file of the robot.
 
-    Triples come and go at their dates, of the clock of the computer: whoever asks finds them in time.
+    Triples come and go at their dates, of the clock of the computer: whoever asks finds them in time. The file has the
+    dates until the next change: questions write nothing.
     """
 
     def __init__(self, files: ClientFiles) -> None:
@@ -148,8 +149,7 @@ class ALKnowledge:
         return [(*triple, key, word) for triple, key, word in found if not exists or store.find(domain, triple)]
 
     def _settled(self) -> TripleStore:
-        if self._store.settle():
-            self._file.save(self._store.content())
+        self._store.settle()
         return self._store
 
     @contextmanager

@@ -7,6 +7,7 @@ others by who has the id. Patterns with a wildcard for the subject do not find t
 from __future__ import annotations
 
 import json
+import math
 import re
 import uuid
 from dataclasses import dataclass, field
@@ -15,6 +16,7 @@ from typing import Any, Callable, Iterable, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.written_numbers import written_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 ANY, ASKED = "*", "?"
@@ -27,7 +29,7 @@ DATE_FORMAT = "%Y-%m-%dT%H:%M:%SZ"
 DATE_WORDS = "a date such as 2030-12-31T23:59:59Z"
 LONGEST_PART = 100_000
 """Days, hours, minutes or seconds of a duration."""
-_DURATION = re.compile(r"P(?=.)(?:(\d+)D)?(?:T(?=.)(?:(\d+)H)?(?:(\d+)M)?(?:(\d+)S)?)?")
+_DURATION = re.compile(r"P(?=.)(?:(\d{1,9})D)?(?:T(?=.)(?:(\d{1,9})H)?(?:(\d{1,9})M)?(?:(\d{1,9})S)?)?")
 _NAMES = uuid.UUID("1f7a3d0e-5c0b-4b0a-9a53-6d1f7be0a6c2")
 
 Triple = Tuple[str, str, str]
@@ -67,6 +69,7 @@ class TripleStore:
     def __init__(self, clock: Callable[[], datetime]) -> None:
         self._clock = clock
         self._domains: dict[str, _Domain] = {}
+        self._count = 0  # of triples and data, with those removed since it was counted
         self._due: datetime | None = None  # the first date at which a triple comes or goes
 
     # --- to and from a file ------------------------------------------------------------------------------------------
@@ -89,12 +92,16 @@ class TripleStore:
             place.triples = {(s, p, o): None for s, p, o in _rows(entry, "triples", 3)}
             for s, p, o, key, value in _rows(entry, "data", 5):
                 self._node(name, (s, p, o)).data[key, value] = None
+        self._count = sum(map(len, self._domains.values()))
         self._look_for_dates()
 
     # --- triples -----------------------------------------------------------------------------------------------------
 
-    def add(self, domain: str, triple: Triple) -> None:
+    def add(self, domain: str, triple: Triple, promised: bool = False) -> None:
         """Add a triple, which may be there; in the domain `LEARNING`, when and how often is kept as its data.
+
+        Args:
+            promised: Whether it comes also where there are too many: it was taken on before.
 
         Raises:
             BadValue: It has a wildcard.
@@ -104,15 +111,15 @@ class TripleStore:
         place = self._domains.setdefault(domain, _Domain())
         subject, name, value = triple
         if subject in place.nodes:
-            self._put(place.nodes[subject].data, (name, value))
+            self._put(place.nodes[subject].data, (name, value), promised)
             return
-        self._put(place.triples, triple)
+        self._put(place.triples, triple, promised)
         if domain == LEARNING:
             node = self._node(domain, triple)
-            count = next((int(text) for text in node.values(ADDING_COUNT) if text.isdigit()), 0)
+            count = next((written_number(text, math.inf) or 0 for text in node.values(ADDING_COUNT)), 0)
             node.drop(ADDING_COUNT, ANY)
-            self._put(node.data, (ADDING_COUNT, str(count + 1)))
-            self._put(node.data, (ADDED_DATE, self._clock().astimezone(timezone.utc).strftime(DATE_FORMAT)))
+            self._put(node.data, (ADDING_COUNT, str(count + 1)), promised)
+            self._put(node.data, (ADDED_DATE, self._clock().astimezone(timezone.utc).strftime(DATE_FORMAT)), promised)
 
     def replace(self, domain: str, triple: Triple) -> None:
         """Add a triple instead of all of the same subject and predicate."""
@@ -194,7 +201,7 @@ class TripleStore:
             for name, text in ((name, text) for name, texts in over.items() for text in texts):
                 node.drop(name, text)
             if over[HAPPENING]:
-                self.add(LEARNING, node.triple)
+                self.add(LEARNING, node.triple, promised=True)
             if over[EXPIRATION]:
                 place.triples.pop(node.triple, None)
         self._look_for_dates()
@@ -223,10 +230,15 @@ class TripleStore:
     def _node(self, domain: str, triple: Triple) -> _Node:
         return self._domains[domain].nodes.setdefault(self.id_of(domain, triple), _Node(triple))
 
-    def _put(self, where: dict[Any, None], entry: Any) -> None:
+    def _put(self, where: dict[Any, None], entry: Any, promised: bool = False) -> None:
         most = load_sizes().kept.triples
-        if entry not in where and sum(map(len, self._domains.values())) >= most:
-            raise NaoqiError(f"{most} triples with their metadata are known at most: remove, or resetKnowledge, first")
+        if entry in where:
+            return
+        if not promised and self._count >= most:
+            self._count = sum(map(len, self._domains.values()))  # what was removed counts no more
+            if self._count >= most:
+                raise NaoqiError(f"{most} triples with metadata are known at most: remove, or resetKnowledge, first")
+        self._count += 1
         where[entry] = None
 
 

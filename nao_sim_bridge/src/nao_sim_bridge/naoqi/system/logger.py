@@ -5,12 +5,14 @@ from __future__ import annotations
 import logging
 import os
 import time
+from contextlib import suppress
 from fnmatch import fnmatchcase
 from typing import BinaryIO
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
-from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile, OutsideRecordDir, UnusableName
 from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.written_numbers import written_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 
 SILENT, FATAL, ERROR, WARNING, INFO, VERBOSE, DEBUG = range(7)
@@ -73,21 +75,28 @@ class ALLogger:
 
     def logInFile(self, name: str) -> None:
         """Write to a file of the robot, too, behind what is in it."""
-        if name not in self._open:
+        if name == STANDARD:
+            raise BadValue("file", name, f"another name: {STANDARD} is the log of the simulator")
+        file = self._files.to_write(name)
+        path = self._files.to_robot(file)
+        if path not in self._open:
             if len(self._open) >= MOST_FILES:
                 raise NaoqiError(
                     f"{MOST_FILES} files are written to already: removeHandler({next(iter(self._open))!r})"
                 )
-            self._open[name] = open(self._files.to_write(name), "ab", buffering=0)
+            self._open[path] = open(file, "ab", buffering=0)
 
     def removeHandler(self, name: str) -> None:
         """Write to a file no more, or, with "std", not to the log of the simulator."""
         if name == STANDARD and self._standard:
             self._standard = False
-        elif name in self._open:
-            self._open.pop(name).close()
-        else:
+            return
+        path = name
+        with suppress(NoSuchFile, OutsideRecordDir, UnusableName):
+            path = self._files.to_robot(self._files.to_read(name))
+        if path not in self._open:
             raise UnknownName("handler", name, [*([STANDARD] if self._standard else []), *self._open])
+        self._open.pop(path).close()
 
     def logInSys(self) -> None:
         raise NaoqiError("there is no system log: messages are in the log of the simulator, and in files by logInFile")
@@ -109,20 +118,24 @@ class ALLogger:
         line = f"[{LEVELS[level][0].upper()}] {time.time():.6f} {os.getpid()} {module}: {message}\n".encode(
             errors="replace"
         )
-        for name, file in list(self._open.items()):
-            if file.tell() + len(line) > load_sizes().kept.log_bytes:
-                self.removeHandler(name)
-                raise NaoqiError(f"{name} is full, {load_sizes().kept.log_bytes} bytes at most, and written to no more")
+        most = load_sizes().kept.log_bytes
+        full = [path for path, file in self._open.items() if file.tell() + len(line) > most]
+        for path in full:
+            self._open.pop(path).close()
+        for file in self._open.values():
             file.write(line)
+        if full:
+            raise NaoqiError(f"full, {most} bytes at most, and written to no more: {', '.join(full)}")
 
 
 def _level(field: str, text: str) -> int:
     """The number of a level, also of one that is given as a number."""
     if text in LEVELS:
         return LEVELS.index(text)
-    if text.isdecimal() and int(text) < len(LEVELS):
-        return int(text)
-    raise BadValue(field, text, f"one of {', '.join(LEVELS)}")
+    number = written_number(text, DEBUG)
+    if number is None:
+        raise BadValue(field, text, f"one of {', '.join(LEVELS)}")
+    return number
 
 
 def _rule(rule: str) -> tuple[str, int]:
@@ -130,6 +143,6 @@ def _rule(rule: str) -> tuple[str, int]:
     name, equals, level = rule.partition("=")
     if equals and name:
         return name, _level("filter", level)
-    if name[0] in "+-" and len(name) > 1:
+    if not equals and name[0] in "+-" and len(name) > 1:
         return name[1:], DEBUG if name[0] == "+" else SILENT
     raise BadValue("filter", rule, "module=level, +module or -module, several with : between them")

@@ -145,10 +145,15 @@ class NaoSimulation:
         """A piece of a file of the robot, from the byte `offset` on; empty at its end."""
         return self._host.file_access.read(path, offset)
 
-    @typed(NAME, qi.String, [qi.String, qi.Int64, "r", qi.Bool])
-    def writeFile(self, path: str, offset: int, piece: bytes, last: bool) -> str:
-        """Write the next piece of a file of the robot, the first at 0; with the last it is there. Returns its path."""
-        return self._host.file_access.write(path, offset, piece, last)
+    @typed(NAME, qi.Int64, [qi.String])
+    def beginFile(self, path: str) -> int:
+        """Begin to write a file of the robot; returns the number that `writeFile` takes its pieces by."""
+        return self._host.file_access.begin(path)
+
+    @typed(NAME, qi.String, [qi.Int64, "r", qi.Bool])
+    def writeFile(self, number: int, piece: bytes, last: bool) -> str:
+        """Write the next piece of a file that `beginFile` has begun; with the last it is there. Returns its path."""
+        return self._host.file_access.write(number, piece, last)
 
     @typed(NAME, qi.Void, [qi.Bool])
     def plugCharger(self, plugged: bool) -> Any:

@@ -10,7 +10,7 @@ from typing import Any, Callable
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.naoqi.binding.arguments import one_of
+from nao_sim_bridge.naoqi.binding.arguments import map_or_pairs, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.body.touch import CLICKED
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -63,7 +63,8 @@ class ALNotificationManager:
         self._memory.raise_event(REMOVED, number)
 
     def notification(self, number: int) -> list[list[Any]]:
-        return _pairs(number, self._get(number))
+        with self._lock:
+            return _pairs(number, self._get(number))
 
     def notifications(self) -> list[list[list[Any]]]:
         with self._lock:
@@ -101,10 +102,7 @@ def _pairs(number: int, one: _Notification) -> list[list[Any]]:
 
 def _notification(value: Any) -> _Notification:
     right = '{"message": text, "severity": "info", "removeOnRead": true}, or these as pairs'
-    try:
-        given = dict(value)
-    except (TypeError, ValueError):
-        raise BadValue("notification", value, right) from None
+    given = map_or_pairs(value, "notification", right)
     message, remove = given.get("message", ""), given.get("removeOnRead", True)
     if set(given) - set(KEYS) or not isinstance(message, str) or not isinstance(remove, (bool, int)):
         raise BadValue("notification", value, right)

@@ -66,10 +66,7 @@ class PackageManager:
             raise ConfigError(file.name, f"is no package: known are {', '.join(PACKAGES)}")
         info = package_info(file)
         names = {behavior.name for behavior in read_package(file)}
-        for name in self._behaviors(info.uuid):
-            if name not in names:  # the package had it before
-                self._manager.removeBehavior(name)
-        self._manager.installBehavior(path)
+        self._manager.installBehavior(path, gone=[name for name in self._behaviors(info.uuid) if name not in names])
         self._packages[info.uuid] = package = _Installed(info, path)
         if info.programs:
             log.warning("%s: %s are not started, as they would run on this computer", path, ", ".join(info.programs))

@@ -8,6 +8,7 @@ from typing import Any, Sequence
 
 from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
@@ -15,17 +16,24 @@ from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.system.resources import ResourceTree
 
 FILE, MOTORS = "resources.json", "Motors"
+# Calls that wait; with one more the oldest is given up, as libqi does not tell when who waits has gone.
+MOST_WAITING = load_sizes().clients.resource_calls
 
 
 @dataclass(frozen=True)
 class _Request:
-    """A call that waits for resources; `until` is in simulated time, s, None for ever."""
+    """A call that wants resources; `until` is in simulated time, s, None for ever.
+
+    It ends with the lock held, in whatever way. Of the `optional` ones it gets those that are free when it ends, and
+    answers their names; with None it answers nothing.
+    """
 
     task: Task
     names: tuple[str, ...]
     owner: str
     callback: str
     until: float | None
+    optional: tuple[str, ...] | None
 
 
 class ALResourceManager:
@@ -43,7 +51,6 @@ class ALResourceManager:
         tree = read_json(config_file(FILE))["tree"]
         tree[MOTORS] = {chain: {joint: {} for joint in model.chains[chain]} for chain in model.chain_names}
         self._tree = ResourceTree(tree)
-        self._callbacks: dict[str, str] = {}  # resource that somebody has -> method of the owner
         self._requests: list[_Request] = []
         simulation.after_tick.append(self._tick)
 
@@ -62,9 +69,11 @@ class ALResourceManager:
 
     def deleteResource(self, name: str, with_children: bool = False) -> None:
         with self._lock:
-            self._tree.delete(name, bool(with_children))
-            for request in [one for one in self._requests if name in one.names]:
-                request.task.finish(error=NaoqiError(f"{name} has been deleted"))
+            gone = self._tree.delete(name, bool(with_children))
+            for request in list(self._requests):
+                lost = [one for one in (*request.names, *(request.optional or ())) if one in gone]
+                if lost:
+                    request.task.finish(error=NaoqiError(f"deleted meanwhile: {', '.join(lost)}"))
 
     def enableStateResource(self, name: str, enabled: bool) -> None:
         with self._lock:
@@ -109,15 +118,7 @@ class ALResourceManager:
         self, names: list[str], module: str, callback: str, timeout: int, optional: list[str]
     ) -> Any:
         """Of the `optional` ones those that are free when the others are there; their names."""
-
-        def take_optional(_: Any) -> list[str]:
-            with self._lock:
-                free = [name for name in optional if not self._tree.conflicts([name], module)]
-                self._take(free, module, callback)
-                return free
-
-        waiting = self._acquire(names, module, callback, timeout)
-        return take_optional(None) if waiting is None else waiting.then(take_optional)
+        return self._acquire(names, module, callback, timeout, tuple(optional))
 
     def releaseResource(self, name: str, owner: str) -> None:
         self.releaseResources([name], owner)
@@ -138,45 +139,54 @@ class ALResourceManager:
     def close(self) -> None:
         """Nobody waits any more."""
         for request in list(self._requests):
-            request.task.kill()
+            self._cancel(request.task)
 
-    def _acquire(self, names: Sequence[str], owner: str, callback: str, timeout: int) -> Task | None:
-        """Have a module own resources; a task when it has to wait for them. A NaoqiError when it may not."""
+    def _acquire(
+        self,
+        names: Sequence[str],
+        owner: str,
+        callback: str,
+        timeout: int,
+        optional: tuple[str, ...] | None = None,
+    ) -> Any:
+        """What a call answers, or a task when it has to wait. A NaoqiError when it may not."""
         if not owner:
             raise BadValue("moduleName", owner, "the name of the module that gets them")
+        task = Task("acquireResource", 0, ask=self._cancel)
+        until = None if timeout < 0 else self._simulation.snapshot.time + timeout
+        request = _Request(task, tuple(names), owner, callback, until, optional)
         with self._lock:
+            self._tree.free(optional or (), owner)  # unknown ones are refused before there is a wait
             conflicts = self._tree.conflicts(names, owner)
             if not conflicts:
-                self._take(names, owner, callback)
-                return None
+                return self._take(request)
             for conflict in conflicts:
-                told = self._callbacks.get(conflict.resource)
-                if conflict.owner and told:
-                    self._broker.call(conflict.owner, told, [conflict.resource, conflict.owner])
+                if conflict.callback:
+                    self._broker.call(conflict.owner, conflict.callback, [conflict.resource, conflict.owner])
             if timeout == 0:
                 raise NaoqiError("; ".join(map(str, conflicts)))
-            task = Task("acquireResource", 0, ask=lambda asked: asked.kill())
-            until = None if timeout < 0 else self._simulation.snapshot.time + timeout
-            request = _Request(task, tuple(names), owner, callback, until)
+            if len(self._requests) >= MOST_WAITING:
+                given_up = NaoqiError(f"given up: more than {MOST_WAITING} calls wait for resources")
+                self._requests[0].task.finish(error=given_up)
             self._requests.append(request)
-        task.add_done_callback(lambda _: self._forget(request))
+            task.add_done_callback(lambda _: self._requests.remove(request))
         return task
 
-    def _take(self, names: Sequence[str], owner: str, callback: str) -> None:
-        self._tree.take(names, owner)
-        self._callbacks.update(dict.fromkeys(names, callback))
+    def _take(self, request: _Request) -> list[str] | None:
+        """Give a call what it wants; its answer."""
+        free = None if request.optional is None else self._tree.free(request.optional, request.owner)
+        self._tree.take((*request.names, *(free or ())), request.owner, request.callback)
+        return free
 
     def _serve(self) -> None:
         """Give what is free to who waits for it, first come first served; with the lock held."""
         for request in list(self._requests):
             if not self._tree.conflicts(request.names, request.owner):
-                self._take(request.names, request.owner, request.callback)
-                self._forget(request)
-                request.task.finish()
+                request.task.finish(self._take(request))
 
-    def _forget(self, request: _Request) -> None:
+    def _cancel(self, task: Task) -> None:
         with self._lock:
-            self._requests = [one for one in self._requests if one is not request]
+            task.kill()
 
     def _tick(self, snapshot: Snapshot) -> None:
         if not self._requests:

@@ -18,6 +18,7 @@ class _Resource:
     fixed: bool  # it is there from the start, and cannot be deleted
     children: dict[str, _Resource] = field(default_factory=dict)
     owner: str = ""
+    callback: str = ""  # method of the owner, called when somebody else wants it; empty for none
     enabled: bool = True
 
     def above(self) -> Iterator[_Resource]:
@@ -40,6 +41,7 @@ class Conflict:
 
     resource: str
     owner: str  # empty when it is disabled
+    callback: str = ""  # of the owner
 
     def __str__(self) -> str:
         return f"{self.resource} belongs to {self.owner}" if self.owner else f"{self.resource} is disabled"
@@ -76,8 +78,8 @@ class ResourceTree:
         for name in names:
             self._add(name, above, fixed=False)
 
-    def delete(self, name: str, with_children: bool = False) -> None:
-        """Remove a resource that somebody has created and nobody has.
+    def delete(self, name: str, with_children: bool = False) -> list[str]:
+        """Remove a resource that somebody has created and nobody has; its name and those of all that were in it.
 
         Raises:
             UnknownName: There is none of that name.
@@ -92,10 +94,12 @@ class ResourceTree:
             raise NaoqiError(f"{owned.name} belongs to {owned.owner}, who has to release it first")
         if inside and not with_children:
             raise NaoqiError(f"{name} has {', '.join(one.name for one in inside)} in it, to be deleted first")
-        for one in (resource, *inside):
-            del self._all[one.name]
+        gone = [one.name for one in (resource, *inside)]
+        for each in gone:
+            del self._all[each]
         if resource.parent is not None:
             del resource.parent.children[name]
+        return gone
 
     def enable(self, name: str, enabled: bool) -> None:
         """Have a resource be had, or not."""
@@ -118,16 +122,21 @@ class ResourceTree:
             resource = self._get(name)
             for one in (*resource.above(), *resource.below()):
                 if one.owner not in ("", owner):
-                    found[Conflict(one.name, one.owner)] = None
+                    found[Conflict(one.name, one.owner, one.callback)] = None
             for one in resource.above():
                 if not one.enabled:
                     found[Conflict(one.name, "")] = None
         return list(found)
 
-    def take(self, names: Iterable[str], owner: str) -> None:
+    def free(self, names: Iterable[str], owner: str) -> list[str]:
+        """Those of these that an owner can have, each by itself; an UnknownName when there is no such resource."""
+        return [name for name in names if not self.conflicts([name], owner)]
+
+    def take(self, names: Iterable[str], owner: str, callback: str = "") -> None:
         """Have an owner have these, between whom and them there is no conflict."""
         for name in names:
-            self._get(name).owner = owner
+            resource = self._get(name)
+            resource.owner, resource.callback = owner, callback
 
     def require_owned(self, names: Iterable[str], owner: str) -> None:
         """An UnknownName or a NaoqiError unless an owner has all of these by name."""

@@ -14,7 +14,6 @@ from nao_sim_bridge.naoqi.body.touch import CLICKED
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.system.system import ALSystem
 
-NAME = "ALSentinel"
 FULL = 5
 SIMPLE, DOUBLE = 1, 2
 OUCH = "Ouch"

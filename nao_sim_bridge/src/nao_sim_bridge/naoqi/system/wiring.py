@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import Any, Callable, Mapping
+from typing import Any, Callable
 
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.behaviors.behavior_manager import ALBehaviorManager
 from nao_sim_bridge.naoqi.binding.api import qi_type
-from nao_sim_bridge.naoqi.binding.later import Later
+from nao_sim_bridge.naoqi.binding.later import Later, later
 from nao_sim_bridge.naoqi.binding.signals import Signals
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
@@ -41,24 +40,23 @@ class SystemModules:
         say: Callable[[str], Task],
         manager: ALBehaviorManager,
     ) -> None:
-        self.modules: dict[str, Later] = {}
-        self._add("ALPreferenceManager", "preference_manager", files, memory, signals=PREFERENCE_SIGNALS)
-        self._add("ALPreferences", "preference_files", files, memory)
-        self._add("ALKnowledge", "knowledge", files)
-        self._add("ALLogger", "logger", files)
-        self._add("ALNotificationManager", "notification_manager", memory, say)
-        self._add("PackageManager", "package_manager", manager, files, signals=PACKAGE_SIGNALS)
-        self._add("ALConnectionManager", "connection_manager", memory)
-        self._add("ALLauncher", "launcher", broker)
-        self._add("ALStore", "store", self._packages)
-        self._add("ALResourceManager", "resource_manager", simulation, broker)
-
-    def _add(self, module: str, file: str, *arguments: Any, signals: Mapping[str, str] | None = None) -> None:
-        """Add a module, the class of its name in a file beside this one; it is given its signals last, if any."""
-        raised = None if signals is None else Signals(signals)
-        given = arguments if raised is None else (*arguments, raised)
-        make = lambda: [getattr(import_module(f"{__package__}.{file}"), module)(*given)]  # noqa: E731
-        self.modules[module] = Later(make, raised)
+        preferences, packages = Signals(PREFERENCE_SIGNALS), Signals(PACKAGE_SIGNALS)
+        self.modules: dict[str, Later] = {
+            "ALPreferenceManager": later(
+                "naoqi.system.preference_manager:ALPreferenceManager", files, memory, preferences, signals=preferences
+            ),
+            "ALPreferences": later("naoqi.system.preference_files:ALPreferences", files, memory),
+            "ALKnowledge": later("naoqi.system.knowledge:ALKnowledge", files),
+            "ALLogger": later("naoqi.system.logger:ALLogger", files),
+            "ALNotificationManager": later("naoqi.system.notification_manager:ALNotificationManager", memory, say),
+            "PackageManager": later(
+                "naoqi.system.package_manager:PackageManager", manager, files, packages, signals=packages
+            ),
+            "ALConnectionManager": later("naoqi.system.connection_manager:ALConnectionManager", memory),
+            "ALLauncher": later("naoqi.system.launcher:ALLauncher", broker),
+            "ALStore": later("naoqi.system.store:ALStore", self._packages),
+            "ALResourceManager": later("naoqi.system.resource_manager:ALResourceManager", simulation, broker),
+        }
 
     def _packages(self) -> list[tuple[str, str]]:
         """Uuid and version of each that is installed."""

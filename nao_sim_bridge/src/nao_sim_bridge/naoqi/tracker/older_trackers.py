@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Callable, Mapping
-
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.model.frames import ROBOT
 from nao_sim_bridge.naoqi.tracker.tracker import ALTracker
 from nao_sim_bridge.tracking.follower import Mode
-
-# The target of each module, and its size where a client does not say it, m.
-TARGETS: Mapping[str, tuple[str, float]] = {"ALRedBallTracker": ("RedBall", 0.06), "ALFaceTracker": ("Face", 0.15)}
 
 
 class OlderTracker:
@@ -42,8 +37,3 @@ class OlderTracker:
     def setWholeBodyOn(self, whole_body: bool) -> Task | None:
         self._mode = (Mode.WHOLE_BODY if whole_body else Mode.HEAD).value
         return self._tracker.setMode(self._mode) if self.isActive() else None
-
-
-def older_tracker(module: str, tracker: ALTracker) -> Callable[[], list[OlderTracker]]:
-    """Makes the parts of one of the modules."""
-    return lambda: [OlderTracker(*TARGETS[module], tracker)]

@@ -42,27 +42,25 @@ class ALUserInfo:
     def remove(self, domain: str, *rest: Any) -> bool:
         *number, name = rest
         user = self._user(number)
-        removed = self._users.drop(_writable(domain), user, name)
-        if removed:
-            self._signals(REMOVED, user, name)
-        return removed
+        return self._tell_removed(user, self._users.drop(_writable(domain), user, name))
 
     def removeUser(self, domain: str, *number: int) -> bool:
         user = self._user(list(number))
-        names = list(self._users.values(_writable(domain), user))
-        removed = self._users.drop(domain, user)
-        for name in names:
-            self._signals(REMOVED, user, name)
-        return removed
+        return self._tell_removed(user, self._users.drop(_writable(domain), user))
 
     def getType(self, domain: str, name: str) -> str:
         """Of the user whom the robot looks at, or else of the first who has it."""
-        focused = self._users.book.focused
-        for number in [*([focused] if focused != NOBODY else []), *self._users.book.numbers]:
+        focused, numbers = self._users.ask(lambda book: (book.focused, book.numbers))
+        for number in sorted(numbers, key=lambda one: one != focused):
             values = self._values(domain, number)
             if name in values:
                 return TYPES[type(values[name])]
         raise UnknownName(f"data of users in {domain!r}", name, ())
+
+    def _tell_removed(self, user: int, names: list[str]) -> bool:
+        for name in names:
+            self._signals(REMOVED, user, name)
+        return bool(names)
 
     def _place(self, where: tuple[Any, ...]) -> tuple[str, int, str]:
         """Domain, user and name, of which the first two may be left out."""
@@ -71,7 +69,7 @@ class ALUserInfo:
         return domain, self._user(before), name
 
     def _user(self, given: list[int]) -> int:
-        number = given[0] if given else self._users.book.focused
+        number = given[0] if given else self._users.ask(lambda book: book.focused)
         if number == NOBODY:
             raise nobody_focused()
         return number
@@ -79,7 +77,7 @@ class ALUserInfo:
     def _values(self, domain: str, number: int) -> dict[str, Any]:
         if domain != OWN:
             return self._users.values(domain, number)
-        name = self._users.book.user(number).name
+        name = self._users.ask(lambda book: book.user(number).name)
         return {"name": name} if name else {}
 
 

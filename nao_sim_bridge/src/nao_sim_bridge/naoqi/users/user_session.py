@@ -22,47 +22,47 @@ class ALUserSession:
 
     def __init__(self, users: Users) -> None:
         self._users = users
-        self._book = users.book
+        self._ask = users.ask
 
     def doesUserExist(self, number: int) -> bool:
-        return number in self._book.numbers
+        return self._ask(lambda book: number in book.numbers)
 
     def doUsersExist(self, numbers: list[int]) -> bool:
-        return set(numbers) <= set(self._book.numbers)
+        return self._ask(lambda book: set(numbers) <= set(book.numbers))
 
     def getUserList(self) -> list[int]:
-        return self._book.numbers
+        return self._ask(lambda book: book.numbers)
 
     def getNumUsers(self) -> int:
-        return len(self._book.numbers)
+        return self._ask(lambda book: len(book.numbers))
 
     def getFocusedUser(self) -> int:
-        return self._book.focused
+        return self._ask(lambda book: book.focused)
 
     def getOpenUserSessions(self) -> list[int]:
-        return self._book.open
+        return self._ask(lambda book: book.open)
 
     def isUserSessionOpen(self, number: int) -> bool:
-        return number in self._book.open
+        return self._ask(lambda book: number in book.open)
 
     def areUserSessionsOpen(self, numbers: list[int]) -> bool:
-        return set(numbers) <= set(self._book.open)
+        return self._ask(lambda book: set(numbers) <= set(book.open))
 
     def isUserPermanent(self, number: int) -> bool:
-        return number in self._book.permanent
+        return self._ask(lambda book: number in book.permanent)
 
     def areUsersPermanent(self, numbers: list[int]) -> bool:
-        return set(numbers) <= set(self._book.permanent)
+        return self._ask(lambda book: set(numbers) <= set(book.permanent))
 
     def getPermanentUserList(self) -> list[int]:
-        return self._book.permanent
+        return self._ask(lambda book: book.permanent)
 
     def getUsidFromPpid(self, face: int) -> int:
         """The numbers of faces that ALFaceDetection sees stand for those of people."""
-        return self._book.user_of_face(face)
+        return self._ask(lambda book: book.user_of_face(face))
 
     def getPpidFromUsid(self, number: int) -> int:
-        return self._book.face_of_user(number)
+        return self._ask(lambda book: book.face_of_user(number))
 
     # --- bindings ----------------------------------------------------------------------------------------------------
 
@@ -77,7 +77,7 @@ class ALUserSession:
     doesBindingSourceExist = doesBindingExist
 
     def getUserBindings(self, number: int) -> dict[str, str]:
-        name = self._book.user(number).name
+        name = self._ask(lambda book: book.user(number).name)
         return {FACE: name} if name else {}
 
     def getUserBinding(self, number: int, binding: str) -> str:
@@ -85,28 +85,28 @@ class ALUserSession:
 
     def findUsersWithBinding(self, binding: str, value: str) -> list[int]:
         _binding(binding)
-        found = self._book.of_name(value)
+        found = self._ask(lambda book: book.of_name(value))
         return [] if found is None else [found.number]
 
     # --- dates -------------------------------------------------------------------------------------------------------
 
     def getUserCreationDate(self, number: int) -> str:
-        return _date(self._book.user(number).created)
+        return _date(self._ask(lambda book: book.user(number).created))
 
     def getFirstEncounterDate(self, number: int) -> str:
-        return _date(self._book.user(number).first)
+        return _date(self._ask(lambda book: book.user(number).first))
 
     def getCurrentEncounterDate(self, number: int) -> str:
-        return _date(self._book.user(number).current)
+        return _date(self._ask(lambda book: book.user(number).current))
 
     def getLastEncounterDate(self, number: int) -> str:
-        return _date(self._book.user(number).last)
+        return _date(self._ask(lambda book: book.user(number).last))
 
     def getSecondsSinceLastEncounter(self, number: int) -> int:
-        user = self._book.user(number)
-        if user.last is None:
-            return -1 if user.current is None else 0
-        return max(0, int((datetime.now(user.last.tzinfo) - user.last).total_seconds()))
+        current, last = self._ask(lambda book: (book.user(number).current, book.user(number).last))
+        if last is None:
+            return -1 if current is None else 0
+        return max(0, int((datetime.now(last.tzinfo) - last).total_seconds()))
 
     # --- data, for programs older than ALUserInfo --------------------------------------------------------------------
 

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import logging
 import threading
-from typing import Any, Callable
+from typing import Any, Callable, Iterable, TypeVar
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
+from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.system.robot_file import RobotFile
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
-from nao_sim_bridge.naoqi.users.book import News, UserBook
+from nao_sim_bridge.naoqi.users.book import NOBODY, News, UserBook
 from nao_sim_bridge.naoqi.vision import face_detection
 from nao_sim_bridge.naoqi.vision.face_detection_people import KnownPeople
 
@@ -44,12 +47,15 @@ TYPES = {bool: "bool", int: "int", str: "string"}
 """Of data about users: Python's types -> NAOqi's words."""
 
 Data = dict  # domain -> number of the user as a text -> name -> value
+Answer = TypeVar("Answer")
+log = logging.getLogger("nao_sim.users")
 
 
 class Users:
     """Users and data about them, kept in files of the robot as far as they outlast a run. Any thread.
 
-    Basic awareness and face detection say who is here. Events and signals tell of changes when they are in the file.
+    Basic awareness and face detection say who is here: that counts at once, and a thread of its own writes it. What
+    programs keep is in the file before it counts. The simulation thread waits for no file.
     """
 
     def __init__(
@@ -65,12 +71,15 @@ class Users:
         self._memory = memory
         self._people = people
         self._signals = signals
-        self._lock = threading.RLock()
+        self._lock = threading.Lock()  # of the book
+        self._writing = threading.Lock()  # of the files, and of `_data`, which is replaced and never changed
+        self._learning = threading.Lock()
+        self._background = Background()
         self._next_look = 0.0
         self._users_file, self._data_file = RobotFile(files, USERS_FILE), RobotFile(files, DATA_FILE)
-        self.book = UserBook(zone.now)
-        self.book.restore(self._users_file.load())
-        self._kept = self.book.content()
+        self._book = UserBook(zone.now)
+        self._book.restore(self._users_file.load())
+        self._kept = self._book.content()
         self._data: Data = self._read_data()
         for event in (*EVENTS.values(), SHOULD_EXIT):
             memory.declare_event(event, "ALUserSession")
@@ -80,10 +89,28 @@ class Users:
         simulation.after_tick.append(self._tick)
         self._learn()
 
-    def track(self, face: int) -> None:
-        """Basic awareness follows this face, or nobody (-1)."""
-        names = self._faces(self._memory.get_many([face_detection.EVENT])[0])
+    def track(self, face: Any) -> None:
+        """Basic awareness follows this face, or nobody (-1); anything else that a client may have raised is ignored."""
+        if face != NOBODY and not _is_face(face):
+            return
+        names = _faces(self._memory.get_many([face_detection.EVENT])[0])
         self._change(lambda book, time: (book.see(names, time), book.track(face, time)))
+
+    def ask(self, question: Callable[[UserBook], Answer]) -> Answer:
+        """What `question` answers about the users, who do not change meanwhile."""
+        with self._lock:
+            return question(self._book)
+
+    def close(self) -> None:
+        """Returns when what has changed is in the files, as far as it can be."""
+        self._background.in_turn(lambda _: None, "users").result()
+
+    def _save(self) -> None:
+        with self._writing:
+            try:
+                self._write(self._data)
+            except (NaoqiError, FileTrouble, ValueError, OSError) as error:
+                log.error("users are as before in the next run, unless a later change can be written: %s", error)
 
     # --- data --------------------------------------------------------------------------------------------------------
 
@@ -93,29 +120,38 @@ class Users:
 
     def values(self, domain: str, number: int) -> dict[str, Any]:
         """Data about a user in a domain, by name; an UnknownName when there is no such user."""
-        self.book.user(number)
+        self.ask(lambda book: book.user(number))
         return dict(self._data.get(domain, {}).get(str(number), {}))
 
     def put(self, domain: str, number: int, name: str, value: Any) -> None:
         """Keep something about a user; a BadValue when it is neither a text, nor a whole number, nor true or false."""
-        self.book.user(number)
-        if type(value) not in TYPES:
-            raise BadValue("value", value, "a text, a whole number, true or false")
-        self._keep(domain, number, {**self.values(domain, number), name: value})
+        with self._writing:
+            values = self.values(domain, number)
+            if type(value) not in TYPES:
+                raise BadValue("value", value, "a text, a whole number, true or false")
+            self._keep(domain, number, {**values, name: value})
 
-    def drop(self, domain: str, number: int, name: str | None = None) -> bool:
-        """Forget something about a user, or all in a domain; False when there is nothing."""
-        values = self.values(domain, number)
-        if not values or (name is not None and name not in values):
-            return False
-        self._keep(domain, number, {key: value for key, value in values.items() if key != name and name is not None})
-        return True
+    def drop(self, domain: str, number: int, name: str | None = None) -> list[str]:
+        """Forget something about a user, or all in a domain; the names of what there was of it."""
+        with self._writing:
+            values = self.values(domain, number)
+            gone = [key for key in values if name in (None, key)]
+            if gone:
+                self._keep(domain, number, {key: value for key, value in values.items() if key not in gone})
+        return gone
 
     def _keep(self, domain: str, number: int, values: dict[str, Any]) -> None:
-        with self._lock:
-            others = {key: one for key, one in self._data.get(domain, {}).items() if key != str(number)}
-            entries = {**others, **({str(number): values} if values else {})}
-            data = {key: one for key, one in {**self._data, domain: entries}.items() if one}
+        """Have these be the data about a user in a domain; `_writing` is held."""
+        self._write({**self._data, domain: {**self._data.get(domain, {}), str(number): values}})
+
+    def _write(self, data: Data) -> None:
+        """Have the files hold the users of now and of these data what is about them; `_writing` is held."""
+        content, numbers = self.ask(lambda book: (book.content(), book.numbers))
+        data = _about(numbers, data)
+        if content != self._kept:
+            self._users_file.save(content)
+            self._kept = content
+        if data != self._data:
             self._data_file.save(data)
             self._data = data
 
@@ -123,19 +159,20 @@ class Users:
         found: Data = {}
         for domain, entries in self._data_file.load().items():
             for number, values in entries.items() if isinstance(entries, dict) else ():
-                if number in map(str, self.book.numbers) and isinstance(values, dict):
+                if isinstance(values, dict):
                     good = {name: value for name, value in values.items() if type(value) in TYPES}
                     found.setdefault(domain, {})[number] = good
-        return found
+        return _about(self._book.numbers, found)
 
     # --- what happens ------------------------------------------------------------------------------------------------
 
     def _learn(self) -> None:
-        names = self._people.names
-        self._change(lambda book, time: book.learn(names, time))
+        with self._learning:  # who has learnt last is heard last
+            names = self._people.names
+            self._change(lambda book, time: book.learn(names, time))
 
     def _see(self, value: Any) -> None:
-        names = self._faces(value)
+        names = _faces(value)
         self._change(lambda book, time: book.see(names, time))
 
     def _tick(self, snapshot: Snapshot) -> None:
@@ -143,22 +180,12 @@ class Users:
             self._next_look = snapshot.time + PERIOD
             self._change(lambda book, time: book.pass_time(time))
 
-    def _faces(self, value: Any) -> dict[int, str]:
-        """Name by number of the faces in a value of `FaceDetected`; the last of them is what is new about names."""
-        return {int(face[1][0]): str(face[1][2]) for face in value[1][:-1]} if value else {}
-
     def _change(self, change: Callable[[UserBook, float], Any]) -> None:
         with self._lock:
-            change(self.book, self._simulation.snapshot.time)
-            news = self.book.news()
-            content = self.book.content() if news else self._kept
-            if content != self._kept:
-                self._users_file.save(content)
-                self._kept = content
-            for kind, value in news:
-                if kind is News.DELETED:
-                    self._forget(value)
-            sessions = self.book.open
+            change(self._book, self._simulation.snapshot.time)
+            news, sessions = self._book.news(), self._book.open
+        if news and self._background.unfinished < 2:  # one that waits for its turn will write this as well
+            self._background.in_turn(lambda _: self._save(), "users")
         for kind, value in news:
             if kind in EVENTS:
                 self._memory.raise_event(EVENTS[kind], value)
@@ -170,14 +197,25 @@ class Users:
             elif kind in (News.OPENED, News.CLOSED):
                 self._memory.put_quietly(OPEN_SESSIONS, sessions)
 
-    def _forget(self, numbers: list[int]) -> None:
-        """Drop all data about users who are no more."""
-        gone = set(map(str, numbers))
-        left = {d: {n: v for n, v in entries.items() if n not in gone} for d, entries in self._data.items()}
-        left = {domain: entries for domain, entries in left.items() if entries}
-        if left != self._data:
-            self._data_file.save(left)
-            self._data = left
+
+def _faces(value: Any) -> dict[int, str]:
+    """Name by number of the faces in a value of `FaceDetected`, which clients may have raised with anything."""
+    try:
+        found = [(face[1][0], face[1][2]) for face in value[1][:-1]]  # behind them is what is new about names
+    except (TypeError, LookupError):
+        return {}
+    return {number: name for number, name in found if _is_face(number) and isinstance(name, str)}
+
+
+def _is_face(number: Any) -> bool:
+    return type(number) is int and 0 <= number < 2**31  # what NAOqi's calls can carry
+
+
+def _about(numbers: Iterable[int], data: Data) -> Data:
+    """Data about these users alone, without what is empty."""
+    users = set(map(str, numbers))
+    left = {domain: {n: v for n, v in entries.items() if n in users and v} for domain, entries in data.items()}
+    return {domain: entries for domain, entries in left.items() if entries}
 
 
 def nobody_focused() -> NaoqiError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from typing import Any
 
+from nao_sim_bridge.base.imports import imported
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.later import Later
@@ -36,15 +37,16 @@ class UserModules:
         memory.listen(TRACKED, self._track, declare=False)
         people.changed.append(self._made)
 
-    def _session(self) -> list[Any]:
-        from nao_sim_bridge.naoqi.users.user_session import ALUserSession
+    def close(self) -> None:
+        """Returns when what is known of users is in the files."""
+        if self._users is not None:
+            self._users.close()
 
-        return [ALUserSession(self._made())]
+    def _session(self) -> list[Any]:
+        return [imported("naoqi.users.user_session:ALUserSession")(self._made())]
 
     def _info(self) -> list[Any]:
-        from nao_sim_bridge.naoqi.users.user_info import ALUserInfo
-
-        return [ALUserInfo(self._made(), self._info_signals)]
+        return [imported("naoqi.users.user_info:ALUserInfo")(self._made(), self._info_signals)]
 
     def _track(self, face: int) -> None:
         if face != NOBODY or self._users is not None:
@@ -53,7 +55,5 @@ class UserModules:
     def _made(self) -> Any:
         with self._lock:
             if self._users is None:
-                from nao_sim_bridge.naoqi.users.users import Users
-
-                self._users = Users(*self._of, self._session_signals)
+                self._users = imported("naoqi.users.users:Users")(*self._of, self._session_signals)
             return self._users

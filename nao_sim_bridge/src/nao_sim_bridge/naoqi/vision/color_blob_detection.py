@@ -10,12 +10,12 @@ from nao_sim_bridge.cameras.settings import AUTO_EXPOSURE
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, one_of, whole_number
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.vision.names import COLOR_BLOB, COLOR_BLOBS
 from nao_sim_bridge.naoqi.vision.watching import Watching
 from nao_sim_bridge.tracking.geometry import distance_of, seen_place
 from nao_sim_bridge.vision.client import VisionProcess
 from nao_sim_bridge.vision.color_blob import Blob, BlobSettings
 
-NAME, EVENT = "ALColorBlobDetection", "ALTracker/ColorBlobDetected"
 FPS = 15
 CIRCLE, UNKNOWN = SHAPES = ("Circle", "Unknown")
 DEFAULT_PIXELS, DEFAULT_SPAN = 16, 0.06
@@ -39,7 +39,7 @@ class ALColorBlobDetection:
         self._blob: Blob | None = None
         self.watching = Watching(
             self._cameras,
-            NAME,
+            COLOR_BLOBS,
             vision.detector("color blob"),
             self._on_result,
             settings=lambda _: self._looks_for,
@@ -78,7 +78,7 @@ class ALColorBlobDetection:
     def _on_result(self, frame: Frame, blob: Blob | None) -> None:
         self._blob = blob
         if blob is not None:
-            self._memory.raise_event(EVENT, self._value(frame, blob))
+            self._memory.raise_event(COLOR_BLOB, self._value(frame, blob))
 
     def _value(self, frame: Frame, blob: Blob) -> list[Any]:
         distance = distance_of(self._span, 2.0 * blob.angle)

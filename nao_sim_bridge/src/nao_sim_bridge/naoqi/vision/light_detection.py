@@ -3,21 +3,33 @@
 from __future__ import annotations
 
 from nao_sim_bridge.cameras.automatics import Exposure
+from nao_sim_bridge.cameras.cameras import Cameras
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.settings import EXPOSURE, GAIN
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.vision.names import (
+    BACKLIGHT,
+    BACKLIGHT_VALUE,
+    BACKLIGHTING,
+    DARK,
+    DARKNESS,
+    DARKNESS_VALUE,
+)
 from nao_sim_bridge.naoqi.vision.watching import Watching
 from nao_sim_bridge.vision.client import VisionProcess
 from nao_sim_bridge.vision.light import BACKLIT, DARKEST
 
-DARKNESS, BACKLIGHTING = "ALDarknessDetection", "ALBacklightingDetection"
-DARK, DARKNESS_VALUE = "DarknessDetection/DarknessDetected", "DarknessDetection/DarknessValue"
-BACKLIGHT, BACKLIGHT_VALUE = "BacklightingDetection/BacklightingDetected", "BacklightingDetection/BacklightingValue"
 FPS = 5
 QQVGA = 0
 """Enough to tell how bright a picture is."""
 DEFAULT_THRESHOLD = 60
+
+
+def exposed(cameras: Cameras, frame: Frame) -> float:
+    """How many times as bright as in a well-lit room a camera has made its last picture."""
+    exposure, gain = (cameras.parameter(frame.camera, number) for number in (EXPOSURE, GAIN))
+    return Exposure(exposure, gain).brightness(cameras.tables.sensor)
 
 
 class ALDarknessDetection:
@@ -38,7 +50,7 @@ class ALDarknessDetection:
             DARKNESS,
             vision.detector("darkness"),
             self._on_result,
-            settings=self._exposed,
+            settings=lambda frame: exposed(self._cameras, frame),
             on_stop=self._nothing,
             resolution=QQVGA,
             fps=FPS,
@@ -54,10 +66,6 @@ class ALDarknessDetection:
 
     def close(self) -> None:
         self.watching.stop()
-
-    def _exposed(self, frame: Frame) -> float:
-        exposure, gain = (self._cameras.parameter(frame.camera, number) for number in (EXPOSURE, GAIN))
-        return Exposure(exposure, gain).brightness(self._cameras.tables.sensor)
 
     def _on_result(self, _: Frame, darkness: int) -> None:
         self._memory.insert(DARKNESS_VALUE, darkness)

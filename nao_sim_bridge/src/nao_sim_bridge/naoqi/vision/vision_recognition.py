@@ -10,7 +10,7 @@ from typing import Any, Callable, Sequence, Tuple
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile
+from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile, full_path
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.cameras.frame import Frame
@@ -20,6 +20,7 @@ from nao_sim_bridge.naoqi.binding.arguments import known, text, whole_number
 from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.vision.names import PICTURE, RECOGNITION
 from nao_sim_bridge.naoqi.vision.vision_extractor import Sight
 from nao_sim_bridge.naoqi.vision.watching import Watching
 from nao_sim_bridge.vision.client import VisionProcess
@@ -27,7 +28,6 @@ from nao_sim_bridge.vision.picture_features import SeenPicture
 from nao_sim_bridge.vision.picture_memory import MOST, KnownPicture, load, save
 from nao_sim_bridge.world.pictures import read_picture_file
 
-NAME, EVENT = "ALVisionRecognition", "PictureDetected"
 DEFAULT_PATH, DEFAULT_NAME = "/home/nao/naoqi/.local/share/naoqi/vision/visionrecognition/", "current"
 PATH, DATABASE = "db_path", "db_name"
 RESOLUTION = "resolution"
@@ -51,18 +51,19 @@ class ALVisionRecognition:
         self._cameras = simulation.cameras
         self._now = lambda: simulation.time
         self._files = files
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()  # held while a database is read, changed and written
         self._path, self._name = DEFAULT_PATH, DEFAULT_NAME
+        self._database = _file(DEFAULT_PATH, DEFAULT_NAME)
         self._pictures: Tuple[KnownPicture, ...] | None = None
         self._most = 1
-        self._sight = Sight(memory, EVENT, tell_end=True)
+        self._sight = Sight(memory, PICTURE, tell_end=True)
         self._work = Background(most=MOST_WAITING)
         # One looks through the camera, the other one at files.
         features = lambda: (tuple(one.features for one in self._known()),)  # noqa: E731
         self._detectors = [vision.detector("pictures", features) for _ in range(2)]
         self.watching = Watching(
             self._cameras,
-            NAME,
+            RECOGNITION,
             self._detectors[0],
             self._on_result,
             settings=lambda _: self._most,
@@ -73,19 +74,22 @@ class ALVisionRecognition:
     def learnFromFile(
         self, filename: str, name: str, tags: Sequence[str], whole: bool = True, forced: bool = False
     ) -> Task:
-        """False for a file that was learnt before, unless `forced`, and for a picture without texture."""
+        """False for a file that was learnt before, unless `forced`, and for a picture without texture.
+
+        It is learnt into the database of the time of the call.
+        """
         path = self._files.to_read(filename)
-        labels = _labels(name, tags)
+        file, labels, database = self._files.to_robot(path), _labels(name, tags), self._database
 
         def learn(_: Any) -> bool:
-            if not forced and any(one.file == filename for one in self._known()):
+            if not forced and any(one.file == file for one in self._known(database)):
                 return False
             features = self._detectors[1].call("learn", _picture(path), bool(whole))
             if features is None:
                 log.warning("%s cannot be learnt: it has too little texture", filename)
                 return False
-            learnt = KnownPicture(labels, filename, features)
-            self._change(lambda known: (*(one for one in known if one.file != filename), learnt))
+            learnt = KnownPicture(labels, file, features)
+            self._change(database, lambda known: (*(one for one in known if one.file != file), learnt))
             return True
 
         return self._work.in_turn(learn, "learnFromFile")
@@ -110,14 +114,15 @@ class ALVisionRecognition:
         path, name = path or DEFAULT_PATH, name or DEFAULT_NAME
         if "/" in name:
             raise BadValue("databaseName", name, "a name without a folder")
-        pictures = self._read(path, name)
+        database = _file(path, name)
         with self._lock:
-            self._path, self._name, self._pictures = path, name, pictures
+            pictures = self._read(database)
+            self._path, self._name, self._database, self._pictures = path, name, database, pictures
         self._forget()
         return True
 
     def clearCurrentDatabase(self) -> None:
-        self._change(lambda _: ())
+        self._change(self._database, lambda _: ())
 
     def getParam(self, name: str) -> str:
         return {PATH: self._path, DATABASE: self._name}[known(name, "parameter", (PATH, DATABASE))]
@@ -156,26 +161,30 @@ class ALVisionRecognition:
         else:
             self._sight.nothing()
 
-    def _known(self) -> Tuple[KnownPicture, ...]:
+    def _known(self, database: str | None = None) -> Tuple[KnownPicture, ...]:
+        """Pictures of a database, of that which is in use without one."""
         with self._lock:
+            if database not in (None, self._database):
+                return self._read(database)
             if self._pictures is None:
-                self._pictures = self._read(self._path, self._name)
+                self._pictures = self._read(self._database)
             return self._pictures
 
-    def _change(self, change: Callable[[Tuple[KnownPicture, ...]], Tuple[KnownPicture, ...]]) -> None:
-        """Change what is known; it is on the disk before it counts."""
-        before = self._known()
-        changed = change(before)
-        if len(changed) > MOST:
-            raise BadValue("pictures", len(changed), f"at most {MOST} in a database")
-        save(changed, self._files.to_change(_file(self._path, self._name)))
+    def _change(self, database: str, change: Callable[[Tuple[KnownPicture, ...]], Tuple[KnownPicture, ...]]) -> None:
+        """Change a database; it is on the disk before it counts."""
         with self._lock:
+            changed = change(self._known(database))
+            if len(changed) > MOST:
+                raise BadValue("pictures", len(changed), f"at most {MOST} in a database")
+            save(changed, self._files.to_change(database))
+            if database != self._database:
+                return
             self._pictures = changed
         self._forget()
 
-    def _read(self, path: str, name: str) -> Tuple[KnownPicture, ...]:
+    def _read(self, database: str) -> Tuple[KnownPicture, ...]:
         try:
-            return load(self._files.to_read(_file(path, name)))
+            return load(self._files.to_read(database))
         except NoSuchFile:
             return ()
 
@@ -186,7 +195,8 @@ class ALVisionRecognition:
 
 
 def _file(path: str, name: str) -> str:
-    return f"{path.rstrip('/')}/{name}.npz"
+    """The file of a database, by its one path on the robot."""
+    return full_path(f"{path}/{name}.npz")
 
 
 def _labels(name: str, tags: Sequence[str]) -> Tuple[str, ...]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Mapping, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, Tuple
 
+from nao_sim_bridge.base.imports import imported
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.settings import CAMERA_NAMES
@@ -12,19 +13,27 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.later import Later
 from nao_sim_bridge.naoqi.memory.extractor import Extractor
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.vision import (
-    color_blob_detection,
-    face_detection,
-    light_detection,
-    movement_detection,
-    vision_recognition,
+from nao_sim_bridge.naoqi.vision import face_detection, movement_detection
+from nao_sim_bridge.naoqi.vision.names import (
+    BACKLIGHT,
+    BACKLIGHT_VALUE,
+    BACKLIGHTING,
+    COLOR_BLOB,
+    COLOR_BLOBS,
+    DARK,
+    DARKNESS,
+    DARKNESS_VALUE,
+    PICTURE,
+    RECOGNITION,
 )
 from nao_sim_bridge.naoqi.vision.vision_extractor import Sight, VisionExtractor, in_picture
 from nao_sim_bridge.naoqi.vision.watching import QVGA, TOP, Watching
-from nao_sim_bridge.vision.ball import Ball
-from nao_sim_bridge.vision.barcodes import Barcode
 from nao_sim_bridge.vision.client import VisionProcess
-from nao_sim_bridge.vision.landmarks import Landmark
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.vision.ball import Ball
+    from nao_sim_bridge.vision.barcodes import Barcode
+    from nao_sim_bridge.vision.landmarks import Landmark
 
 VGA = 2
 SHAPE = 1
@@ -109,26 +118,24 @@ DETECTIONS = (
 
 @dataclass(frozen=True)
 class Rare:
-    """An extractor that few ask for, made when it is first called: what makes it, and what it raises and writes.
+    """An extractor that few ask for, made when it is first called.
 
-    What is made has a `watching`, and ends it in `close()`.
+    Attributes:
+        where: Its class; see `imported`. It is given simulation, memory and vision process, and files `with_files`; it
+            has a `watching`, and ends it in `close()`.
     """
 
-    make: Callable[..., Any]  # of simulation, memory and vision process; of files, too, where it has `with_files`
+    where: str
     events: Tuple[str, ...]
     keys: Tuple[str, ...] = ()
     with_files: bool = False
 
 
 RARE: Mapping[str, Rare] = {
-    color_blob_detection.NAME: Rare(color_blob_detection.ALColorBlobDetection, (color_blob_detection.EVENT,)),
-    light_detection.DARKNESS: Rare(
-        light_detection.ALDarknessDetection, (light_detection.DARK,), (light_detection.DARKNESS_VALUE,)
-    ),
-    light_detection.BACKLIGHTING: Rare(
-        light_detection.ALBacklightingDetection, (light_detection.BACKLIGHT,), (light_detection.BACKLIGHT_VALUE,)
-    ),
-    vision_recognition.NAME: Rare(vision_recognition.ALVisionRecognition, (vision_recognition.EVENT,), with_files=True),
+    COLOR_BLOBS: Rare("naoqi.vision.color_blob_detection:ALColorBlobDetection", (COLOR_BLOB,)),
+    DARKNESS: Rare("naoqi.vision.light_detection:ALDarknessDetection", (DARK,), (DARKNESS_VALUE,)),
+    BACKLIGHTING: Rare("naoqi.vision.light_detection:ALBacklightingDetection", (BACKLIGHT,), (BACKLIGHT_VALUE,)),
+    RECOGNITION: Rare("naoqi.vision.vision_recognition:ALVisionRecognition", (PICTURE,), with_files=True),
 }
 
 
@@ -154,7 +161,7 @@ class VisionModules:
 
         def later(module: str, rare: Rare) -> Later:
             def make() -> list[Any]:
-                made = rare.make(simulation, memory, process, *([files] if rare.with_files else []))
+                made = imported(rare.where)(simulation, memory, process, *([files] if rare.with_files else []))
                 return parts(module, [made], made.watching, rare.events, rare.keys)
 
             parts_later = Later(make)
