@@ -82,11 +82,6 @@ def test_the_configuration_is_what_memory_has(robot):
     assert preferences(ALRobotModel("V5").getConfig())["RobotConfig/Body/Version"] == "5.0.0"
 
 
-def test_the_model_tells_kind_and_limbs(robot):
-    model = robot.ALRobotModel
-    assert model.getRobotType() == "Nao" and model.hasArms() and model.hasHands() and model.hasLegs()
-
-
 def test_the_pose_and_how_long_it_lasts(stiff_robot):
     stiff_robot.advance(1.0)
     pose, before = stiff_robot.ALRobotPose.getActualPoseAndTime()
