@@ -384,8 +384,7 @@ def test_a_walker_whose_node_cannot_be_made_ends_and_stops_only_a_walk_of_its_ow
     def call_async(method, *arguments):
         calls.append(method)
         future = Future()
-        answers = {"getBodyNames": ["LHipPitch"], "getStiffnesses": [1.0] * 2}
-        future.set_result(answers.get(method))
+        future.set_result([1.0, 1.0] if method == "getStiffnesses" else None)
         return future
 
     connection = MagicMock()

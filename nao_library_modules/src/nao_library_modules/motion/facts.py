@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from ..base.errors import BadGoal
 from ..functions.joint_trajectory import expand_names
+from ..nao.joint_names import LEGS as LEGS
 from ..nao.joint_names import MOTION as MOTION
 
 BODY = "Body"
-LEGS = ("LLeg", "RLeg")
 ARMS = ("LArm", "RArm")
 
 

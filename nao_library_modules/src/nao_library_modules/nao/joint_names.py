@@ -10,6 +10,7 @@ from naoqi.errors import NaoError, RobotError
 from ..base.once_per_connection import OncePerConnection
 
 MOTION = "ALMotion"
+LEGS = ("LLeg", "RLeg")
 CHAINS = (
     "Body",
     "Head",

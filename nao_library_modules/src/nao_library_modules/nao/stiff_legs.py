@@ -6,13 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..base.errors import CannotWalk
-from .joint_names import MOTION
+from .joint_names import LEGS, MOTION
 
 SOFTEST = 0.6
 """Stiffness of a leg's joint above which NAOqi walks."""
-LEGS = ("LLeg", "RLeg")
-LIMIT = 5.0
-"""s that the robot may take to answer."""
+LIMIT = 2.0
+"""s that the robot may take to answer: orders to stop wait as long."""
 
 
 def require_stiff(stiffnesses: Mapping[str, float]) -> None:
@@ -27,7 +26,9 @@ def require_stiff(stiffnesses: Mapping[str, float]) -> None:
 def ask_for_stiff_legs(robot: Any) -> None:
     """Ask a robot for the stiffness of its legs. Raises CannotWalk as above; NaoError if it cannot be asked."""
     ask = robot.proxy(MOTION).call_async
-    calls = [ask("getBodyNames", leg) for leg in LEGS]
     stiffnesses = ask("getStiffnesses", list(LEGS)).result(timeout=LIMIT)
+    if min(stiffnesses) > SOFTEST:
+        return
+    calls = [ask("getBodyNames", leg) for leg in LEGS]
     names = [name for call in calls for name in call.result(timeout=LIMIT)]
     require_stiff(dict(zip(names, stiffnesses)))

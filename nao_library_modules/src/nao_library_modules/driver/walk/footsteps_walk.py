@@ -99,10 +99,11 @@ class FootstepWalk:
     def add(self, step: FootStep) -> None:
         """Have a step made after those that were added before; returns at once.
 
-        Raises NaoError if it is no step, or the robot refuses it.
+        Raises NaoError if it is no step, or the robot refuses it or has soft legs.
         """
+        clipped = self.clipped(step)
         ask_for_stiff_legs(self._robot)
-        self._send((self.clipped(step),), clear=False)
+        self._send((clipped,), clear=False)
 
     def make(self, step: FootStep) -> None:
         """Make a step, and return when the robot stands.
@@ -123,7 +124,7 @@ class FootstepWalk:
 
         Every `period` s `report` gets the steps that are made.
 
-        Raises NaoError if the robot refuses them, is lost or stops by itself.
+        Raises NaoError if the robot refuses them or has soft legs, is lost or stops by itself.
         """
         steps = tuple(steps)
         ask_for_stiff_legs(self._robot)

@@ -94,8 +94,8 @@ class MoveToWalk:
                 return
 
     def _set_out(self, goal: WalkGoal) -> None:
-        way = goal.way()
         ask_for_stiff_legs(self._robot)
+        way = goal.way()
         call = self._robot.proxy(MOTION).call_async("moveTo", *way)
         self._newest = call
         self._report(Level.OK, f"walks to {goal.name}: {way.x:.2f} m ahead, {way.y:.2f} m left, {way.yaw:.2f} rad")

@@ -245,7 +245,7 @@ class Walker:
         return []
 
     def _get_ready(self) -> None:
-        """See that the robot can walk, also if it did before, and take the pose for it if that is wanted."""
+        """See that the legs are stiff, also of a robot that walked; take the pose for walking if that is wanted."""
         ask_for_stiff_legs(self._robot)
         if not self.needs_walk_pose:
             return
