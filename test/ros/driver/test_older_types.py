@@ -99,7 +99,7 @@ class OlderTypes(unittest.TestCase):
         self.assertEqual(rosservice.get_service_type(name), "naoqi_bridge_msgs/SetArmsEnabled")
 
     def test_a_walker_leaves_inhibition_to_nao_teleop_where_that_offers_it(self):
-        rospy.wait_for_service(f"{SPACE}cmd_vel_srv", LIMIT)
+        rospy.wait_for_service(f"{SPACE}enable_arms_walking_srv", LIMIT)  # the last that it offers
         self.assertEqual(rosservice.get_service_node(f"{SPACE}inhibit_walk"), rospy.get_name())
 
     def test_their_action_is_served_to_them_and_to_our_clients(self):

@@ -53,6 +53,7 @@ class NaoWalker:
         (nao_library_msgs/CmdPoseService), `cmd_step_srv` (nao_library_msgs/StepTargetService), `stop_walk_srv`,
         `inhibit_walk` (std_srvs/Empty). `head_scan_srv` (std_srvs/Empty) stops the walk, sweeps the head from 28
         degrees below the horizon to 35 above in 19 s, and answers at the end; meanwhile the robot does not walk.
+        Where another node, as nao_teleop, offers `inhibit_walk` already, it and `uninhibit_walk` are left to that one.
         Others: `cmd_vel_srv` (nao_library_msgs/CmdVelService), `uninhibit_walk`, `needs_start_walk_pose_srv`,
         `read_foot_gait_config_srv` (std_srvs/Empty), `enable_arms_walking_srv` (nao_library_msgs/SetArmsEnabled).
         Parameters `~cmd_vel_timeout` (0.5 s; 0: none), `~step_frequency` (0.5; 0..1, of velocities), `~use_walk_pose`
@@ -167,10 +168,11 @@ class NaoWalker:
         serve("stop_walk_srv", Empty, self._serve_stop)
         serve("head_scan_srv", Empty, self._serve_scan)
         try:
-            serve("inhibit_walk", Empty, self._serve_inhibit)
             serve("uninhibit_walk", Empty, self._serve_uninhibit)
+            serve("inhibit_walk", Empty, self._serve_inhibit)
         except AlreadyOffered as error:
-            rospy.loginfo("%s keeps itself from walking the robot when asked, as nao_teleop does", error.node)
+            self._inhibition.drop()  # of a walker before this one: who holds it lets go there
+            rospy.loginfo("inhibit_walk and uninhibit_walk are left to %s, which offers them already", error.node)
         serve("needs_start_walk_pose_srv", Empty, self._serve_walk_pose)
         serve("read_foot_gait_config_srv", Empty, self._serve_gait)
         serve("enable_arms_walking_srv", SetArmsEnabled, self._serve_arms)

@@ -43,6 +43,12 @@ class WalkInhibition:
                 del self._holds[held]
             return self._keep()
 
+    def drop(self) -> None:
+        """Take all holds off."""
+        with self._lock:
+            self._holds.clear()
+            self._keep()
+
     def _keep(self) -> int:
         self._kept.save(self._holds)
         return sum(self._holds.values())
