@@ -89,11 +89,9 @@ class WholeFile(io.RawIOBase):
         self._trouble: FileTrouble | None = None
         with self._telling():
             path.parent.mkdir(parents=True, exist_ok=True)
-            draft = draft_in(path.parent)
-            self._file = draft.open("xb", buffering=0)  # whose rights are those of the umask
+            draft = _draft_path(path.parent)
+            self._file = _locked(draft)
             self._draft: Path | None = draft
-            with suppress(OSError):  # not every file system knows locks
-                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def writable(self) -> bool:
         return True
@@ -200,9 +198,27 @@ class WholeFile(io.RawIOBase):
         super().close()
 
 
-def draft_in(folder: Path) -> Path:
-    """Path of a file that is not whole yet: no other one has it, and `tidy` removes it where nobody writes it."""
+@contextmanager
+def draft_in(folder: Path) -> Iterator[Path]:
+    """An empty file for others to fill by its path; gone at the end unless it was moved. `tidy` leaves it alone."""
+    path = _draft_path(folder)
+    with _locked(path):
+        try:
+            yield path
+        finally:
+            path.unlink(missing_ok=True)
+
+
+def _draft_path(folder: Path) -> Path:
     return folder / f".{uuid.uuid4().hex}{DRAFT}"
+
+
+def _locked(draft: Path) -> io.FileIO:
+    """A new file that `tidy` leaves alone as long as it is open; its rights are those of the umask."""
+    file = io.FileIO(str(draft), "xb")
+    with suppress(OSError):  # not every file system knows locks
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    return file
 
 
 def write_whole(path: Path, content: str | bytes, numbered: bool = False) -> Path:
@@ -231,11 +247,10 @@ def move_whole(path: Path, target: Path, overwrite: bool = False) -> Path:
     `overwrite`: whether it replaces one that is there; else it becomes name-2.end, name-3.end, ... beside that one.
     Returns where it is now. Raises FileTrouble if it cannot be moved; nothing has changed.
     """
-    draft = target.parent / f".{os.getpid()}{DRAFT}"
+    draft = _draft_path(target.parent)
     try:
         if target.exists() and target.samefile(path):
             return target
-        draft.unlink(missing_ok=True)  # of a process that was killed, and had the same number
         try:
             os.link(path, draft)
         except OSError:  # another disk, another owner, a file system without links

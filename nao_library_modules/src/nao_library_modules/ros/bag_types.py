@@ -56,20 +56,18 @@ def convert_bag(source: Path, target: Path, names: str, overwrite: bool = False)
     target = require_new(target, overwrite)
     if target.exists() and source.exists() and target.samefile(source):
         raise NaoError(f"{target} is the bag itself: another name for the new one")
-    draft = draft_in(target.parent)
     done = Conversion()
     try:
-        with rosbag.Bag(str(source)) as old:
-            compression = old.get_compression_info().compression
-            with rosbag.Bag(str(draft), "w", compression=compression) as new:
-                _copy(old, new, _Names(names), done)
-        move_whole(draft, target, overwrite)
+        with draft_in(target.parent) as draft:
+            with rosbag.Bag(str(source)) as old:
+                compression = old.get_compression_info().compression
+                with rosbag.Bag(str(draft), "w", compression=compression) as new:
+                    _copy(old, new, _Names(names), done)
+            move_whole(draft, target, overwrite)
     except rosbag.ROSBagUnindexedException:
         raise NaoError(f"{source} has no index, as one whose recording was cut off: rosbag reindex it first") from None
     except (rosbag.ROSBagException, OSError, genpy.MessageException) as error:
         raise NaoError(f"{source} cannot be converted: {error}") from error
-    finally:
-        draft.unlink(missing_ok=True)
     return done
 
 
@@ -93,7 +91,7 @@ class _Names:
         ours = getattr(importlib.import_module(f"{package}.msg"), word, None) if own else None
         if ours is None:
             return None
-        theirs = as_theirs(ours) if own in self._table.theirs else ours
+        theirs = as_theirs(ours)
         before, after = ours if own == name else theirs, ours if self._to_ours else theirs
         return (before, after) if after._type != name else None
 

@@ -62,13 +62,10 @@ def get_file(context: click.Context, remote: str, local: str, overwrite: bool) -
     path = full_path(remote)
     try:
         target = require_new(wanted / posixpath.basename(path) if wanted.is_dir() else wanted, overwrite)
-        draft = draft_in(target.parent)
-        try:
+        with draft_in(target.parent) as draft:
             with _files(settings) as files:
                 files.get(path, draft)
             target = move_whole(draft, target, overwrite)
-        finally:
-            draft.unlink(missing_ok=True)
     except (NoPlaceForFile, OSError) as error:
         raise CommandFailed(str(error)) from None
     _say(settings, str(target))
