@@ -117,13 +117,18 @@ class CameraTopics:
         """Publish a picture with its calibration; called in the thread of the pictures."""
         time = ros_time if self._config["use_ros_time"] else picture.time
         header = header_of(time, self._frames[picture.camera])
-        for topic in self._images:
-            if topic.get_num_connections():
-                publish(topic, to_image(picture, header))
-        for topic in self._info_topics:
-            if topic.get_num_connections():
-                calibration = self._infos[picture.camera].of(picture.width, picture.height)
-                publish(topic, to_info(calibration, picture.width, picture.height, header))
+        images, infos = (
+            [topic for topic in topics if topic.get_num_connections()] for topics in (self._images, self._info_topics)
+        )
+        if images:
+            image = to_image(picture, header)
+            for topic in images:
+                publish(topic, image)
+        if infos:
+            calibration = self._infos[picture.camera].of(picture.width, picture.height)
+            info = to_info(calibration, picture.width, picture.height, header)
+            for topic in infos:
+                publish(topic, info)
         if self._compressed.get_num_connections():
             self._show_compressed(picture, header)
 
