@@ -129,14 +129,29 @@ def test_a_move_of_ALMotion_is_neither_watched_nor_stopped_for_a_way_before_it(r
     assert robot.ALMotion.moveIsActive() and seen == []
 
 
+def test_a_way_before_an_obstacle_is_over_when_another_walk_begins(robot, hear):
+    place(robot, "wall", 2.0, 0.8, 0.0)
+    seen = hear("ObstacleDetected")
+    way = robot.post("ALNavigation", "navigateTo", 1.5, 0.0)
+    robot.handed_over("ALNavigation")
+    robot.advance_until(lambda: seen, 20.0, 0.02, "the wall is seen")
+    robot.ALMotion.moveToward(0.0, 0.0, 0.5)
+    robot.advance(0.5)
+    assert robot.answer(way) is False
+    robot.ALNavigation.stopNavigateTo()
+    robot.advance(2.0)
+    assert robot.ALMotion.moveIsActive()
+
+
 def test_a_goal_that_is_too_far_away_is_not_gone_to(robot, go, caplog):
     assert go("navigateTo", 3.0, 0.5) is False and "allowed is a place nearer than 3 m" in caplog.text
 
 
-def test_soft_legs_prevent_a_way_without_an_error_and_say_so_once(robot, go):
+def test_soft_legs_prevent_a_way_without_an_error_and_say_so_once(robot, go, caplog):
     robot.ALMotion.setStiffnesses("Body", 0.0)
     failed = []
     robot.server.memory.listen("ALMotion/MoveFailed", failed.append)
     assert robot.ALMotion.moveTo(0.2, 0.0, 0.0) is False
     assert [go(name, 0.5, 0.0, *theta) for name, theta in (("navigateTo", ()), ("moveTo", (0.0,)))] == [False, None]
     assert len(failed) == 3 and all("wakeUp first" in cause and status == 0 for cause, status, _ in failed)
+    assert caplog.text.count("does not move the robot") == 1

@@ -105,8 +105,15 @@ class Locomotion:
 
     @property
     def course(self) -> Course | None:
-        """What the present walk follows: another one after each command."""
+        """What the present walk follows: another one after each command, but for steps that are added."""
         return self._course
+
+    @property
+    def ending(self) -> bool:
+        """Whether the robot makes the last steps of a walk, or none any more."""
+        if self._walker is None or not self._walker.plan.walking:
+            return not self._to_begin
+        return isinstance(self._course, VelocityCourse) and self._course.ending
 
     @property
     def ahead(self) -> float:

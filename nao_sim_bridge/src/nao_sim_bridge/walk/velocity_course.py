@@ -35,11 +35,15 @@ class _Going(NamedTuple):
 
 
 class VelocityCourse(Course):
-    """Goes on at `wanted`, the way in one step, until it is told to end; `rate`: at which the robot walks already."""
+    """Goes on at `wanted`, the way in one step, until it is told to end; `rate`: at which the robot walks already.
+
+    Attributes:
+        ending: Whether it was told to.
+    """
 
     def __init__(self, settings: WalkSettings, gait: FeetGait, wanted: Rate, rate: Rate = STANDSTILL) -> None:
         self._wanted = within(wanted, gait)
-        self._ending = False
+        self.ending = False
         super().__init__(settings, gait, rate)
 
     def begin_at(self, robot: FootPose) -> None:
@@ -54,7 +58,7 @@ class VelocityCourse(Course):
 
     def end(self) -> None:
         """Slow down, bring the feet together, and be over."""
-        self._ending = True
+        self.ending = True
         self._wanted = STANDSTILL
 
     def first_side(self, _: Mapping[int, FootPose]) -> int:
@@ -69,7 +73,7 @@ class VelocityCourse(Course):
         closing = state.closing
         if closing == 0:
             return None
-        if self._ending and closing is None and _slow(state.rate, self._settings.change):
+        if self.ending and closing is None and _slow(state.rate, self._settings.change):
             closing = ALIGNING_STEPS if state.first else CLOSING_STEPS
         if closing is not None:
             rate, closing = STANDSTILL, closing - 1

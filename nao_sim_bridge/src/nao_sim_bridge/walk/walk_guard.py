@@ -68,8 +68,8 @@ class WalkGuard:
 
     @property
     def too_soft(self) -> bool:
-        """Whether legs have too little stiffness to walk."""
-        return bool(self._soft_joints())
+        """Whether too little stiffness of the legs is what keeps the robot from walking; falling robots let go."""
+        return not self._stability.falls.falling and bool(self._soft_joints())
 
     def danger(self, now: Snapshot, dt: float) -> str:
         """Why a walk must end at once; empty when it need not. Called at every tick of `dt` s."""

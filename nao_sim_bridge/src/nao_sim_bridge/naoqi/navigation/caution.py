@@ -77,7 +77,8 @@ class Caution:
 
     def _failed(self, _: str, started: bool, obstacle: Vector3 | None) -> None:
         """ALMotion's own protection was quicker."""
-        if self._course is not None and started and obstacle is not None:
+        mine = self._course is not None and self._simulation.robot.locomotion.course is self._course
+        if mine and started and obstacle is not None:
             self._stop_at(obstacle)
 
     def _stop_at(self, place: Any) -> None:

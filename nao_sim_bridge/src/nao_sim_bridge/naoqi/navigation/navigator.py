@@ -169,10 +169,11 @@ class Navigator:
         self._tell_progress()
         if self._leg is None or not self._leg.finished:
             return
-        # A walk that an obstacle has ended has told so already, and makes its last steps; others may have another walk.
-        hindered = self._caution.obstacle is not None and not self._leg.value
-        if not hindered or not self._simulation.robot.walking:
+        robot = self._simulation.robot
+        if self._leg.value or self._caution.obstacle is None or not robot.walking:
             self._proceed(bool(self._leg.value), self._leg.error)
+        elif not robot.locomotion.ending:  # else these are the last steps before the obstacle
+            self._end(False, STOPPED)  # somebody has begun another walk
 
     def _proceed(self, reached: bool, error: Exception | None = None) -> None:
         """Begin the next leg; `reached` tells whether the one before has come to its end."""
