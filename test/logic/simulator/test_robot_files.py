@@ -155,6 +155,16 @@ def test_of_too_many_uploads_the_oldest_is_given_up(files):
     assert files.to_read("a.wav").read_bytes() == b"new"
 
 
+def test_an_upload_that_is_given_up_leaves_no_draft_and_changes_nothing(files):
+    files.to_write("a.wav").write_bytes(b"by a module")
+    control = FilesControl(lambda: files)
+    control.write(control.begin("a.wav"), b"half", False)
+    control.close()
+    assert [path.name for path in files.folder.iterdir()] == ["a.wav"]
+    files.forget()
+    assert not [*files.folder.iterdir()]
+
+
 def test_no_place_is_in_another_but_in_the_home():
     home, *others = load_places()
     assert home.folder == "." and all(place.folder.startswith(".robot/") for place in others)

@@ -113,9 +113,14 @@ class ClientFiles:
 
     def to_keep(self, name: str) -> Path:
         """As `to_write`, for who runs the simulator: to any place, and `forget` leaves it."""
+        path = self.ready(name)
+        self._written.pop(path, None)
+        return path
+
+    def ready(self, name: str) -> Path:
+        """As `to_keep`, of what may never be written: `forget` still does what it would."""
         path = self._placed(name)
         _make_ready(path, name)
-        self._written.pop(path, None)
         return path
 
     def to_read(self, name: str) -> Path:

@@ -53,13 +53,13 @@ class FilesControl:
         """Begin to write a file; the number that `write` takes its pieces by.
 
         Others see the file, and what it replaces is gone, when the last piece is there. One that is never ended is
-        removed when the simulator starts again, or when there are too many of them.
+        removed when the simulator ends, or when there are too many of them.
 
         Raises:
             ValueError: There can be no such file; see `ClientFiles.to_keep`.
             FileTrouble: It cannot be written.
         """
-        file = WholeFile(self._files().to_keep(name), hidden=True)
+        file = WholeFile(self._files().ready(name), hidden=True)
         with self._lock:
             number = next(self._numbers)
             self._uploads[number] = file
@@ -75,7 +75,7 @@ class FilesControl:
             FileTrouble: It cannot be written, and is given up.
         """
         with self._lock:
-            file = self._uploads.get(number)
+            file = self._uploads.pop(number, None)
             if file is None:
                 raise BadValue("number", number, "that of a file that is begun and not ended or given up")
             files = self._files()
@@ -85,11 +85,16 @@ class FilesControl:
                 file.flush()
                 if last:
                     file.close()
-                    files.to_keep(name)  # modules may have written it meanwhile
+                    files.to_keep(name)
+                else:
+                    self._uploads[number] = file  # behind those of which nothing came for longer
             except FileTrouble:
                 file.discard()
                 raise
-            finally:
-                if file.closed:
-                    del self._uploads[number]
         return name
+
+    def close(self) -> None:
+        """Give up what is being written."""
+        with self._lock:
+            while self._uploads:
+                self._uploads.popitem()[1].discard()

@@ -173,6 +173,7 @@ class SimulatorServer:
             *self._robot.closing(),
             *self._workers.closing(),
             self.pictures.close,
+            self.file_access.close,
             *(outlet.close for outlet in self._outlets),
         ]
 
