@@ -168,14 +168,21 @@ class VideoDeviceSettings:
 
     # --- parameters by subscriber ---------------------------------------------------------------------------------
 
-    getCameraParameter = _by_handle(getParameter)
     getCameraParameterRange, getCameraParameterInfo = _by_handle(getParameterRange), _by_handle(getParameterInfo)
     setCameraParameterToDefault = tells_success(_by_handle(setParameterToDefault))
+
+    def getCameraParameter(self, handle: str, number: int) -> int:
+        camera = self.getActiveCamera(handle)
+        return camera if number == SELECT else self.getParameter(camera, number)
 
     @tells_success
     def setCameraParameter(self, handle: str, number: int, value: int) -> bool:
         camera = self.getActiveCamera(handle)
-        return self.setActiveCamera(handle, value) if number == SELECT else self.setParameter(camera, number, value)
+        if number == SELECT:
+            return self.setActiveCamera(handle, value)
+        if number == SET_DEFAULTS:
+            return self.setAllParametersToDefault(camera)
+        return self.setParameter(camera, number, value)
 
     @tells_success
     def setAllCameraParametersToDefault(self, handle: str) -> bool:

@@ -55,7 +55,7 @@ class Users:
     """Users and data about them, kept in files of the robot as far as they outlast a run. Any thread.
 
     Basic awareness and face detection say who is here: that counts at once, and a thread of its own writes it. What
-    programs keep is in the file before it counts. The simulation thread waits for no file.
+    programs keep is in the file before it counts. Nothing that happens waits for a file to be written.
     """
 
     def __init__(
@@ -103,14 +103,14 @@ class Users:
 
     def close(self) -> None:
         """Returns when what has changed is in the files, as far as it can be."""
-        self._background.in_turn(lambda _: None, "users").result()
+        self._background.in_turn(lambda _: self._save(), "users").result()
 
     def _save(self) -> None:
         with self._writing:
             try:
                 self._write(self._data)
             except (NaoqiError, FileTrouble, ValueError, OSError) as error:
-                log.error("users are as before in the next run, unless a later change can be written: %s", error)
+                log.error("what is known of users could not be saved: %s", error)
 
     # --- data --------------------------------------------------------------------------------------------------------
 
