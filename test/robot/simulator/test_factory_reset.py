@@ -29,6 +29,7 @@ OF_THE_COMPUTER = {
     "isStatsEnabled",
     "isTraceEnabled",
 }
+TAKE_TIME = {"isItDark"}
 MINE = "behaviors:\n  mine/look:\n    do: [{frames: [{time: 0.4, angles: {HeadYaw: 0.4}}]}]\n"
 RED_LED = "Device/SubDeviceList/Face/Led/Red/Left/0Deg/Actuator/Value"
 TEMPERATURE, ARMS = "Device/SubDeviceList/HeadYaw/Temperature/Sensor/Value", "Arms"
@@ -133,7 +134,7 @@ def everything(robot):
     for module in robot.server.modules():
         for name, method in module_methods(module).items():
             bare = any(not overload.types for overload in method.overloads)
-            if bare and READS.match(name) and name not in OF_THE_COMPUTER:
+            if bare and READS.match(name) and name not in OF_THE_COMPUTER | TAKE_TIME:
                 state[f"{module}.{name}()"] = done(robot, f"{module}.{name}()")
     keys = robot.ALMemory.getDataListName()
     state["keys"] = robot.ALMemory.getDescriptionList(keys)
