@@ -78,9 +78,10 @@ def _sentence(counts: Mapping[str, _Counts]) -> str:
     refusing, missing = sum(len(each.refused) for each in newest), sum(len(each.open) for each in newest)
     return (
         f"Of the {there + of_others} methods that the modules of NAOqi {NEWEST} have of their own on a NAO, "
-        f"**{answered}** answer, in {len(newest)} modules. {refusing} always refuse, with a reason, {missing} of these "
-        f"modules are not there, and {of_others} are of modules that are not there. {older} methods of earlier "
-        f"versions are there beside them, and {len(before)} modules with {sum(each.all for each in before)} methods."
+        f"**{answered}** answer, in {len(newest)} modules. {refusing} always refuse, with a reason, {missing} "
+        f"methods of these modules are not there, and {of_others} are of modules that are not there. {older} "
+        f"methods of earlier versions are there beside them, and {len(before)} modules with "
+        f"{sum(each.all for each in before)} methods."
     )
 
 
@@ -90,7 +91,7 @@ def _modules(counts: Mapping[str, _Counts]) -> str:
         names: dict[str, list[str]] = {}
         for name, why in each.refused.items():
             names.setdefault(why, []).append(code(name))
-        refusals = [f"{', '.join(refused_)}: {why}" for why, refused_ in names.items()]
+        refusals = [f"{', '.join(methods)}: {why}" for why, methods in names.items()]
         open_ = f"not there: {', '.join(map(code, each.open))}" if each.open else ""
         rows.append(
             (

@@ -104,7 +104,10 @@ def raised_again_and_again(signal, value):
         ("call ALMotion.getAngels Head true", "getAngels"),
         ("watch ALMotion.getAngles", "ALMotion has no signal and no property getAngles"),
         ("post Counter.step 5", "Counter.step is a property, which nao naoqi call Counter.step VALUE sets"),
-        ("post Counter.add 5", "Counter has no pCall, which begins calls: nao naoqi call Counter.add waits"),
+        (
+            "post Counter.add 5",
+            "Counter cannot post calls, it has no pCall: nao naoqi call Counter.add calls and waits",
+        ),
     ],
 )
 def test_what_cannot_be_is_told(nao, counter, words, said):

@@ -36,7 +36,7 @@ class TypeNames:
 
     Attributes:
         theirs: Type of ours -> its name in the older packages.
-        ours: The other way round, also from words that types had there before.
+        ours: The other way round, also from names that types had there earlier.
         sums: Type of theirs -> md5 sum.
         definitions: Type of theirs that has other fields than ours -> these fields, as in a .msg file.
         former: Package that was there before -> the one of theirs that took its types over.
@@ -106,8 +106,8 @@ class Choice:
 def choose(wanted: object) -> Choice:
     """Which names a driver speaks.
 
-    With THEIRS, types keep their names here that the packages on this computer lack or have otherwise: of nearly all
-    nothing but the name depends on it. The types whose fields are others have to be there.
+    With THEIRS, a type that the older packages on this computer lack, or define otherwise, keeps its name of this
+    library. Those whose fields differ from ours have to be there.
 
     Raises NaoError if there is no such choice, or what THEIRS needs is not there.
     """

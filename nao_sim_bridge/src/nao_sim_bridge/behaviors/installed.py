@@ -85,7 +85,7 @@ class InstalledBehaviors:
     def install(
         self, behaviors: Iterable[Behavior], overwrite: bool = True, gone: Collection[str] = ()
     ) -> tuple[list[str], list[str]]:
-        """Add behaviours, for which those of users that are `gone` go; names of the new, and of those that were there.
+        """Add behaviours and remove those of users named in `gone`; names of the new, and of those that were there.
 
         Raises:
             BadValue: A name is that of a behaviour of the system, or, without `overwrite`, of any other.

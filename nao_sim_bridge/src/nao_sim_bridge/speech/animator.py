@@ -1,4 +1,4 @@
-"""Moves arms, head and trunk through gestures, and always brings them back. Simulation thread only."""
+"""Moves arms, head and trunk through gestures, and brings back what nobody else waits for. Simulation thread only."""
 
 from __future__ import annotations
 
@@ -182,7 +182,7 @@ class Animator:
                 self._bring_back(move.indices - set(indices))
 
     def _bring_back(self, indices: AbstractSet[int]) -> None:
-        """Joints that others wait for stay: those take them from where they are."""
+        """Bring joints home, but for those that a waiting task wants: it takes them from where they are."""
         for index in indices:
             if self._simulation.robot.motion.busy([index]):
                 self._home.pop(index, None)

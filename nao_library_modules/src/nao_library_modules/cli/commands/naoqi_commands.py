@@ -92,7 +92,9 @@ def post(context: click.Context, member: str, arguments: tuple[str, ...], url: s
         if name in _named(remote, "signals"):
             getattr(remote, name)(*_values(arguments))
         elif "pCall" not in _named(remote, "methods"):
-            raise CommandFailed(f"{service} has no pCall, which begins calls: nao naoqi call {member} waits")
+            raise CommandFailed(
+                f"{service} cannot post calls, it has no pCall: nao naoqi call {member} calls and waits"
+            )
         else:
             posted = robot.call(service, "pCall", name, *_values(arguments))
             if settings.json:

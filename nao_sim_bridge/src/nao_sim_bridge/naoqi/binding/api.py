@@ -66,7 +66,7 @@ class Method(NamedTuple):
 
 
 class Table(NamedTuple):
-    """Methods of a module that are its own, or that several share, and the names of the tables that it shares."""
+    """Methods of one table, and the names of the tables that it inherits from."""
 
     shared: Tuple[str, ...]
     methods: Mapping[str, Method]

@@ -98,7 +98,7 @@ def lists_by_tag(value: Any, field: str) -> dict[str, list[str]]:
 
 
 def map_or_pairs(value: Any, field: str, allowed: str = "[[key, value], ...]") -> dict[str, Any]:
-    """A map with texts for keys, at least one, as which clients also send pairs; errors say that `allowed` is."""
+    """A map with text keys, not empty, for which clients may send pairs. `allowed` is what an error asks for."""
     try:
         found = dict(value)
     except (TypeError, ValueError):

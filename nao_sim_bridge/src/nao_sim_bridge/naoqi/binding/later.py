@@ -1,4 +1,4 @@
-"""Modules that cost nothing until somebody calls them: neither are they made before, nor is their code read."""
+"""Modules that cost nothing until somebody calls them: they are not made, nor their code read, before that."""
 
 from __future__ import annotations
 

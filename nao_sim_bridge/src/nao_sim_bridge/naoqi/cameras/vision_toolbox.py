@@ -20,7 +20,7 @@ USUAL = 3
 """Pictures that `takePicture` takes."""
 RATE, KIND = 15.0, "MJPG"
 BRIGHT, DARK = 5, 255
-"""What `isItDark` answers in a bright room, and where there is no light; less was outdoors, which no world is."""
+"""What `isItDark` answers in a bright room, and where there is no light; lower values are for outdoors."""
 MOST_LOOKS = load_sizes().clients.series
 """Calls that wait for a picture at the same time."""
 

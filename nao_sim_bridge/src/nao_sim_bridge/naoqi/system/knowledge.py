@@ -17,8 +17,8 @@ FILE = ".local/share/ALKnowledge/knowledge.json"
 class ALKnowledge:
     """ALKnowledge as the simulated robot offers it, kept in a file of the robot.
 
-    Triples come and go at their dates, of the clock of the computer: whoever asks finds them in time. The file has the
-    dates until the next change: questions write nothing.
+    Triples come and go at their dates, of the clock of the computer: whoever asks finds them in time. Questions
+    write no file: what has come or gone is saved with the next change.
     """
 
     def __init__(self, files: ClientFiles) -> None:

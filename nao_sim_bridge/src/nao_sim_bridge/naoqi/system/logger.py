@@ -119,10 +119,10 @@ class ALLogger:
             errors="replace"
         )
         most = load_sizes().kept.log_bytes
-        full = [path for path, file in self._open.items() if file.tell() + len(line) > most]
+        full = [path for path, file in list(self._open.items()) if file.tell() + len(line) > most]
         for path in full:
             self._open.pop(path).close()
-        for file in self._open.values():
+        for file in list(self._open.values()):
             file.write(line)
         if full:
             raise NaoqiError(f"full, {most} bytes at most, and written to no more: {', '.join(full)}")

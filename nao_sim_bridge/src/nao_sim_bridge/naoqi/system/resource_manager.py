@@ -24,7 +24,7 @@ MOST_WAITING = load_sizes().clients.resource_calls
 class _Request:
     """A call that wants resources; `until` is in simulated time, s, None for ever.
 
-    It ends with the lock held, in whatever way. Of the `optional` ones it gets those that are free when it ends, and
+    Whoever ends it holds the lock. Of the `optional` ones it gets those that are free when it ends, and
     answers their names; with None it answers nothing.
     """
 
