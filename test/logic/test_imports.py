@@ -239,10 +239,13 @@ def test_the_package_of_the_simulator_alone_loads_neither_the_engine_nor_arrays(
     assert told.endswith("[] <class 'nao_sim_bridge.library.nao_sim.NaoSim'>\n")
 
 
-def test_who_knows_the_errors_of_naoqi_alone_loads_no_libqi():
-    program = "import sys, naoqi, nao_library_modules.nao.type_names; print('qi' in sys.modules, naoqi.ALProxy)"
+def test_who_knows_the_errors_of_naoqi_alone_loads_neither_libqi_nor_motion():
+    program = (
+        "import sys, naoqi, nao_library_modules.nao.type_names\n"
+        "print(sys.modules.keys() & {'qi', 'motion'}, naoqi.ALProxy, naoqi.motion.FRAME_ROBOT)"
+    )
     told = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True).stdout
-    assert told == "False <class 'naoqi.proxy.ALProxy'>\n"
+    assert told == "set() <class 'naoqi.proxy.ALProxy'> 2\n"
 
 
 def test_messages_and_actions_are_apart():
