@@ -159,7 +159,7 @@ class VisionModules:
             self.modules[module] = parts(module, own, watching, *events_and_keys)
             self._watchings.append(watching)
 
-        def later(module: str, rare: Rare) -> Later:
+        def seldom(module: str, rare: Rare) -> Later:
             def make() -> list[Any]:
                 made = imported(rare.where)(simulation, memory, process, *([files] if rare.with_files else []))
                 return parts(module, [made], made.watching, rare.events, rare.keys)
@@ -175,7 +175,7 @@ class VisionModules:
         add(face_detection.NAME, [faces], faces.watching, [face_detection.EVENT])
         events, keys = movement_detection.EVENTS, [movement_detection.INFO]
         add(movement_detection.NAME, [movement], movement.watching, events, keys)
-        self.modules.update((module, later(module, rare)) for module, rare in RARE.items())
+        self.modules.update((module, seldom(module, rare)) for module, rare in RARE.items())
 
     def closing(self) -> list[Callable[[], None]]:
         """Steps after which nothing is looked at any more; blocking."""
