@@ -9,11 +9,14 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from nao_sim_bridge.base.errors import SimulationStopped
+from nao_sim_bridge.base.imports import Library
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.render.client import RenderError, Viewer
 
 if TYPE_CHECKING:
     from nao_sim_bridge.render.window import Ray
+
+Image = Library("PIL.Image")
 
 log = logging.getLogger("nao_sim.pictures")
 
@@ -38,8 +41,6 @@ class Pictures:
 
     def png(self, view: str, width: int, height: int) -> bytes:
         """A PNG picture from outside; see `Simulation.picture`."""
-        from PIL import Image  # most simulations are not looked at from outside
-
         buffer = io.BytesIO()
         Image.fromarray(self._runner.simulation.picture(view, width, height), "RGB").save(buffer, "PNG")
         return buffer.getvalue()
