@@ -21,6 +21,7 @@ server.stop()
 print("read:", *sys.modules, flush=True)
 os._exit(0)
 """
+LIMIT = 60.0
 PACKAGE = Path(nao_sim_bridge.__file__).parent
 MADE_LATER = re.compile(r'"((?:\w+\.)+\w+):[\w{}]+"')
 """How our code names what it imports when it needs it; see `nao_sim_bridge.base.imports`."""
@@ -30,7 +31,8 @@ def test_a_start_reads_no_code_that_is_read_when_first_needed(tmp_path):
     sources = "".join(path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py"))
     later = {f"nao_sim_bridge.{name}" for name in MADE_LATER.findall(sources)}
     assert "nao_sim_bridge.naoqi.navigation.navigation" in later and "nao_sim_bridge.naoqi.users.users" in later
-    told = subprocess.run([sys.executable, "-c", START, str(tmp_path)], stdout=subprocess.PIPE, text=True, check=True)
+    start = [sys.executable, "-c", START, str(tmp_path)]
+    told = subprocess.run(start, stdout=subprocess.PIPE, text=True, check=True, timeout=LIMIT)
     read = set(told.stdout.rpartition("read:")[2].split())
     assert "nao_sim_bridge.naoqi.motion.walking" in read
     seldom = {"nao_sim_bridge.speech.gesture_families", "cv2", "PIL.Image", "av", "soundfile"}
