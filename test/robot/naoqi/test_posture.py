@@ -59,7 +59,15 @@ def test_another_motion_gives_way_and_apply_posture_wakes_nobody(robot, begin):
 
 
 def test_a_speed_above_1_is_the_top_speed(stiff_robot):
-    assert stiff_robot.finish(POSTURE, "goToPosture", "StandInit", 5, after=4.0) is True
+    durations = []
+    for speed in (1.0, 5.0):
+        assert stiff_robot.finish(POSTURE, "goToPosture", "Crouch", 1.0, after=4.0) is True
+        began, future = stiff_robot.now.time, stiff_robot.post(POSTURE, "goToPosture", "StandInit", speed)
+        stiff_robot.handed_over(POSTURE)
+        stiff_robot.advance_until(lambda call=future: not call.isRunning(), 5.0, 0.05, "it stands")
+        assert stiff_robot.answer(future) is True
+        durations.append(stiff_robot.now.time - began)
+    assert durations[1] == pytest.approx(durations[0], abs=0.2)
 
 
 def test_what_is_wrong_is_named(refuses):
