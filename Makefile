@@ -1,7 +1,7 @@
 # Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
 
 .DEFAULT_GOAL := help
-.PHONY: docs pictures urdf help setup build demo test test-slow test-all bench soak faults lint format clean
+.PHONY: docs pictures urdf help setup build demo film test test-slow test-all bench soak faults lint format clean
 
 # Tests to run: parts of their paths or names (make test TESTS="lights walk"). SEED: their random order.
 TESTS ?=
@@ -22,6 +22,11 @@ demo: ## Play the demonstration in the simulator; pictures, sound and a table in
 	@scripts/setup --minimal
 	@scripts/build
 	@scripts/ros-env python3 nao_library_modules/examples/demo.py --output demo_output --overwrite
+
+film: ## Film the ten behaviours that are bundled; behaviors.mp4 and a sheet of pictures in demo_output
+	@scripts/setup --minimal
+	@scripts/build
+	@scripts/ros-env python3 nao_library_modules/examples/film_behaviors.py --output demo_output --overwrite
 
 test: build ## Run the tests of the levels logic, robot and ros; closes with "N passed, N failed" (TESTS="lights walk")
 	@scripts/test test $(TESTS)

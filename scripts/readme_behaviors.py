@@ -12,8 +12,10 @@ import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "nao_library_modules" / "examples"))
+from film_behaviors import FILM, film_behaviors
+
 from example_parts.contact_sheet import contact_sheet, save_small
-from example_parts.demo_behaviors import FILM, BehaviorShow
+from example_parts.demo_support import Table
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 NAME = "behaviors.png"
@@ -25,18 +27,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--folder", type=Path, default=FOLDER, help="where the picture goes (default: docs/images)")
     folder = parser.parse_args().folder
-    failed = []
-
-    def report(asked: str, told: str, good: bool) -> None:
-        if not good:
-            failed.append(f"{asked}: {told}")
-
+    table = Table()
     with tempfile.TemporaryDirectory() as kept:
-        with BehaviorShow(Path(kept)) as show:
-            parts = show.play(report)
+        parts = film_behaviors(Path(kept), table)
         save_small(contact_sheet(Path(kept) / FILM, parts, SIDE, COLUMNS, SHARE), folder / NAME)
-    print(NAME, *failed, sep="\n", flush=True)
-    return 1 if failed else 0
+    print(NAME, flush=True)
+    return 1 if table.failures else 0
 
 
 if __name__ == "__main__":

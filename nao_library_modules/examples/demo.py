@@ -1,44 +1,43 @@
 #!/usr/bin/env python3
-"""Plays a demonstration on simulated NAOs and checks every step against what they report.
+"""Plays a demonstration on a simulated NAO and checks every step against what the robot reports.
 
-Starts simulator and action servers on a ROS master of its own, wakes the robot up, sends the lights through their paces
-as goals, has it find a ball, walk to a table meanwhile, greet and hear itself. Beside it a second robot, on a stack of
-its own, plays the ten behaviours that come with the library; both live faster than real time. Leaves pictures, sound,
-a film, a table and the logs of the stacks in the output folder, which has to be empty unless --overwrite says that all
-this may be replaced. The exit status tells whether all of it went as asked.
+Starts a simulator and its action servers on a ROS master of its own: the robot stands up, shows green eyes, finds a
+ball, walks to a table while its lights play, greets and hears itself, and plays two behaviours, all faster than real
+time. Leaves pictures, sound, a film, a table and the log of the stack in the output folder, which has to be empty
+unless --overwrite says that all this may be replaced. The exit status tells whether all of it went as asked.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import subprocess
 import sys
 import threading
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Callable, Iterator, List, Mapping, Tuple
+from typing import Mapping
 
 # In the devel space rosrun starts a relay from another folder.
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from example_parts.demo_behaviors import FILM, SHEET, BehaviorShow
+from example_parts.demo_behaviors import BehaviorPlayer, Turn
 from example_parts.demo_lights import Step, steps
 from example_parts.demo_support import (
     SOUND,
+    START_LIMIT,
+    Film,
     Stack,
+    Table,
+    announce,
     count_green_pixels,
     loud_time,
+    may_fill,
     wait_until,
-    write_table,
 )
-from nao_library_modules.whole_file import write_whole
 
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
 # s of simulated time.
-START_LIMIT = 240.0
 STEP_LIMIT = 30.0
-# m. The near edge of the table is 0.6 m ahead of where the robot starts.
-TO_THE_TABLE = 0.45
+WORLD, FILM = "lab", "demo.mp4"
+# m. The near edge of the table is 0.6 m ahead of where the robot starts; an arm needs the rest.
+TO_THE_TABLE = 0.3
 GREETING = "Hello! I am a NAO that lives in a simulator. Welcome to the laboratory."
 # Where the ball lies from where the robot starts, and its radius, m.
 BALL, BALL_RADIUS = (0.30, -0.55), 0.05
@@ -48,16 +47,12 @@ EYES_PICTURE = "own_eyes.png"
 WORDS, OWN_WORD = ("hello", "goodbye", "laboratory", "elephant", "umbrella"), "laboratory"
 # How long the greeting lasts at least, s.
 GREETING_TIME = 2.0
-# Where the process of the behaviours leaves its part of the table.
-BEHAVIOR_ROWS = "behaviors.json"
+# Of the ten that are bundled; `make film` shows all.
+BEHAVIORS = (Turn("dance"), Turn("bow"))
 # m: nearer to what the sonars see than a walk comes by itself, 0.4 m.
 NEAR, USUAL = 0.15, 0.4
 # Pixels of the green eyes in a front view of 640 x 480; without them there are none.
 MIN_GREEN_PIXELS = 150
-
-
-Rows = List[Tuple[str, str, bool]]
-"""Of the table: what was asked, what the robot reports, whether that is good."""
 
 
 class Demonstration:
@@ -68,24 +63,22 @@ class Demonstration:
         output: Folder for pictures.
     """
 
-    def __init__(self, stack: Stack, output: Path) -> None:
+    def __init__(self, stack: Stack, output: Path, table: Table) -> None:
         import rospy
 
-        from nao_library_actions.msg import NaoLedAction, NaoMotionAction
-        from nao_library_modules.simple_action_client import SimpleActionClient
+        import nao_library_actions.msg as actions
         from nao_library_msgs.srv import TakePicture
         from naoqi import ALProxy
 
         self._output = output
-        self.rows: Rows = []
-        stack.wait_for_robot()  # whose time is that of ROS: the parameter is set by then
-        rospy.init_node("nao_library_demo", disable_signals=True)
-        self._lights = SimpleActionClient("NaoLights", NaoLedAction)
-        if not self._lights.wait_for_server(rospy.Duration(START_LIMIT)):
-            raise RuntimeError(f"the server NaoLights did not come up; see {stack.log}")
-        self._walker = SimpleActionClient("NaoMotion", NaoMotionAction)
-        if not self._walker.wait_for_server(rospy.Duration(START_LIMIT)):
-            raise RuntimeError(f"the server NaoMotion did not come up; see {stack.log}")
+        self._report = table.add
+        stack.join("nao_library_demo")
+        self._lights = stack.client("NaoLights", actions.NaoLedAction)
+        self._walker = stack.client("NaoMotion", actions.NaoMotionAction)
+        self._speaker = stack.client("nao_audio_out", actions.NaoAudioOutAction)
+        self._listener = stack.client("nao_audio_in", actions.NaoAudioInAction)
+        self._eyes = stack.client("NaoVision", actions.NaoVisionAction)
+        self.film, self.behaviors = Film(FILM), BehaviorPlayer(stack, table)
         rospy.wait_for_service("nao_sim/picture", START_LIMIT)
         self._take_picture = rospy.ServiceProxy("nao_sim/picture", TakePicture)
         self._memory = ALProxy("ALMemory", "127.0.0.1", stack.nao_port)
@@ -103,24 +96,19 @@ class Demonstration:
         import rospy
 
         import nao_library_actions.msg as actions
-        from nao_library_modules.simple_action_client import SimpleActionClient
         from nao_library_msgs.msg import AudioInFunction, AudioOutFunction
 
-        speaker = SimpleActionClient("nao_audio_out", actions.NaoAudioOutAction)
-        listener = SimpleActionClient("nao_audio_in", actions.NaoAudioInAction)
-        for client, name in ((speaker, "nao_audio_out"), (listener, "nao_audio_in")):
-            if not client.wait_for_server(rospy.Duration(START_LIMIT)):
-                raise RuntimeError(f"the server {name} did not come up")
         hear = AudioInFunction(function="listen", vocabulary=list(WORDS), word_spotting=True, timeout=STEP_LIMIT)
         listens = threading.Event()
-        listener.send_goal(actions.NaoAudioInGoal([hear]), feedback_cb=lambda told: told.status and listens.set())
+        goal = actions.NaoAudioInGoal([hear])
+        self._listener.send_goal(goal, feedback_cb=lambda feedback: feedback.status and listens.set())
         listens.wait(STEP_LIMIT)
-        speaker.send_goal(actions.NaoAudioOutGoal([AudioOutFunction(function="say", str_param=GREETING)]))
-        if not speaker.wait_for_result(rospy.Duration(STEP_LIMIT)):
+        self._speaker.send_goal(actions.NaoAudioOutGoal([AudioOutFunction(function="say", str_param=GREETING)]))
+        if not self._speaker.wait_for_result(rospy.Duration(STEP_LIMIT)):
             self._report("greet, and hear itself", f"no result of nao_audio_out within {STEP_LIMIT:g} s", False)
             return
-        listener.wait_for_result(rospy.Duration(STEP_LIMIT))
-        result = listener.get_result()
+        self._listener.wait_for_result(rospy.Duration(STEP_LIMIT))
+        result = self._listener.get_result()
         words = [word.strip("<.> ") for word in result.words] if result else []
         seconds = loud_time(self._output / SOUND)
         report = f"{seconds:.1f} s of speech in {SOUND}; it heard {', '.join(words[:1]) or 'nothing'}"
@@ -130,24 +118,19 @@ class Demonstration:
         """Look for the ball that lies in the room, and take a picture with its own eyes when it sees it."""
         import rospy
 
-        import nao_library_actions.msg as actions
-        from nao_library_modules.simple_action_client import SimpleActionClient
+        from nao_library_actions.msg import NaoVisionGoal
         from nao_library_msgs.msg import VisionFunction
 
-        client = SimpleActionClient("NaoVision", actions.NaoVisionAction)
-        if not client.wait_for_server(rospy.Duration(START_LIMIT)):
-            raise RuntimeError("the server NaoVision did not come up")
         look = VisionFunction(function="lookFor", str_param="ball", size=BALL_RADIUS, timeout=STEP_LIMIT)
         photo = VisionFunction(function="takePicture", str_param=EYES_PICTURE, overwrite=True)
-        client.send_goal(actions.NaoVisionGoal([look, photo]))
-        if not client.wait_for_result(rospy.Duration(2 * STEP_LIMIT)):
+        self._eyes.send_goal(NaoVisionGoal([look, photo]))
+        if not self._eyes.wait_for_result(rospy.Duration(2 * STEP_LIMIT)):
             self._report("look for the ball", f"no result within {2 * STEP_LIMIT:g} s", False)
             return
         self._motion.angleInterpolation("Head", [0.0, 0.0], 0.8, True)
-        result = client.get_result()
+        result = self._eyes.get_result()
         if result is None or not result.objects or not (self._output / EYES_PICTURE).exists():
-            told = client.get_goal_status_text() or "it saw no ball"
-            self._report("look for the ball", told, False)
+            self._report("look for the ball", self._eyes.get_goal_status_text() or "it saw no ball", False)
             return
         where = result.objects[0].position
         report = f"a ball at x {where.x:.2f} m, y {where.y:.2f} m from its feet, seen in {EYES_PICTURE}"
@@ -235,61 +218,19 @@ class Demonstration:
                 return f"{name} is {found}, asked was {value}"
         return ""
 
-    def _report(self, asked: str, reported: str, good: bool) -> None:
-        self.rows.append((asked, reported, good))
-        print(f"  {'ok  ' if good else 'FAIL'}  {asked}: {reported}", flush=True)
 
-
-def play_behaviors(output: Path) -> int:
-    """Play the ten behaviours and film them; in a process of its own, for a process knows one ROS master.
-
-    Returns:
-        Exit status: 0 when every one went as asked.
-    """
-    rows: Rows = []
-
-    def report(asked: str, reported: str, good: bool) -> None:
-        rows.append((asked, reported, good))
-        print(f"  {'ok  ' if good else 'FAIL'}  {asked}: {reported}", flush=True)
-
-    try:
-        with BehaviorShow(output) as show:
-            show.play(report)
-    except Exception as error:
-        report("the ten behaviours", str(error), False)
-    write_whole(output / BEHAVIOR_ROWS, json.dumps(rows))
-    return 0 if all(good for _, _, good in rows) else 1
-
-
-@contextmanager
-def behaviors_beside(output: Path) -> Iterator[Callable[[], Rows]]:
-    """Play the ten behaviours in a process of its own; what this gives waits for their rows of the table."""
-    (output / BEHAVIOR_ROWS).unlink(missing_ok=True)
-    process = subprocess.Popen([sys.executable, __file__, "--output", str(output), "--overwrite", "--behaviors"])
-
-    def rows() -> Rows:
-        process.wait()
-        try:
-            return [tuple(row) for row in json.loads((output / BEHAVIOR_ROWS).read_text(encoding="utf-8"))]
-        except (OSError, ValueError) as error:
-            return [("the ten behaviours", f"their process has ended: {error}", False)]
-
-    try:
-        yield rows
-    finally:
-        process.terminate()  # if it still plays; its stack ends with it
-        process.wait()
-        (output / BEHAVIOR_ROWS).unlink(missing_ok=True)
-
-
-def play_all(stack: Stack, output: Path) -> Rows:
-    """The whole demonstration; returns the table."""
-    demonstration = Demonstration(stack, output)
+def play_all(stack: Stack, output: Path, table: Table) -> None:
+    """The whole demonstration."""
+    demonstration = Demonstration(stack, output, table)
+    film = demonstration.film
+    announce("playing the demonstration", 30)
     demonstration.wake_up()
     demonstration.picture("before", "front", green_eyes=False)
-    demonstration.find_ball()
     for number, step in enumerate(steps(), 1):
         if step.walking:
+            demonstration.find_ball()
+            film.start()
+            film.caption("walk to the table")
             demonstration.begin_walk()
         demonstration.play(step)
         if step.picture:
@@ -299,40 +240,35 @@ def play_all(stack: Stack, output: Path) -> Rows:
             demonstration.end_walk()
             demonstration.picture("at_the_table", "room")
     demonstration.picture("after", "front", green_eyes=False)
+    film.caption("greet, and hear itself")
     demonstration.greet()
-    return demonstration.rows
+    for turn in BEHAVIORS:
+        film.caption(turn.title)
+        demonstration.behaviors.play(turn)
+    film.stop(table)
 
 
 def main() -> int:
     """Run the demonstration; the exit status is 0 when every step went as asked."""
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--output", type=Path, default=Path("demo_output"), help="folder for pictures and the table")
-    options.add_argument("--behaviors", action="store_true", help="only the ten behaviours")
     options.add_argument("--overwrite", action="store_true", help="replace what an earlier demonstration left there")
     chosen = options.parse_args()
     output = chosen.output.resolve()
-    output.mkdir(parents=True, exist_ok=True)
-    if any(output.iterdir()) and not chosen.overwrite:
-        print(f"{output} is not empty: another folder, or --overwrite")
+    if not may_fill(output, chosen.overwrite):
         return 1
-    if chosen.behaviors:
-        return play_behaviors(output)
-    print(f"starting two simulated NAOs with their action servers (stack.log, behaviors.log in {output})", flush=True)
-    with behaviors_beside(output) as wait_for_behaviors:
-        stack = Stack(output)
-        try:
-            rows = play_all(stack, output)
-        except Exception as error:
-            print(f"  FAIL  {error}\n        see {stack.log}", flush=True)
-            return 1
-        finally:
-            stack.stop()
-        rows += wait_for_behaviors()
-    write_table(rows, output / "table.md")
-    failures = sum(not good for _, _, good in rows)
-    left = f"pictures, {SOUND}, {FILM}, {SHEET} and table.md"
-    print(f"{len(rows) - failures} of {len(rows)} as asked; {left} are in {output}")
-    return 1 if failures else 0
+    (output / SOUND).unlink(missing_ok=True)  # of the last demonstration; the simulator would not replace it
+    table = Table()
+    try:
+        with Stack(output, world=WORLD, sound_file=SOUND) as stack:
+            play_all(stack, output, table)
+    except Exception as error:
+        print(f"  FAIL  {error}\n        see {output / 'stack.log'}", flush=True)
+        return 1
+    table.write(output / "table.md")
+    print(f"{table.summary}; pictures, {SOUND}, {FILM} and table.md are in {output}")
+    print("`make film` shows all ten behaviours, `scripts/ros-env nao --help` what else there is.")
+    return 1 if table.failures else 0
 
 
 if __name__ == "__main__":

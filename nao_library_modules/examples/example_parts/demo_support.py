@@ -1,37 +1,148 @@
-"""What the demonstration needs beside its steps: the stack it starts, and how to look at what it left."""
+"""What the demonstration and the film share: the stack they start, its film, and how to look at what it left."""
 
 from __future__ import annotations
 
 import os
 import time
 from pathlib import Path
-from typing import Callable, Sequence
+from typing import Any, Callable, List, Tuple
 
 from nao_library_modules.base.whole_file import write_whole
 from nao_library_modules.processes.own_stack import OwnStack
 
-WORLD = "lab"
 SPEED = "3"
-"""Of time: nobody watches. As fast as possible would leave the nodes behind."""
+"""Times real time: nobody watches. The simulator goes slower where the computer cannot follow."""
+START_LIMIT = 240.0
+"""s of wall time for a server to come up on a busy computer."""
 # Everything the loudspeakers play.
 SOUND = "sound.wav"
 # Root mean square of speech, of full scale.
 LOUD = 0.02
 
+Row = Tuple[str, str, bool]
+"""Of the table: what was asked, what the robot reports, whether that is good."""
 
-class Stack(OwnStack):
-    """The stack of the demonstration: in the lab, with everything that sounds in a file. This program talks to it.
 
-    Args:
-        output: Folder for pictures and the log.
+class Table:
+    """Rows of what was asked and what the robot reports, printed as they come.
+
+    Attributes:
+        rows: All so far.
     """
 
-    def __init__(self, output: Path) -> None:
-        if (output / SOUND).exists():
-            (output / SOUND).unlink()  # of the last demonstration; the simulator would not replace it
-        arguments = {"record_dir": str(output), "world": WORLD, "sound_file": SOUND, "speed": SPEED}
-        super().__init__(output / "stack.log", arguments)
+    def __init__(self) -> None:
+        self.rows: List[Row] = []
+
+    def add(self, asked: str, reported: str, good: bool) -> None:
+        self.rows.append((asked, reported, good))
+        print(f"  {'ok  ' if good else 'FAIL'}  {asked}: {reported}", flush=True)
+
+    @property
+    def failures(self) -> int:
+        return sum(not good for _, _, good in self.rows)
+
+    @property
+    def summary(self) -> str:
+        return f"{len(self.rows) - self.failures} of {len(self.rows)} as asked"
+
+    def write(self, path: Path) -> None:
+        """Write it as Markdown."""
+        lines = ["| asked | the robot reports | |", "|---|---|---|"]
+        lines += [f"| {asked} | {reported} | {'ok' if good else 'FAIL'} |" for asked, reported, good in self.rows]
+        write_whole(path, "\n".join(lines) + "\n")
+
+
+class Stack(OwnStack):
+    """A simulated robot with its servers; this program becomes a node of its ROS master.
+
+    Args:
+        output: Folder for what the robot records and for the log.
+        arguments: Of the launch file.
+    """
+
+    def __init__(self, output: Path, **arguments: str) -> None:
+        announce("starting the simulated robot and its action servers", 10)
+        super().__init__(output / "stack.log", {"record_dir": str(output), "speed": SPEED, **arguments})
         os.environ["ROS_MASTER_URI"] = self.master_uri
+
+    def join(self, node: str) -> None:
+        """Make this program a node when the robot is there: then the master knows whose time is that of ROS."""
+        import rospy
+
+        self.wait_for_robot()
+        rospy.init_node(node, disable_signals=True)
+
+    def client(self, name: str, action: Any) -> Any:
+        """A client of an action server that is there.
+
+        Raises:
+            RuntimeError: The server did not come up.
+        """
+        import rospy
+
+        from nao_library_modules.simple_action_client import SimpleActionClient
+
+        client = SimpleActionClient(name, action)
+        give_up = time.monotonic() + START_LIMIT
+        while not client.wait_for_server(rospy.Duration(1.0)):
+            if not self.alive() or time.monotonic() > give_up:
+                raise RuntimeError(f"the server {name} did not come up; see {self.log}")
+        return client
+
+
+class Film:
+    """The film of the simulated robot, drawn while the computer has time for it and else when it ends.
+
+    Args:
+        file: Its name in the output folder.
+    """
+
+    SIZE, RATE, VIEW = 300, 8.0, "stage"
+    """Pixels each way, pictures a second, from where."""
+
+    def __init__(self, file: str) -> None:
+        import rospy
+
+        from nao_library_msgs.srv import CaptionFilm, StartFilm, StopFilm
+
+        self._file = file
+        rospy.wait_for_service("nao_sim/film/start", START_LIMIT)  # the last thing that the simulator does
+        self._start = rospy.ServiceProxy("nao_sim/film/start", StartFilm)
+        self._caption = rospy.ServiceProxy("nao_sim/film/caption", CaptionFilm)
+        self._stop = rospy.ServiceProxy("nao_sim/film/stop", StopFilm)
+
+    def start(self) -> None:
+        _require(self._start(self._file, self.VIEW, self.SIZE, self.SIZE, self.RATE))
+
+    def caption(self, text: str) -> None:
+        _require(self._caption(text))
+
+    def stop(self, table: Table) -> None:
+        """Complete it, with a row of the table."""
+        announce("drawing the rest of the film", 20)
+        film = _require(self._stop())
+        report = f"{film.frames} pictures, {film.length.to_sec():.0f} s, with sound"
+        table.add(f"film {self._file}", report, film.frames > 0)
+
+
+def _require(answer: Any) -> Any:
+    if not answer.success:
+        raise RuntimeError(answer.message)
+    return answer
+
+
+def may_fill(folder: Path, overwrite: bool) -> bool:
+    """Make the folder if need be; False, with a line that says why, if it holds something that may not be replaced."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if any(folder.iterdir()) and not overwrite:
+        print(f"{folder} is not empty: another folder, or --overwrite")
+        return False
+    return True
+
+
+def announce(what: str, seconds: float) -> None:
+    """Say what comes that takes more than 3 s, and about how long, s."""
+    print(f"{what} (about {seconds:.0f} s)", flush=True)
 
 
 def loud_time(path: Path) -> float:
@@ -65,10 +176,3 @@ def wait_until(ready: Callable[[], bool], limit: float, what: str) -> None:
         if time.monotonic() > give_up:
             raise RuntimeError(f"{what} did not become ready within {limit:g} s")
         time.sleep(0.1)
-
-
-def write_table(rows: Sequence[tuple[str, str, bool]], path: Path) -> None:
-    """Write the table of what was asked and what the robot reports."""
-    lines = ["| asked | the robot reports | |", "|---|---|---|"]
-    lines += [f"| {asked} | {reported} | {'ok' if good else 'FAIL'} |" for asked, reported, good in rows]
-    write_whole(path, "\n".join(lines) + "\n")

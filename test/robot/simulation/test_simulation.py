@@ -147,6 +147,16 @@ def test_time_stands_still_while_paused_and_passes_no_faster_than_asked(start):
     assert runner.wait_for_tick(after=late + 10, timeout=1.0), "the pace counts from where it was set"
 
 
+def test_a_speed_that_the_computer_cannot_keep_leaves_it_some_of_its_time(start):
+    runner, simulation = start(speed=1e6, paused=False)
+    now = lambda: (time.thread_time(), time.monotonic())  # noqa: E731
+    used, wall = runner.call(now)
+    assert runner.wait_for_tick(after=runner.ticks + 300, timeout=60.0)
+    used_then, wall_then = runner.call(now)
+    assert (used_then - used) / (wall_then - wall) < 0.9
+    assert simulation.shared.late
+
+
 def test_stop_ends_everybody_who_waits_with_an_error(start):
     ended, seen = threading.Event(), []
     runner, simulation = start(on_end=ended.set)

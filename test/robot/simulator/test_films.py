@@ -11,6 +11,7 @@ from sounds import sound_of
 
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.samples import RATE, sine
+from nao_sim_bridge.server.film import Film
 from nao_sim_bridge.server.sound_outlets import CARD_DELAY, SoundCard, SoundFile
 from nao_sim_bridge.sound.files import WavFile
 from nao_sim_bridge.world.render_state import StateSender
@@ -85,6 +86,18 @@ def test_a_film_that_cannot_be_drawn_tells_so_and_holds_no_time_up(robot, film, 
     robot.advance(1.0)
     with pytest.raises(RuntimeError, match="ZeroDivisionError"):
         robot.NaoSimulation.stopFilm()
+
+
+def test_a_film_is_drawn_after_a_simulation_that_needs_the_processor(simulation, tmp_path, monkeypatch):
+    film = Film(simulation, tmp_path / "film.mp4", "front", (SIDE, SIDE), FRAME_RATE, "auto")
+    sent_at, send = [], film._worker.send
+    monkeypatch.setattr(film._worker, "send", lambda *message: (sent_at.append(simulation.ticks), send(*message)))
+    simulation.shared.late = True
+    film.begin()
+    simulation.run(1.0)
+    film.pause()
+    assert film.end().frames == 6
+    assert sent_at and set(sent_at) == {simulation.ticks}
 
 
 class Card:

@@ -24,6 +24,8 @@ log = logging.getLogger("nao_sim.runner")
 
 # When the machine cannot keep the pace, this much lag (s of wall time) is made up for; the rest is given up.
 MAX_LAG = 0.1
+# What a tick that is late leaves to others, in parts of the time it took: the speed gives way before they starve.
+YIELDED = 0.25
 FASTEST = math.inf
 # How soon to look again at what time waits for when nobody said that it is ready, s of wall time.
 HOLD_LOOK = 0.005
@@ -247,7 +249,7 @@ class SimulationRunner:
         """Wait for a command or a tick that is due and do it. Returns False when it is time to stop."""
         with self._wake:
             delay = self._delay()
-            late = delay <= 0.0
+            late = self._simulation.shared.late = delay <= 0.0
             while not (self._stopping or self._commands or delay <= 0.0):
                 self._wake.wait(None if delay == math.inf else min(delay, LONGEST_WAIT))
                 delay = self._delay()
@@ -258,11 +260,24 @@ class SimulationRunner:
             task.finish_with(command)
         with self._wake:
             due = self._delay() <= 0.0
+        began = time.monotonic()
         if due:
             self._tick()
         if late:
-            time.sleep(0.0)  # time that passes without a wait would keep every other thread from the interpreter
+            self._yield(time.monotonic() - began)
         return True
+
+    def _yield(self, spent: float) -> None:
+        """Let others have the interpreter after a tick that was late and took `spent` s, and at a speed the processor.
+
+        As fast as possible means with all there is; only the interpreter is left to threads that wait for it.
+        """
+        if self._advances or self._speed == FASTEST:
+            time.sleep(0.0)
+            return
+        with self._wake:
+            if not (self._stopping or self._commands):
+                self._wake.wait(YIELDED * spent)
 
     def _tick(self) -> None:
         snapshot = self._simulation.tick()

@@ -78,6 +78,7 @@ class SharedWorld:
         things: What is in the world and may come, move and go; a reset puts it to where the world file says.
         ticks: Since the start; it never goes back.
         after_reset: Called at the end of each reset: world and robots are at the start again.
+        late: Whether the last tick came later than the asked speed wants it; set by who lets time pass.
         wake: To be called, from any thread, when time need not wait any more for what a robot holds it for; set by
             who lets time pass.
 
@@ -96,6 +97,7 @@ class SharedWorld:
         self.after_reset: list[Callable[[], None]] = []
         self.task_ids = TaskIds()
         self.guard = self.task_ids.guard
+        self.late = False
         self.wake: Callable[[], None] = lambda: None
         self._air: Air | None = None
         if isinstance(renderer, str):

@@ -1,4 +1,7 @@
-"""Films of a running simulation from outside, with what the loudspeakers play: physics never waits for a drawing."""
+"""Films of a running simulation from outside, with what the loudspeakers play.
+
+Frames are recorded as states and drawn while the computer has time for it; the rest is drawn when the film ends.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +25,10 @@ log = logging.getLogger("nao_sim.film")
 
 MODULE = "nao_sim_bridge.render.film_worker"
 SOUND_STEP = RATE // 10
-MANY_WAITING = 1000
+MANY_WAITING = 2000
 """Frames that are not drawn yet: fast time waits then."""
+LATE_LOOK = 0.1
+"""How often to look whether the simulation still falls behind its speed, s of wall time."""
 TOO_MANY_WAITING = 4000
 """Likewise, of time that does not wait: further ones are left out."""
 END_LIMIT = 1800.0
@@ -147,6 +152,10 @@ class Film:
     def _behind(self) -> bool:
         return len(self._waiting) > MANY_WAITING
 
+    def _draws_later(self) -> bool:
+        """Whether the simulation needs the processor more than the film does."""
+        return self._simulation.shared.late and not self._behind()
+
     def _put(self, kind: str, content: Any) -> None:
         with self._news:
             if self._failure is None:
@@ -156,7 +165,8 @@ class Film:
     def _send(self) -> None:
         while True:
             with self._news:
-                self._news.wait_for(lambda: self._waiting or self._ending)
+                while not self._ending and (not self._waiting or self._draws_later()):
+                    self._news.wait(LATE_LOOK if self._waiting else None)
                 if not self._waiting:
                     return
                 kind, content = self._waiting.popleft()
