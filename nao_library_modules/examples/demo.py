@@ -48,7 +48,7 @@ WORDS, OWN_WORD = ("hello", "goodbye", "laboratory", "elephant", "umbrella"), "l
 # How long the greeting lasts at least, s.
 GREETING_TIME = 2.0
 # Of the ten that are bundled; `make film` shows all.
-BEHAVIORS = (Turn("dance"), Turn("bow"))
+BEHAVIORS = (Turn("dance", length=9), Turn("bow", length=3))
 # m: nearer to what the sonars see than a walk comes by itself, 0.4 m.
 NEAR, USUAL = 0.15, 0.4
 # Pixels of the green eyes in a front view of 640 x 480; without them there are none.
@@ -223,14 +223,15 @@ def play_all(stack: Stack, output: Path, table: Table) -> None:
     """The whole demonstration."""
     demonstration = Demonstration(stack, output, table)
     film = demonstration.film
-    announce("playing the demonstration", 30)
     demonstration.wake_up()
     demonstration.picture("before", "front", green_eyes=False)
     for number, step in enumerate(steps(), 1):
         if step.walking:
+            announce("finding the ball", 10)
             demonstration.find_ball()
             film.start()
             film.caption("walk to the table")
+            announce("walking to the table", 6)
             demonstration.begin_walk()
         demonstration.play(step)
         if step.picture:
@@ -241,9 +242,11 @@ def play_all(stack: Stack, output: Path, table: Table) -> None:
             demonstration.picture("at_the_table", "room")
     demonstration.picture("after", "front", green_eyes=False)
     film.caption("greet, and hear itself")
+    announce("greeting", 9)
     demonstration.greet()
     for turn in BEHAVIORS:
         film.caption(turn.title)
+        announce(f"playing the behaviour {turn.title}", turn.length)
         demonstration.behaviors.play(turn)
     film.stop(table)
 

@@ -17,7 +17,7 @@ from typing import List, Sequence
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from example_parts.contact_sheet import Part, contact_sheet, save_small
 from example_parts.demo_behaviors import TURNS, BehaviorPlayer, Turn
-from example_parts.demo_support import Film, Stack, Table, may_fill
+from example_parts.demo_support import Film, Stack, Table, announce, may_fill
 
 FILM, SHEET = "behaviors.mp4", "behaviors.png"
 
@@ -34,6 +34,7 @@ def film_behaviors(output: Path, table: Table, turns: Sequence[Turn] = TURNS) ->
         began, parts = rospy.get_time(), []
         for turn in turns:
             film.caption(turn.title)
+            announce(f"playing the behaviour {turn.title}", turn.length)
             begin = rospy.get_time() - began
             player.play(turn)
             parts.append(Part(turn.title, begin, rospy.get_time() - began))

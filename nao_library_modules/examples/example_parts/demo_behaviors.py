@@ -22,10 +22,12 @@ class Turn:
     Attributes:
         name: Its name.
         parameters: name=value each.
+        length: About how long it takes on a stack of the demonstration, s.
     """
 
     name: str
     parameters: Sequence[str] = field(default_factory=tuple)
+    length: int = 5
 
     @property
     def title(self) -> str:
