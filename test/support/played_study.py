@@ -6,6 +6,7 @@ import threading
 from dataclasses import dataclass, field
 from typing import Any
 
+from nao_library_modules.console.robots.errors import Stopped
 from nao_library_modules.console.robots.events import EventStream
 from nao_library_modules.console.study.files import StudyFiles
 from nao_library_modules.console.study.reader import read_protocol
@@ -71,6 +72,7 @@ class PlayedRobot:
 
     def __init__(self, plays=("say",)):
         self.time, self.plays, self.runs = 100.0, plays, []
+        self.stops = 0
         self.events = EventStream("/", self.now)
         self.sent = threading.Semaphore(0)
         self.timers = []
@@ -78,7 +80,15 @@ class PlayedRobot:
     def now(self):
         return self.time
 
-    def send(self, command, by=""):
+    def stop(self, by=""):
+        self.stops += 1
+        self.events.add("stopped", "everything is told to stop", by)
+
+    def send(self, command, by="", stops=None):
+        if command.stops:
+            return self.stop(by)
+        if stops not in (None, self.stops):
+            raise Stopped("everything was stopped")
         run = PlayedRun(command)
         self.runs.append(run)
         if command.chain[0][0] in self.plays:

@@ -8,10 +8,17 @@ from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
-from played_study import Trial
+from played_study import PlayedRobot, Trial
+from scripted_disk import ScriptedDisk
 
 from nao_library_modules.cli.app import nao
+from nao_library_modules.cli.commands import study_commands
+from nao_library_modules.console.study import log as log_module
+from nao_library_modules.console.study import runner as runner_module
 from nao_library_modules.console.study import studies as module
+from nao_library_modules.console.study.files import StudyFiles
+from nao_library_modules.console.study.log import read_events
+from nao_library_modules.console.study.studies import Studies
 
 
 @pytest.fixture
@@ -99,3 +106,86 @@ def test_a_value_that_the_protocol_does_not_have_is_refused(run):
     told = run("run", "ten_steps", "--participant", "P01", "--value", "greting=Hi")
     assert told.exit_code == 2
     assert "did you mean 'greeting'" in told.output
+
+
+class FillingRobot(PlayedRobot):
+    """While it says Two its disk gets full."""
+
+    def __init__(self, disk):
+        super().__init__()
+        self.disk = disk
+
+    def send(self, command, by="", stops=None):
+        if command.chain[0][1]["str_param"] == "Two":
+            self.disk.room = 0
+        return super().send(command, by, stops)
+
+
+@pytest.fixture
+def on_a_full_disk(tmp_path, monkeypatch):
+    """Run a trial in whose midst the disk gets full; `told(runner)` is called when the command has told of that."""
+    disk = ScriptedDisk(tmp_path, monkeypatch)
+    studies = Studies(StudyFiles(tmp_path))
+    robot = FillingRobot(disk)
+    monkeypatch.setattr(study_commands, "_studies", lambda settings, files: (studies, robot))
+    for owner, name, value in (
+        *((module, "settings", lambda namespace: {}), (module, "PATIENCE", 0.0)),
+        *((log_module, "DELAY", 0.01), (runner_module, "LOG_PATIENCE", 0.0)),
+    ):
+        monkeypatch.setattr(owner, name, value)
+    file = tmp_path / "three.yaml"
+    file.write_text("name: three\nphases: [{steps: [{say: One}, {say: Two}, {say: Three}]}]\n")
+
+    def run(told, *words):
+        show = study_commands._show
+
+        def shown(settings, runner, number):
+            number = show(settings, runner, number)
+            if disk.room == 0 and runner.state.status == "paused":
+                told(runner)
+            return number
+
+        monkeypatch.setattr(study_commands, "_show", shown)
+        words = ["study", "run", str(file), "--participant", "P01", "--studies", str(tmp_path), *words]
+        return CliRunner().invoke(nao, words)
+
+    return SimpleNamespace(run=run, disk=disk, folder=tmp_path / "three/P01-1")
+
+
+def test_a_run_tells_that_its_log_cannot_be_written_and_again_at_its_end(on_a_full_disk):
+    told = on_a_full_disk.run(lambda _: setattr(on_a_full_disk.disk, "room", None))
+    assert told.exit_code == 0, told.output
+    assert "No space left on device" in told.output and "events wait in memory" in told.output
+    assert told.output.count("waited in memory, and were written then") == 2
+    assert "trouble with the log of trial three/P01-1:" in told.output
+    assert [event["n"] for event in read_events(on_a_full_disk.folder)][-1] == len(read_events(on_a_full_disk.folder))
+
+
+def test_the_answer_for_programs_has_the_troubles(on_a_full_disk):
+    told = on_a_full_disk.run(lambda _: setattr(on_a_full_disk.disk, "room", None), "--json")
+    (trouble,) = json.loads(told.stdout[told.stdout.index("{") :])["troubles"]
+    assert trouble.startswith("three/P01-1: the log could not be written for")
+
+
+def test_a_run_whose_log_is_given_up_fails_and_tells_how_much_is_lost(on_a_full_disk):
+    told = on_a_full_disk.run(lambda runner: runner.abort())
+    assert told.exit_code == 1
+    assert "events of trial three/P01-1 are lost" in told.output
+
+
+def test_an_interrupted_run_waits_for_its_log_until_it_is_interrupted_again(on_a_full_disk, monkeypatch):
+    def interrupt(runner):
+        waited = runner.wait
+
+        def wait(timeout=None):
+            if runner.state.status == "paused" and timeout:
+                monkeypatch.setattr(runner, "wait", waited)
+                raise KeyboardInterrupt
+            return waited(timeout and 0.01)
+
+        monkeypatch.setattr(runner, "wait", wait)
+        raise KeyboardInterrupt
+
+    told = on_a_full_disk.run(interrupt)
+    assert told.exit_code == 130, told.output
+    assert "the trial is aborted" in told.output and "are lost" in told.output

@@ -99,6 +99,53 @@ def test_who_stops_the_robot_pauses_its_trial(trial):
     trial.end()
 
 
+def by_another(act):
+    thread = threading.Thread(target=act)
+    thread.start()
+    thread.join(LIMIT)
+
+
+def test_a_stop_between_the_begin_of_a_step_and_its_goal_holds_the_goal_back(trial):
+    def stop_once(event):
+        if event.text == "step 1.1: say Hello" and not trial.robot.stops:
+            by_another(trial.robot.stop)
+
+    trial.robot.events.subscribe(stop_once)
+    trial.begin().until(lambda: trial.runner.state.status == "paused")
+    assert trial.robot.runs == []
+    trial.runner.go_on()
+    state = trial.at("2.1").runner.state
+    assert [(each.path, each.outcome) for each in state.outcomes] == [("1.1", "stopped"), ("1.1", "done"), ("2.1", "")]
+    trial.runner.abort()
+    trial.end()
+
+
+def test_a_stop_whose_event_comes_late_holds_the_next_goal_back(trial):
+    trial.begin().at("2.1")
+    sent = len(trial.robot.runs)
+    trial.robot.stops += 1
+    trial.touch(0.5)
+    trial.at("2.2").runner.choose("yes")
+    trial.until(lambda: trial.runner.state.status == "paused")
+    assert len(trial.robot.runs) == sent
+    trial.runner.abort()
+    trial.end()
+
+
+def test_a_stop_while_a_trial_is_prepared_holds_its_first_goal_back(trial, monkeypatch):
+    monkeypatch.setattr(module, "settings", lambda namespace: by_another(trial.robot.stop) or {})
+    trial.begin().until(lambda: trial.runner.state.status == "paused")
+    assert trial.robot.runs == []
+    trial.runner.abort()
+    trial.end()
+
+
+def test_a_trial_that_stops_the_robot_itself_goes_on(tmp_path):
+    begin, _, _ = PROTOCOL.partition("phases:")
+    trial = Trial(tmp_path, text=begin + "phases: [{steps: [{stop: true}, {say: Hello}, {stop: true}]}]").begin()
+    assert [each.outcome for each in trial.end().outcomes] == ["done", "done", "done"]
+
+
 def test_a_wait_for_a_time_ends_though_nothing_happens(tmp_path):
     begin, _, _ = PROTOCOL.partition("phases:")
     text = begin + "phases: [{steps: [{wait: until, until: seconds >= 0.3}, {wait: until, until: seconds >= -1}]}]"

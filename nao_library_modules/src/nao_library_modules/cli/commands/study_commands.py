@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import sys
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -31,6 +32,10 @@ if TYPE_CHECKING:
 FOLDER = "~/.ros/nao_studies"
 END = ".yaml"
 RECORDED = ("bag", "video", "sound")
+LOOK_PERIOD = 0.5
+"""s between looks at a trial in which nothing happens."""
+TOLD_AFTER = 3.0
+"""s between two lines about a log that a trial waits for at its end."""
 WIZARD = {"n": "next", "r": "repeat", "a": "abort"}
 folder_option = click.option(
     "--studies",
@@ -133,12 +138,13 @@ def run(
             raise click.UsageError(f"{read.name} has no value {name!r}{of_those(name, read.values)}")
     studies, robot = _studies(settings, files)
     ids: list[str] = []
+    troubles: list[str] = []
     while not ids or (every and not position and not _done(studies, read, participant)):
         more = {"position": position or 0, "record": wanted, "values": values}
         begin = partial(studies.begin, read, participant, robot, "nao", **more)
-        ids.append(_play(settings, begin, choices))
+        ids.append(_play(settings, begin, choices, troubles))
     if settings.json:
-        say_json({"trials": ids})
+        say_json({"trials": ids, "troubles": troubles})
 
 
 @study_command.command("take-up", cls=NaoCommand)
@@ -151,9 +157,10 @@ def take_up(context: click.Context, trial: str, choose: tuple[str, ...], folder:
     settings = settings_of(context)
     choices = _assigned(choose, "LABEL=CHOICE")
     studies, robot = _studies(settings, _files(folder))
-    _play(settings, partial(studies.take_up, trial, robot, "nao"), choices)
+    troubles: list[str] = []
+    _play(settings, partial(studies.take_up, trial, robot, "nao"), choices, troubles)
     if settings.json:
-        say_json({"trials": [trial]})
+        say_json({"trials": [trial], "troubles": troubles})
 
 
 @study_command.command("abort", cls=NaoCommand)
@@ -220,7 +227,8 @@ def study_table(context: click.Context, study: str, file: str, overwrite: bool, 
             }
             for each in summaries
         ]
-        say_json({"rows": len(found.rows), "csv": str(target or ""), "summaries": rows})
+        gaps = [{"trial": trial, "gap": gap} for trial, gap in found.gaps]
+        say_json({"rows": len(found.rows), "csv": str(target or ""), "summaries": rows, "gaps": gaps})
         return
     lines = [("step", "condition", "times", "mean s", "median s", "answers")]
     lines += [
@@ -231,6 +239,7 @@ def study_table(context: click.Context, study: str, file: str, overwrite: bool, 
         for each in summaries
     ]
     say_lines(table(lines))
+    say_lines(f"{trial}: {gap}" for trial, gap in found.gaps)
     if target is not None:
         click.echo(f"written: {target}, {len(found.rows)} rows")
 
@@ -334,18 +343,32 @@ def _done(studies: Studies, protocol: StudyProtocol, participant: str) -> bool:
     return False
 
 
-def _play(settings: CliSettings, begin: Callable[..., TrialRunner], choices: Mapping[str, str]) -> str:
-    """Begin a trial, tell of it, and decide what the wizard decides, until it is over; its id."""
+def _play(
+    settings: CliSettings, begin: Callable[..., TrialRunner], choices: Mapping[str, str], troubles: list[str]
+) -> str:
+    """Begin a trial, tell of it, and decide what the wizard decides, until it is over; its id.
+
+    `troubles`: what was wrong with its log is added.
+    """
     from ...console.study.protocol import ChoiceStep
     from ...console.study.state import FINISHED, HELD
 
     changes: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    runner = _told(lambda: begin(listener=changes.put))
+    log_teller = _LogTeller()
+
+    def changed(runner: TrialRunner) -> None:
+        log_teller.look(runner)  # here: the command may be waiting for an answer of the wizard
+        changes.put(runner)
+
+    runner = _told(lambda: begin(listener=changed))
     click.echo(f"trial {runner.id}: {_words(runner.state.about['condition']) or 'no factors'}", err=settings.json)
     shown, asked = 0, None
     try:
         while not runner.wait(0):
-            changes.get()
+            try:
+                changes.get(timeout=LOOK_PERIOD)
+            except queue.Empty:  # the last change may come just before its thread ends
+                continue
             shown = _show(settings, runner, shown)
             outcome = runner.outcome
             place = (outcome.path, outcome.attempt, outcome.outcome) if outcome is not None else None
@@ -359,17 +382,59 @@ def _play(settings: CliSettings, begin: Callable[..., TrialRunner], choices: Map
                 asked = place
                 runner.choose(_chosen(step, outcome.text, choices), "nao")
     except (KeyboardInterrupt, click.Abort):
-        runner.abort("nao")
-        runner.wait()
+        _abort(runner)
+        troubles += log_teller.end(runner)
         raise CommandInterrupted("the trial is aborted") from None
     except (NaoError, click.ClickException) as error:
-        runner.abort("nao")
-        runner.wait()
+        _abort(runner)
+        troubles += log_teller.end(runner)
         raise CommandFailed(getattr(error, "message", str(error))) from None
     _show(settings, runner, shown)
+    troubles += log_teller.end(runner)
+    if runner.lost:
+        raise CommandFailed(f"trial {runner.id} is not in its log to the end")
     if runner.state.status != FINISHED:
         raise CommandFailed(f"trial {runner.id} is {runner.state.status}")
     return runner.id
+
+
+class _LogTeller:
+    """Tells of trouble with the log of a trial when it begins and is over, and of all of it again at the end."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._failing = False
+        self._over: list[str] = []
+
+    def look(self, runner: TrialRunner) -> None:
+        """Tell what is new. Any thread."""
+        failing, over = runner.log.trouble, runner.state.trouble
+        with self._lock:
+            if failing and not self._failing:
+                click.echo(f"  {failing}. If that lasts, the trial waits before its next step", err=True)
+            self._failing = bool(failing)
+            if over and over not in self._over:
+                self._over.append(over)
+                click.echo(f"  {over}", err=True)
+
+    def end(self, runner: TrialRunner) -> list[str]:
+        """Tell all of it; what that is."""
+        self.look(runner)
+        if self._over:
+            click.echo("\n".join([f"trouble with the log of trial {runner.id}:", *self._over]), err=True)
+        return [f"{runner.id}: {each}" for each in self._over]
+
+
+def _abort(runner: TrialRunner) -> None:
+    """Abort a trial, and wait until it is in its log, or somebody does not want that."""
+    runner.abort("nao")
+    try:
+        while not runner.wait(TOLD_AFTER):
+            if runner.log.trouble:
+                click.echo(f"  {runner.log.trouble}; Ctrl-C loses them", err=True)
+    except KeyboardInterrupt:
+        runner.abort("nao")
+        runner.wait()
 
 
 def _show(settings: CliSettings, runner: TrialRunner, shown: int) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import re
+import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from typing import Any
 
 from ...base.paths import config_file
 from ...base.suggestion import of_those
-from ...base.whole_file import write_whole
+from ...base.whole_file import FileTrouble, make_folder, sync_folder, write_durable
 from ...behaviors.language.yaml_text import dump, load
 from ..files.yaml_file import ConsoleFileError
 from .errors import StudyError
@@ -95,7 +96,7 @@ class StudyFiles:
         """Store a protocol of this computer; where it is. Raises ConsoleFileError if it cannot be run."""
         _require_name(name, "protocol")
         read_protocol(text, name)
-        return write_whole(self.folder / OWN / f"{name}{END}", text)
+        return write_durable(self.folder / OWN / f"{name}{END}", text)
 
     def studies(self) -> list[str]:
         """Names of the studies that have trials."""
@@ -137,30 +138,53 @@ class StudyFiles:
         return dict(numbers)
 
     def number_of(self, study: str, pseudonym: str) -> int:
-        """Number of a participant: a new one has that of the pseudonym (P07: 7) if it is free, else the lowest free."""
+        """Number of a participant: a new one has that of the pseudonym (P07: 7) if it is free, else the lowest free.
+
+        It is on the disk when this returns, and nobody else ever gets it: the numbers in the trials count as well.
+        """
         _require_name(pseudonym, "participant")
         with self._locked(study):
-            numbers = self.participants(study)
+            known = self.participants(study)
+            numbers = dict(known) if pseudonym in known else {**known, **self._numbers_in_trials(study, known)}
             if pseudonym not in numbers:
                 digits = re.search(r"\d+$", pseudonym)
                 number, taken = int(digits[0]) if digits else 0, {*numbers.values()}
                 if number < 1 or number in taken:
                     number = next(i for i in range(1, len(taken) + 2) if i not in taken)
                 numbers[pseudonym] = number
-                write_whole(self.folder / study / PARTICIPANTS, dump(numbers))
+            if numbers != known:
+                write_durable(self.folder / study / PARTICIPANTS, dump(numbers))
             return numbers[pseudonym]
+
+    def _numbers_in_trials(self, study: str, known: Mapping[str, int]) -> dict[str, int]:
+        """Numbers of participants who have trials, and are not known: the file of numbers was lost or changed."""
+        left = [trial for trial in self.trials(study) if trial.participant not in known]
+        found = {trial.participant: trial.state().about.get("number") for trial in left}
+        return {name: number for name, number in found.items() if isinstance(number, int)}
 
     def new_trial(self, study: str, pseudonym: str) -> TrialFolder:
         """Folder of a new trial, which has the next number."""
         with self._locked(study):
             number = max((t.number for t in self.trials(study) if t.participant == pseudonym), default=0) + 1
             path = self.folder / study / f"{pseudonym}-{number}"
-            path.mkdir()
+            try:
+                path.mkdir()
+                sync_folder(path.parent)
+            except OSError as error:
+                raise FileTrouble(path, error) from error
             return TrialFolder(path, study, pseudonym, number)
 
-    def describe(self, trial: TrialFolder, about: Mapping[str, Any]) -> None:
-        """Write what is told of a trial beside its events."""
-        write_whole(trial.path / ABOUT, dump(dict(about)))
+    def describe(self, trial: TrialFolder, about: Mapping[str, Any], protocol: str) -> None:
+        """Write what is told of a trial beside its events, and the text of its protocol.
+
+        Raises FileTrouble, and removes the folder, if they cannot be written.
+        """
+        try:
+            write_durable(trial.path / PROTOCOL, protocol)
+            write_durable(trial.path / ABOUT, dump(dict(about)))
+        except FileTrouble:
+            shutil.rmtree(trial.path, ignore_errors=True)
+            raise
 
     @contextmanager
     def _locked(self, study: str) -> Iterator[None]:
@@ -168,7 +192,7 @@ class StudyFiles:
         _require_name(study, "study")
         folder = self.folder / study
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
             file = (folder / ".lock").open("w")
         except OSError as error:
             raise StudyError(f"{folder} cannot be written: {error.strerror}") from error

@@ -14,12 +14,13 @@ from naoqi.errors import NaoError
 
 from ...nao.touch_names import names_of, sensors_of
 from ..robots.commands import RobotCommand, call
+from ..robots.errors import Stopped
 from ..robots.events import ConsoleEvent
 from . import state as told
 from .conditions import filled
 from .course import following, phase_of, rounds_of, step_at
 from .errors import StudyError
-from .log import TrialLog
+from .log import PATIENCE, LogGap, TrialLog
 from .protocol import (
     NOTHING,
     SKIP,
@@ -45,7 +46,9 @@ COUNTED = {"touched": "touches", "heard": "words", "seen": "faces"}
 GOAL_LAG = 0.5
 """s of ROS time by which a goal may tell of a touch later than the topics: its onset is the better one."""
 LOOK_PERIOD = 0.1
-"""s of this computer after which conditions are looked at again, whatever has happened."""
+"""s of this computer after which conditions are looked at again, whatever has happened; the log likewise."""
+LOG_PATIENCE = 2.0
+"""s for which steps are begun although the log cannot be written; then the trial waits before the next one."""
 After = Callable[[float, Callable[[], None]], Callable[[], None]]
 """Has a function called once after so many s of ROS time; returns what prevents that."""
 
@@ -75,6 +78,7 @@ class TrialRunner:
         after: Clock of the time-outs.
         recordings: Begins and ends recordings in the trial's thread: has `begin()` and `end()`.
         at_end: Called in the trial's thread when all is over.
+        stops: Of the robot when the trial was asked for; None: as many as now.
     """
 
     def __init__(
@@ -87,6 +91,7 @@ class TrialRunner:
         after: After,
         recordings: Any = None,
         at_end: Callable[[TrialRunner], None] = lambda _: None,
+        stops: int | None = None,
     ) -> None:
         self.protocol, self.robot, self.state, self.log = protocol, robot, state, trial_log
         self.id: str = (state.about or about)["trial"]
@@ -94,13 +99,19 @@ class TrialRunner:
         self._inbox: queue.Queue[tuple[str, Any, str]] = queue.Queue()
         self._lock = threading.RLock()
         self._listeners: list[Callable[[TrialRunner], None]] = []
-        self._stops_itself = False
+        # Stops of the robot when somebody last wanted it to move: after a further one no goal is sent.
+        self._stops: int = robot.stops if stops is None else stops
+        self.lost = 0
+        """Events that are not in the log, of a trial that is over."""
+        self._log_failed = 0.0  # ROS time since which the log cannot be written
+        self._goes_on_without_log = False  # somebody said so
         self._pausing, self._was_held = False, state.status == told.HELD
         self._unsubscribe: Callable[[], None] = lambda: None
         self._thread = threading.Thread(target=self._run, name=f"trial {self.id}", daemon=True)
 
     def start(self, by: str = "") -> None:
         """Begin, or go on."""
+        self.log.on_change = self._log_changed
         self._unsubscribe = self.robot.events.subscribe(self._take)
         if self.state.status:
             self.tell(told.TAKEN_UP, f"trial {self.id} is taken up again", by)
@@ -139,6 +150,11 @@ class TrialRunner:
             return self.state.outcomes[-1] if held else self.state.current
 
     @property
+    def trouble(self) -> str:
+        """What is wrong with the log, or was until somebody has seen it; empty: nothing."""
+        return self.log.trouble or self.state.trouble
+
+    @property
     def title(self) -> str:
         """What the step that runs does, for people."""
         outcome = self.outcome
@@ -171,6 +187,13 @@ class TrialRunner:
             raise StudyError(f"there is no choice {choice!r} at this moment")
         self._inbox.put((CHOICE, (self._place(), choice, self.robot.now()), by))
 
+    def seen(self, by: str = "") -> None:
+        """Somebody has seen what was wrong with the log; the log tells who."""
+        if self.state.over:  # nothing more is logged
+            self.state.trouble = ""
+        elif self.state.trouble:
+            self.tell(told.TROUBLE_SEEN, "the trouble with the log was seen", by)
+
     def note(self, text: str, by: str = "") -> None:
         """Write something down."""
         self.robot.events.add("note", text, by=by, trial=self.id)
@@ -184,7 +207,7 @@ class TrialRunner:
         self.robot.events.add(TRIAL, text, by=by, **{**more, "trial": self.id, "what": what})
 
     def _control(self, what: str, by: str) -> None:
-        self._inbox.put((what, self._place(), by))
+        self._inbox.put((what, (self._place(), self.robot.stops), by))
 
     def _place(self) -> tuple[str, int]:
         """The step that runs and its attempt: what a control is about."""
@@ -193,15 +216,38 @@ class TrialRunner:
 
     def _take(self, event: ConsoleEvent) -> None:
         """Log an event of the robot; called in the thread that adds it."""
+        own = event.data.get("trial") == self.id
         with self._lock:
+            if self.state.over and not own:
+                return
             logged = self.log.add(asdict(event))
-            if event.kind not in (TRIAL, "note", "deviation") or event.data.get("trial") == self.id:
+            if own or event.kind not in (TRIAL, "note", "deviation"):
                 self.state.apply(logged)
-            listeners = list(self._listeners)
-        if event.kind == STOPPED and not self._stops_itself:  # who stops the robot does not want its next step
-            self._inbox.put((PAUSE, self._place(), event.by))
+        if event.kind == STOPPED and threading.current_thread() is not self._thread:
+            self._control(PAUSE, event.by)  # who stops the robot does not want its next step
         if event.kind in COUNTED:
             self._inbox.put((_HAPPENED, event, ""))
+        self._notify()
+
+    def _log_changed(self, gap: LogGap | None) -> None:
+        """The log cannot be written, or could be again; called in its thread."""
+        now = self.robot.now()
+        if gap is None:
+            self._log_failed = now
+            log.warning("trial %s: %s", self.id, self.log.trouble)
+            self._notify()
+            return
+        began = gap.stamp or self._log_failed or now
+        self._log_failed, self._goes_on_without_log = 0.0, False
+        text = f"the log could not be written for {gap.ended - gap.began:.1f} s ({gap.reason}): "
+        text += f"{gap.events} events waited in memory, and were written then"
+        times = {"began": began, "ended": now, "wall_began": round(gap.began, 3), "wall_ended": round(gap.ended, 3)}
+        more = {"what": told.LOG_GAP, "events": gap.events, "path": self._place()[0]}
+        self.robot.events.add("deviation", text, trial=self.id, **more, **times)
+
+    def _notify(self) -> None:
+        with self._lock:
+            listeners = list(self._listeners)
         for listener in listeners:
             listener(self)
 
@@ -220,17 +266,18 @@ class TrialRunner:
         except Exception as error:
             log.exception("recordings of trial %s", self.id)
             self.deviation(f"a recording could not be ended: {error}")
+        self._wait_for_log("its end", at_end=True)
         self.tell(told.ENDED, f"trial {self.id} is {outcome}{text}", outcome=outcome)
+        self.lost = self.log.close(0.0 if self.log.trouble else PATIENCE)
         self._unsubscribe()
-        self.log.close()
+        if self.lost:
+            self.state.trouble = f"the last {self.lost} events of trial {self.id} are lost: they could not be written"
+            log.error("%s", self.state.trouble)
         try:
             self._at_end(self)
         except Exception:
             log.exception("end of trial %s", self.id)
-        with self._lock:
-            listeners = list(self._listeners)
-        for listener in listeners:
-            listener(self)
+        self._notify()
 
     def _steps(self) -> str:
         """Do all steps; how the trial ended."""
@@ -275,23 +322,55 @@ class TrialRunner:
 
     def _between(self, path: str) -> tuple[str, str]:
         """Follow the controls that came since the last step ended; a control and the step that is next."""
-        while not self._inbox.empty():
-            what, _, _ = self._inbox.get()
-            if what == ABORT:
-                return ABORT, path
+        while True:
+            while not self._inbox.empty():
+                what, _, _ = self._inbox.get()
+                if what == ABORT:
+                    return ABORT, path
+                if what == PAUSE:
+                    self._pausing = True
+            if not self._pausing:
+                if self._wait_for_log(f"step {path}" if path else "its end") == ABORT:
+                    return ABORT, path
+                if not self._pausing:
+                    return "", path
+            self.tell(told.PAUSED, "paused")
+            control = self._until_control()
+            self._pausing = False
+            if control == ABORT:
+                return control, path
+            self.tell(told.CONTINUED, "goes on")
+            if control == REPEAT:
+                path = self.state.path or path
+            elif control == NEXT:
+                path = self._following(path) if path else ""
+
+    def _wait_for_log(self, before: str, at_end: bool = False) -> str:
+        """Wait while the log cannot be written, if it could not for `LOG_PATIENCE`, or it is to be closed.
+
+        An abort ends that, before a step also who goes on. Returns `ABORT` or nothing.
+        """
+        control, waits = "", False
+        while self.log.trouble and not control and (at_end or not self._goes_on_without_log):
+            if not waits and self.log.blocked_for >= LOG_PATIENCE:
+                waits = True
+                otherwise = "Abort gives up what waits" if at_end else "Go on does not wait"
+                self.tell(told.PAUSED, f"the trial waits before {before} until its log can be written. {otherwise}")
+            if not waits and not at_end:
+                break
+            try:
+                what, about, _ = self._inbox.get(timeout=LOOK_PERIOD)
+            except queue.Empty:
+                continue
             if what == PAUSE:
                 self._pausing = True
-        if not self._pausing:
-            return "", path
-        self.tell(told.PAUSED, "paused")
-        control = self._until_control()
-        self._pausing = False
-        if control == ABORT:
-            return control, path
-        self.tell(told.CONTINUED, "goes on")
-        if control == REPEAT:
-            return "", self.state.path or path
-        return "", self._following(path) if control == NEXT else path
+            elif what in (NEXT, REPEAT, CONTINUE) and not at_end:
+                self._goes_on_without_log, self._stops = True, about[1]
+            elif what == ABORT and waits:
+                control = ABORT
+        if waits:
+            self.tell(told.CONTINUED, "goes on")
+        return control
 
     def _hold(self, path: str, error: str) -> str:
         """Wait for the wizard behind a step that failed."""
@@ -303,8 +382,11 @@ class TrialRunner:
 
     def _until_control(self) -> str:
         while True:
-            what, _, _ = self._inbox.get()
-            if what in (NEXT, REPEAT, CONTINUE, ABORT):
+            what, about, _ = self._inbox.get()
+            if what in (NEXT, REPEAT, CONTINUE):
+                self._stops = about[1]
+                return what
+            if what == ABORT:
                 return what
 
     def _do(self, path: str) -> StepEnd:
@@ -318,6 +400,9 @@ class TrialRunner:
         began = self.state.outcomes[-1].began
         try:
             end, by = self._execute(step, values, (path, attempt), began)
+        except Stopped as error:  # before its goal was sent
+            self._pausing = True
+            end, by = StepEnd(told.STOPPED, error=str(error)), ""
         except NaoError as error:
             end, by = StepEnd(told.FAILED, error=str(error)), ""
         seconds = None if end.stamp is None else round(end.stamp - began, 4)
@@ -348,10 +433,10 @@ class TrialRunner:
         command = _command_of(step)
         if command is not None:
             texts = {name: str(value) for name, value in values.items()}
-            self._stops_itself = command.stops
-            run = self.robot.send(command.filled(texts) if isinstance(step, CommandStep) else command)
-            self._stops_itself = False
+            wanted = command.filled(texts) if isinstance(step, CommandStep) else command
+            run = self.robot.send(wanted, stops=self._stops)
             if run is None:  # of a stop, which nothing is waited for
+                self._stops += 1
                 return StepEnd(told.DONE), ""
             run.on_end(lambda ended: self._inbox.put((_RUN_ENDED, ended, "")))
         if timeout and not isinstance(step, SenseStep):  # the server of a sense has it itself
@@ -389,8 +474,8 @@ class TrialRunner:
                     if not isinstance(step, CommandStep):
                         return StepEnd(told.STOPPED, error="paused"), by
                 elif what == CONTINUE:
-                    self._pausing = False
-                elif what in (NEXT, REPEAT) and about == place:
+                    self._pausing, self._stops = False, about[1]
+                elif what in (NEXT, REPEAT) and about[0] == place:
                     return StepEnd(told.SKIPPED if what == NEXT else told.REPEATED), by
         finally:
             prevent()

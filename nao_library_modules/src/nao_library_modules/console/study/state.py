@@ -13,6 +13,9 @@ TRIAL = "trial"
 BEGAN, TAKEN_UP, STEP_BEGAN, STEP_ENDED, PAUSED, CONTINUED, HELD, ENDED = (
     *("began", "taken up", "step began", "step ended", "paused", "continued", "held", "ended"),
 )
+TROUBLE_SEEN = "trouble seen"
+LOG_GAP = "log gap"
+"""What a deviation has as `what` that tells when the log could not be written."""
 RECORDING_BEGAN, RECORDING_ENDED = "recording began", "recording ended"
 RUNNING, INTERRUPTED, FINISHED, ABORTED = "running", "interrupted", "finished", "aborted"
 STATES = (RUNNING, PAUSED, HELD, INTERRUPTED, FINISHED, ABORTED)
@@ -31,7 +34,7 @@ class StepOutcome:
     kind: str
     text: str
     attempt: int  # how often it has been begun
-    began: float
+    began: float | None  # None: the log does not tell
     ended: float | None = None  # None: it has not
     outcome: str = ""  # done, timeout, skipped, failed, repeated, stopped; empty: it has not ended
     answer: str = ""  # choice, sensor, word, name of the face
@@ -53,13 +56,21 @@ class TrialState:
     began: float = 0.0
     ended: float | None = None
     notes: int = 0
-    deviations: int = 0
+    deviations: int = 0  # gaps among them
+    gaps: list[str] = field(default_factory=list)  # what the log lacks
+    trouble: str = ""  # of the log, until somebody has seen it
 
     @staticmethod
     def of(events: Iterable[Mapping[str, Any]], runs: bool = False) -> TrialState:
         """Of a log. Without an end a trial is `INTERRUPTED`, unless it was paused or held, or a program `runs` it."""
-        state = TrialState()
+        state, last = TrialState(), 0
         for event in events:
+            number = event.get("n")
+            if isinstance(number, int):
+                if number > last + 1:
+                    missing = f"event {last + 1} is" if number == last + 2 else f"events {last + 1} to {number - 1} are"
+                    state._lacks(f"{missing} not in the log")
+                last = number
             state.apply(event)
         if state.status == RUNNING and not runs:
             state.status = INTERRUPTED
@@ -86,6 +97,8 @@ class TrialState:
         self.notes += kind == "note"
         self.deviations += kind == "deviation"
         what = told.get("what")
+        if kind == "deviation" and what == LOG_GAP:
+            self.trouble = str(event.get("text", ""))
         if kind != TRIAL or not isinstance(what, str):
             return
         if what == BEGAN:
@@ -95,28 +108,57 @@ class TrialState:
         elif what in (CONTINUED, TAKEN_UP):
             self.status = RUNNING
             if what == TAKEN_UP and self.current is not None:
-                self._end({"outcome": STOPPED, "error": "the console was gone"}, stamp)
+                self._end(self.current, {"outcome": STOPPED, "error": "the console was gone"}, stamp)
         elif what == STEP_BEGAN:
-            names = ("path", "phase", "label", "step", "title", "attempt")
-            self.outcomes.append(StepOutcome(*(told[name] for name in names), began=stamp))
+            self._lacks_end()
+            self.outcomes.append(_outcome(told, began=stamp))
         elif what == STEP_ENDED:
-            self._end(told, stamp)
+            self._end(self._begun(told), told, stamp)
+        elif what == TROUBLE_SEEN:
+            self.trouble = ""
         elif what == RECORDING_BEGAN:
             self.recordings[told["recording"]] = dict(told)
         elif what == RECORDING_ENDED:
             self.files.append({**self.recordings.pop(told["recording"], {}), **told})
         elif what == ENDED:
+            if told["outcome"] == FINISHED:
+                self._lacks_end()
             self.status, self.ended = told["outcome"], stamp
 
-    def _end(self, told: Mapping[str, Any], stamp: float) -> None:
-        outcome = self.current
-        if outcome is None:
-            return
+    def _begun(self, told: Mapping[str, Any]) -> StepOutcome:
+        """The step that an event of an end is about; one is added where the log lacks its begin."""
+        place = (told["path"], told.get("attempt", 1))
+        for outcome in reversed(self.outcomes):
+            if (outcome.path, outcome.attempt) == place and outcome.ended is None:
+                return outcome
+        self._lacks_end()
+        lacking = self._lacks(f"the begin of step {place[0]} is not in the log")
+        self.outcomes.append(_outcome(told, began=None, error=lacking))
+        return self.outcomes[-1]
+
+    def _end(self, outcome: StepOutcome, told: Mapping[str, Any], stamp: float) -> None:
         outcome.ended, outcome.outcome = stamp, told["outcome"]
         outcome.answer, outcome.seconds = told.get("answer", ""), told.get("seconds")
-        outcome.error = told.get("error", "")
+        outcome.error = "; ".join(filter(None, (outcome.error, told.get("error", ""))))
         if outcome.outcome in ON:
             self.path = outcome.path
             if outcome.label:
                 self.values[outcome.label] = outcome.answer or (NOTHING if outcome.outcome != DONE else DONE)
                 self.values[f"{outcome.label}_seconds"] = outcome.seconds
+
+    def _lacks_end(self) -> None:
+        """Note that the log does not tell how the current step ended, if there is one."""
+        if self.current is not None:
+            self.current.error = self._lacks(f"the end of step {self.current.path} is not in the log")
+
+    def _lacks(self, what: str) -> str:
+        """Note what the log lacks, a deviation; `what`."""
+        self.gaps.append(what)
+        self.deviations += 1
+        return what
+
+
+def _outcome(told: Mapping[str, Any], began: float | None, error: str = "") -> StepOutcome:
+    """A step, of the event of its begin or its end."""
+    names = ("path", "phase", "label", "step", "title")
+    return StepOutcome(*(told.get(name, "") for name in names), told.get("attempt", 1), began, error=error)

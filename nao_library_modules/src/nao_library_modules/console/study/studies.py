@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+import logging
 import os
 import platform
 import threading
@@ -13,17 +14,20 @@ from xml.etree import ElementTree
 
 from ...base.paths import config_file
 from ...base.suggestion import of_those
+from ...base.whole_file import FileTrouble
 from .conditions import filled
 from .errors import StudyError
-from .files import PROTOCOL, StudyFiles, TrialFolder
+from .files import StudyFiles, TrialFolder
 from .left import LeftTrial
-from .log import TrialLog, read_events, write_events_table
+from .log import PATIENCE, TrialLog, read_events, write_events_table
 from .order import order_of
 from .protocol import StudyProtocol, WantedRecordings
 from .reader import hash_of
 from .recordings import TrialRecordings
 from .runner import TrialRunner
 from .state import ABORTED, ENDED, FINISHED, TrialState
+
+log = logging.getLogger(__name__)
 
 LONGEST_SETTING = 500
 """Characters of a parameter that is kept with a trial; descriptions of robots are longer."""
@@ -88,6 +92,7 @@ class Studies:
         record: WantedRecordings | None = None,
         listener: Callable[[TrialRunner], None] | None = None,
         values: Mapping[str, Any] | None = None,
+        stops: int | None = None,
     ) -> TrialRunner:
         """Begin a trial.
 
@@ -100,11 +105,13 @@ class Studies:
             record: What is recorded; as the protocol has it without.
             listener: Called after each event, also the first one.
             values: Those of the protocol that this trial has others of.
+            stops: Of the robot when the trial was asked for; None: as many as now. A later stop holds it back.
 
         Raises:
             StudyError: It cannot begin: a trial runs on the robot, the participant is done, files cannot be written, a
                 value is none of the protocol.
         """
+        stops = robot.stops if stops is None else stops
         own = {**protocol.values, **(values or {})}
         for name in own:
             if name not in protocol.values:
@@ -119,7 +126,6 @@ class Studies:
             condition = order[position - 1]
             wanted = protocol.record if record is None else record
             trial = self.files.new_trial(protocol.name, pseudonym)
-            (trial.path / PROTOCOL).write_text(protocol.text, encoding="utf-8")
             given = {"participant": pseudonym, "number": number, "trial": position, "trials": len(order)}
             known = {**replace(protocol, values=own).values_in(condition), **given}
             known = {name: filled(each, known) if isinstance(each, str) else each for name, each in known.items()}
@@ -146,18 +152,25 @@ class Studies:
                     "values": own,
                     "settings": settings(robot.namespace),
                 },
+                protocol.text,
             )
             return self._start(
-                protocol, trial, robot, by, {**about, "trial": trial.id, "values": known}, wanted, listener
+                protocol, trial, robot, by, {**about, "trial": trial.id, "values": known}, wanted, listener, stops
             )
 
     def take_up(
-        self, trial_id: str, robot: Any, by: str = "", listener: Callable[[TrialRunner], None] | None = None
+        self,
+        trial_id: str,
+        robot: Any,
+        by: str = "",
+        listener: Callable[[TrialRunner], None] | None = None,
+        stops: int | None = None,
     ) -> TrialRunner:
         """Go on with a trial whose console was gone, behind the last step that had ended.
 
-        Raises StudyError if it is over, runs elsewhere, or a trial runs on the robot.
+        `stops`: as for `begin`. Raises StudyError if it is over, runs elsewhere, or a trial runs on the robot.
         """
+        stops = robot.stops if stops is None else stops
         with self._lock:
             self._require_free(robot)
             trial = self.files.trial(trial_id)
@@ -166,7 +179,7 @@ class Studies:
                 raise StudyError(f"trial {trial_id} is {state.status or 'empty'}: it cannot be taken up again")
             record = dict(state.about.get("record", {}))
             wanted = replace(WantedRecordings(**record), bag=tuple(record.get("bag", ())))
-            return self._start(trial.protocol(), trial, robot, by, state.about, wanted, listener)
+            return self._start(trial.protocol(), trial, robot, by, state.about, wanted, listener, stops)
 
     def abort(self, trial_id: str, robot: Any = None, by: str = "") -> TrialState:
         """Give up a trial whose program was gone, and end the recordings that it has left; how it is then.
@@ -183,9 +196,12 @@ class Studies:
             TrialRecordings(trial.path, WantedRecordings()).end(left)
             left.tell(ENDED, f"trial {trial_id} is {ABORTED}", by, outcome=ABORTED)
         finally:
-            trial_log.close()
-        write_events_table(trial.path)
+            trouble = trial_log.trouble
+            lost = trial_log.close(0.0 if trouble else PATIENCE)
         self._tell()
+        if lost:
+            raise StudyError(f"trial {trial_id} is not aborted: {trouble}")
+        write_events_table(trial.path)
         return left.state
 
     def on_change(self, listener: Callable[[], None]) -> Callable[[], None]:
@@ -202,6 +218,7 @@ class Studies:
         about: Mapping[str, Any],
         wanted: WantedRecordings,
         listener: Callable[[TrialRunner], None] | None,
+        stops: int,
     ) -> TrialRunner:
         trial_log = TrialLog(trial.path)
         state = trial.state()  # read behind the lock of the log
@@ -209,11 +226,14 @@ class Studies:
 
         def end(runner: TrialRunner) -> None:
             leave()
-            write_events_table(trial.path)
+            try:
+                write_events_table(trial.path, PATIENCE)
+            except FileTrouble as error:
+                log.error("the table of trial %s is missing: %s", trial.id, error)
             self._tell()
 
         runner = TrialRunner(
-            protocol, robot, trial_log, state, about, ros_after, TrialRecordings(trial.path, wanted), end
+            protocol, robot, trial_log, state, about, ros_after, TrialRecordings(trial.path, wanted), end, stops
         )
         self._runners[robot.namespace] = runner
         if listener is not None:

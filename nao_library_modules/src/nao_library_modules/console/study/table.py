@@ -24,10 +24,17 @@ ANSWERED = ("wizard", "touch", "word", "face")
 
 @dataclass(frozen=True)
 class StudyTable:
-    """The table of a study. `factors`: names of the columns with the levels. `rows`: column -> value."""
+    """The table of a study.
+
+    Attributes:
+        factors: Names of the columns with the levels.
+        rows: Column -> value.
+        gaps: Id of a trial, and what its log lacks.
+    """
 
     factors: tuple[str, ...]
     rows: tuple[Mapping[str, Any], ...]
+    gaps: tuple[tuple[str, str], ...] = ()
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -72,7 +79,8 @@ def table_of(files: StudyFiles, study: str) -> StudyTable:
     states = [(trial, trial.state()) for trial in trials]
     factors = dict.fromkeys(name for _, state in states for name in state.about.get("condition", {}))
     rows = [row for trial, state in states for row in rows_of(state, study, trial.participant, trial.number)]
-    return StudyTable(tuple(factors), tuple(rows))
+    gaps = tuple((trial.id, gap) for trial, state in states for gap in state.gaps)
+    return StudyTable(tuple(factors), tuple(rows), gaps)
 
 
 def rows_of(state: TrialState, study: str, participant: str, trial: int) -> Iterable[dict[str, Any]]:

@@ -38,7 +38,7 @@ def replay_of(trial: TrialFolder) -> dict[str, Any]:
             {
                 "path": step.path,
                 "text": step.text,
-                "began": step.began,
+                "began": step.ended if step.began is None else step.began,
                 "ended": ended if step.ended is None else step.ended,
                 "outcome": step.outcome,
                 "answer": step.answer,

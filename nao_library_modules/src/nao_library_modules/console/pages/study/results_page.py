@@ -51,6 +51,8 @@ def build(console: Any, studies: Studies) -> None:
                 ui.label(str(error)).classes("text-negative")
                 return
             _trials(page, trials)
+            for trial, gap in table.gaps:
+                ui.label(f"{trial}: {gap}").classes("text-negative")
             _summaries(summaries_of(table))
             ui.button(
                 "Table as CSV",

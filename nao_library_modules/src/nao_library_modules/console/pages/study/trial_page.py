@@ -127,6 +127,8 @@ class _StudyPage:
             self._update_trial()
         if running:
             self._tick()
+        if self.runner is not None:
+            self._show_trouble()
 
     # A trial that is to begin
 
@@ -136,6 +138,7 @@ class _StudyPage:
             state = last.state
             done = sum(each.outcome == DONE for each in state.outcomes)
             ui.label(f"Trial {last.id} is {state.status}: {done} steps were done.").props('role="status"')
+            self._build_trouble()
         opened = await run.io_bound(self.studies.open_trials)
         if opened:
             with ui.card().classes("w-full"):
@@ -246,11 +249,13 @@ class _StudyPage:
         given = {name: field.value or "" for name, field in self._fields.items()}
         values = {name: text for name, text in given.items() if text != text_of(protocol.values[name])}
         by = self.page.visitor.name
-        await self._try(lambda: self.studies.begin(protocol, pseudonym, self.robot, by, record=wanted, values=values))
+        more = {"record": wanted, "values": values, "stops": self.robot.stops}
+        await self._try(lambda: self.studies.begin(protocol, pseudonym, self.robot, by, **more))
 
     async def _take_up(self, trial: str) -> None:
         if self.page.operate():
-            await self._try(lambda: self.studies.take_up(trial, self.robot, self.page.visitor.name))
+            by, stops = self.page.visitor.name, self.robot.stops
+            await self._try(lambda: self.studies.take_up(trial, self.robot, by, stops=stops))
 
     async def _give_up(self, trial: str) -> None:
         if self.page.operate() and await _sure_to_abort(trial):
@@ -315,6 +320,7 @@ class _StudyPage:
                 self._recorded = ui.row()
             self._now = ui.label().classes("text-h5").props('role="status" aria-live="polite"')
             self._since = ui.label().classes("text-caption")
+            self._build_trouble()
             self._error = ui.label().classes("text-negative").props('role="alert"')
             self._choices = ui.row().classes("min-h-[3.5rem]")
             with ui.row():
@@ -360,6 +366,24 @@ class _StudyPage:
                     self._marks[_any_round(path)] = ui.icon(ICONS[""]).props('role="img" aria-label="to come"')
                     self._texts[_any_round(path)] = (ui.label(), f"{path} {step.text}")
 
+    def _build_trouble(self) -> None:
+        """What is wrong with the log of the trial, or was; it stays until somebody says that it was seen."""
+        with ui.row().classes("items-center w-full") as self._trouble_row:
+            self._trouble = ui.label().classes("text-negative flex-1").props('role="alert"')
+            self._seen = ui.button("Seen", icon="done", on_click=self._mark_seen).props("no-caps outline")
+        self._show_trouble()
+
+    def _show_trouble(self) -> None:
+        runner = self.runner
+        self._trouble.text = runner.trouble if runner is not None else ""
+        self._trouble_row.set_visibility(bool(self._trouble.text))
+        self._seen.set_enabled(runner is not None and bool(runner.state.trouble))
+
+    def _mark_seen(self) -> None:
+        if self.runner is not None and self.page.operate():
+            self.runner.seen(self.page.visitor.name)
+            self._show_trouble()
+
     def _update_trial(self) -> None:
         runner = self.runner
         assert runner is not None
@@ -368,7 +392,7 @@ class _StudyPage:
         self._status.text = state.status
         self._status.props(f"color={STATUS_COLOURS.get(state.status, 'grey')}")
         self._now.text = runner.title or (f"paused behind step {state.path}" if state.path else "it begins")
-        self._error.text = runner.log.trouble or (outcome.error if outcome is not None and state.status == HELD else "")
+        self._error.text = outcome.error if outcome is not None and state.status == HELD else ""
         self._pause.text = "Go on" if state.status in (PAUSED, HELD) else "Pause"
         if tuple(state.recordings) != self._recordings:
             self._recordings = tuple(state.recordings)
@@ -412,7 +436,7 @@ class _StudyPage:
 
     def _tick(self) -> None:
         outcome = self.runner.outcome if self.runner is not None else None
-        if outcome is not None and outcome.ended is None:
+        if outcome is not None and outcome.began is not None and outcome.ended is None:
             again = f", attempt {outcome.attempt}" if outcome.attempt > 1 else ""
             self._since.text = (
                 f"step {outcome.path}, {outcome.phase}, for {self.robot.now() - outcome.began:.0f} s{again}"
