@@ -17,6 +17,7 @@ from nao_library_modules.console.robots.errors import Stopped
 from nao_library_modules.console.robots.events import EventStream
 from nao_library_modules.console.wizard.desk import WizardDesk
 from nao_library_modules.console.wizard.errors import EditConflict, PressRefused
+from nao_library_modules.console.wizard.head_pointer import HeadPointer
 from nao_library_modules.console.wizard.key_names import BadKey, key_of
 from nao_library_modules.console.wizard.layout_file import CurrentLayout, LayoutFile
 from nao_library_modules.console.wizard.model import hex_colour, text_colour
@@ -71,7 +72,9 @@ class FakeRobot:
             raise Stopped(f"stopped before {label}")
         return self._sent(command)
 
-    def send_goal(self, goal, by="", label=""):
+    def send_goal(self, goal, by="", label="", stops=None):
+        if stops not in (None, self.stops):
+            raise Stopped(f"stopped before {label}")
         return self._sent(goal)
 
     def _sent(self, what):
@@ -524,6 +527,34 @@ def test_what_is_no_message_is_refused(text):
 
 
 # --- the head ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def pointer(robot, monkeypatch):
+    """Points on a robot; angles that it sends are in `sent`."""
+    pointer = HeadPointer(robot)
+    pointer.sent = []
+    pointer._publisher = SimpleNamespace(publish=pointer.sent.append)
+    monkeypatch.setattr(pointer, "_lens", lambda camera: LENS)
+    monkeypatch.setattr(pointer, "_angles", lambda: (0.0, 0.0))
+    return pointer
+
+
+def test_a_head_that_is_pointed_before_a_stop_is_not_turned_after_it(pointer, robot, monkeypatch):
+    monkeypatch.setattr(pointer, "_angles", lambda: robot.stop() or (0.0, 0.0))
+    with pytest.raises(Stopped):
+        pointer.point("click", "top", 0.7, 0.5, "eva", robot.stops)
+    assert pointer.sent == []
+
+
+def test_a_stop_ends_a_drag_of_the_head(pointer, robot):
+    pointer.point("start", "top", 0.5, 0.5, "eva")
+    pointer.point("drag", "top", 0.6, 0.5, "eva")
+    robot.stop()
+    with pytest.raises(Stopped):
+        pointer.point("drag", "top", 0.7, 0.5, "eva")
+    pointer.point("drag", "top", 0.8, 0.5, "eva")
+    assert len(pointer.sent) == 1
 
 
 WIDE, HIGH = math.radians(60.97), math.radians(47.64)

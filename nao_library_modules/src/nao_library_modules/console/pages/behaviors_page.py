@@ -478,6 +478,7 @@ class BehaviorsView:
         self._news.set()
 
     async def _start(self) -> None:
+        stops = self._page.robot.stops
         await self._take_typed()
         document = self._document
         if document is None:
@@ -486,11 +487,15 @@ class BehaviorsView:
         if not self._page.operate():
             return
         fields = {"text": document.text, "file": document.file, "parameters": self._texts()}
-        self._goal = await self._send(call(SERVER, "runBehavior", **fields), f"behaviour {document.name or 'new'}")
+        command = call(SERVER, "runBehavior", **fields)
+        self._goal = await self._send(command, f"behaviour {document.name or 'new'}", stops)
 
-    async def _send(self, command: RobotCommand, label: str) -> Any:
+    async def _send(self, command: RobotCommand, label: str, stops: int | None = None) -> Any:
+        """Send a goal; its run, None if that cannot be, which is told. `stops`: of the robot when it was asked for."""
+        robot = self._page.robot
+        stops = robot.stops if stops is None else stops
         try:
-            return await run.io_bound(self._page.robot.send, command, self._page.visitor.name, label)
+            return await run.io_bound(robot.send, command, self._page.visitor.name, label, stops)
         except NaoError as error:
             ui.notify(str(error), type="negative", multi_line=True)
             return None

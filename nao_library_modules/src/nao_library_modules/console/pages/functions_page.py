@@ -151,7 +151,8 @@ class FunctionsView:
         if command is None or not self._page.operate():
             return
         try:
-            self._run = await run.io_bound(self._page.robot.send, command, self._page.visitor.name)
+            robot = self._page.robot
+            self._run = await run.io_bound(robot.send, command, self._page.visitor.name, stops=robot.stops)
         except NaoError as error:
             ui.notify(str(error), type="negative", multi_line=True)
             return

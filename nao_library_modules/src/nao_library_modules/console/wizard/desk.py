@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, Tuple
 
 from ..robots.commands import CommandGoal, RobotCommand, say
-from ..robots.errors import Stopped
 from .errors import PressRefused
 from .model import ButtonAction, ButtonGroup, PlanDesignator, WizardButton, WizardLayout
 from .texts import filled_text, names_in
@@ -36,7 +35,7 @@ class DeskRobot(Protocol):
 
     def send(self, command: RobotCommand, by: str = "", label: str = "", stops: int | None = None) -> Any: ...
 
-    def send_goal(self, goal: CommandGoal, by: str = "", label: str = "") -> Any: ...
+    def send_goal(self, goal: CommandGoal, by: str = "", label: str = "", stops: int | None = None) -> Any: ...
 
     def stop(self, by: str = "") -> None: ...
 
@@ -348,7 +347,5 @@ def _send(press: _Press) -> Any:
         return robot.send(press.action, press.by, label, stops=press.stops)
     from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorGoal
 
-    if press.stops != robot.stops:
-        raise Stopped(f"the robot was stopped before {label} was sent")
     goal = PerformDesignatorGoal(designator=press.action.text)
-    return robot.send_goal(CommandGoal(PLANS, PerformDesignatorAction, goal), press.by, label)
+    return robot.send_goal(CommandGoal(PLANS, PerformDesignatorAction, goal), press.by, label, press.stops)

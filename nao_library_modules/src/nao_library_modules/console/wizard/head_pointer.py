@@ -15,6 +15,7 @@ from naoqi.errors import NaoError
 from ...nao.camera_facts import CAMERA_NAMES, CAMERAS
 from ...nao.gaze import load_head
 from ...ros.driver_types import spoken
+from ..robots.errors import Stopped
 from .pointing import HEAD, Angles, CameraLens, dragged, looked_at
 
 ANGLES, STATES = "joint_angles", "joint_states"
@@ -48,9 +49,9 @@ class HeadPointer:
         self._lenses: dict[str, CameraLens] = {}
         self._asked: set[str] = set()
         self._publisher: Any = None
-        self._drag: tuple[CameraLens, tuple[float, float], Angles] | None = None
+        self._drag: tuple[CameraLens, tuple[float, float], Angles, int] | None = None
 
-    def point(self, kind: str, camera: str, x: float, y: float, by: str) -> None:
+    def point(self, kind: str, camera: str, x: float, y: float, by: str, stops: int | None = None) -> None:
         """Take one event of the picture.
 
         Args:
@@ -59,23 +60,26 @@ class HeadPointer:
             x: Place in the picture, from 0 at the left to 1.
             y: The same, from 0 at the top.
             by: User who points.
+            stops: Stops of the robot when it was pointed; None: as many as now.
 
         Raises:
             NoHead: The driver or the camera does not run.
+            Stopped: The robot was stopped since, or since the drag began.
         """
+        stops = self._robot.stops if stops is None else stops
         if kind == "click":
             lens, now = self._lens(camera), self._angles()
             head = load_head()
             angles = looked_at(head, head.cameras[_NAMES[camera]], lens, (x, y), now)
-            self._send(angles, LOOK_SPEED)
+            self._send(angles, LOOK_SPEED, stops)
             told = f"looks at a point of the {camera} picture"
             self._robot.events.add("looked", told, by, camera=camera, x=x, y=y, angles=list(angles))
         elif kind == "start":
-            self._drag = (self._lens(camera), (x, y), self._angles())
+            self._drag = (self._lens(camera), (x, y), self._angles(), stops)
         elif self._drag is not None:
-            lens, start, before = self._drag
+            lens, start, before, stops = self._drag
             angles = dragged(lens, start, (x, y), before)
-            self._send(angles, DRAG_SPEED)
+            self._send(angles, DRAG_SPEED, stops)
             if kind == "end":
                 self._drag = None
                 told = f"turns the head by the {camera} picture"
@@ -90,7 +94,10 @@ class HeadPointer:
             self._publisher.unregister()
             self._publisher = None
 
-    def _send(self, angles: Angles, speed: float) -> None:
+    def _send(self, angles: Angles, speed: float, stops: int) -> None:
+        if stops != self._robot.stops:
+            self._drag = None
+            raise Stopped("the robot was stopped: point again")
         self._publisher.publish(JointAnglesWithSpeed(joint_names=list(HEAD), joint_angles=list(angles), speed=speed))
 
     def _angles(self) -> Angles:

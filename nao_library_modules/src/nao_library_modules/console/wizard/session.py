@@ -190,14 +190,15 @@ class WizardSession:
         refusal, count = lambda: self._refusal(robot), stops.get(robot.namespace)
         self._desk.press(robot, group, button, self._rights.name, self.page, via, refusal, count)
 
-    def _head(self, value: Any, _message: Any, _stops: Any) -> None:
+    def _head(self, value: Any, _message: Any, stops: Mapping[str, int]) -> None:
         if not isinstance(value, dict) or value.get("kind") not in POINTS:
             raise ValueError("a point of the picture that is none")
         x, y = _share(value.get("x")), _share(value.get("y"))
         self._require(self.robot)
         if self._pointer is None:
             self._pointer = self._make_pointer(self.robot)
-        self._pointer.point(value["kind"], str(value.get("camera")), x, y, self._rights.name)
+        count = stops.get(self.robot.namespace)
+        self._pointer.point(value["kind"], str(value.get("camera")), x, y, self._rights.name, count)
 
     def _require(self, robot: Any) -> None:
         refusal = self._refusal(robot)
