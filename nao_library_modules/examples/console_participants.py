@@ -61,9 +61,12 @@ class SimulatedParticipant:
 
     def play(self, runner: Any, changes: queue.SimpleQueue[Any]) -> str:
         """Take part in a trial until it is over; how it ended. A step that fails and is held aborts it."""
-        done = None
+        done, trouble = None, ""
         while not runner.wait(0):
             changes.get()
+            if runner.trouble and not trouble:
+                say(f"{runner.id}: {runner.trouble}")
+            trouble = runner.trouble
             outcome, held = runner.outcome, runner.state.status == HELD
             place = (outcome.path, outcome.attempt, held) if outcome is not None else None
             if place is None or place == done:

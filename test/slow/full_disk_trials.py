@@ -20,7 +20,7 @@ from nao_library_modules.console.study import studies as module
 DISK = Path(os.environ["SMALL_DISK"])
 MOMENTS = int(os.environ.get("MOMENTS", "3"))
 FULL_FOR = 1.0
-PERIOD = 0.15
+PERIOD = 0.25
 """s from one answer to the next: a trial takes about two seconds."""
 
 

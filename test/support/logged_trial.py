@@ -10,7 +10,7 @@ from nao_library_modules.console.study.log import read_events
 from nao_library_modules.console.study.state import TrialState
 from nao_library_modules.console.study.table import table_of
 
-ROUNDS = 6
+ROUNDS = 4
 CHOICES = ("red", "green", "blue")
 PROTOCOL = f"""\
 name: colours

@@ -1,5 +1,6 @@
 """A trial in a browser: a touch, a word and a choice; its console is killed, and the network lost."""
 
+import resource
 import shutil
 import tempfile
 from pathlib import Path
@@ -12,6 +13,7 @@ from geometry_msgs.msg import Point
 from nao_library_actions.msg import NaoAudioInAction
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.console.study.files import StudyFiles
+from nao_library_modules.console.study.log import EVENTS
 from nao_library_msgs.srv import PersonSays
 from nao_sim_bridge.testing import RobotTestCase, wait_until
 
@@ -94,6 +96,27 @@ class ConsoleStudy(RobotTestCase):
         other.click("a", "replay")
         other.click("button", "Play")
         other.until(lambda: other.script("return (document.querySelector('video') || {}).currentTime > 0"), "the video")
+
+    def test_a_log_that_cannot_be_written_is_told_until_somebody_has_seen_that(self):
+        self.browser.open("/study", protocol=STUDY, participant="P01")
+        self.browser.reads("One trial of ten steps")
+        self.browser.click("button", "Begin trial")
+        self.at("1.3")
+        folder = self.files.trial(TRIAL).path
+        self.limit_files(1000)  # as a disk that is full
+        self.browser.type("input[aria-label='Note']", "looks away")
+        self.browser.click("button", "Note")
+        self.browser.reads("events wait in memory")
+        self.assertNotIn("looks away", (folder / EVENTS).read_text())
+        self.limit_files(resource.RLIM_INFINITY)
+        self.browser.reads("waited in memory, and were written then")
+        self.assertIn("looks away", (folder / EVENTS).read_text())
+        self.browser.click("button", "Seen")
+        self.browser.until(lambda: not self.browser.all("[role=alert]", "waited in memory"), "what was seen to go")
+
+    def limit_files(self, size):
+        """How long files of the console may become, in bytes."""
+        resource.prlimit(self.program.process.pid, resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
 
     def test_who_looks_on_begins_no_trial(self):
         observer = ConsoleBrowser(self.program).enter(self.program.observer)

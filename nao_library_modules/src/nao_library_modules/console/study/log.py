@@ -81,9 +81,13 @@ class TrialLog:
         self._written = 0  # bytes of it that the operating system has
         self._gap: tuple[float, float, str] | None = None  # begin of this computer and monotonic, reason
         self._gap_events, self._gap_stamp = 0, None
-        os.ftruncate(self._file, self._synced)
-        sync_folder(folder)
-        sync_folder(folder.parent)
+        try:
+            os.ftruncate(self._file, self._synced)
+            sync_folder(folder)
+            sync_folder(folder.parent)
+        except OSError as error:
+            os.close(self._file)
+            raise StudyError(str(FileTrouble(self._path, error))) from error
         self._thread = threading.Thread(target=self._keep_writing, name="study log", daemon=True)
         self._thread.start()
 

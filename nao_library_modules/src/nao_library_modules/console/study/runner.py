@@ -107,6 +107,7 @@ class TrialRunner:
         self._goes_on_without_log = False  # somebody said so
         self._pausing, self._was_held = False, state.status == told.HELD
         self._unsubscribe: Callable[[], None] = lambda: None
+        self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"trial {self.id}", daemon=True)
 
     def start(self, by: str = "") -> None:
@@ -133,8 +134,7 @@ class TrialRunner:
 
     def wait(self, timeout: float | None = None) -> bool:
         """Wait until all is over, s of this computer; whether it is."""
-        self._thread.join(timeout)
-        return not self._thread.is_alive()
+        return self._over.wait(timeout)
 
     @property
     def step(self) -> ProtocolStep | None:
@@ -252,6 +252,13 @@ class TrialRunner:
             listener(self)
 
     def _run(self) -> None:
+        try:
+            self._do_all()
+        finally:
+            self._over.set()
+            self._notify()  # behind that: who waits for changes is not left waiting
+
+    def _do_all(self) -> None:
         outcome, text = told.ABORTED, ""
         try:
             if self._recordings is not None:
@@ -277,7 +284,6 @@ class TrialRunner:
             self._at_end(self)
         except Exception:
             log.exception("end of trial %s", self.id)
-        self._notify()
 
     def _steps(self) -> str:
         """Do all steps; how the trial ended."""
