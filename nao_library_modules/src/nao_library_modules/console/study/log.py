@@ -136,6 +136,7 @@ class TrialLog:
             self._thread.join(patience)
             self._given_up.set()
             self._thread.join()
+            self._put()
             with self._lock:
                 os.close(self._file)
                 self._file, self._gap = -1, None
