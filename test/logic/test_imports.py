@@ -248,6 +248,16 @@ def test_who_knows_the_errors_of_naoqi_alone_loads_neither_libqi_nor_motion():
     assert told == "set() <class 'naoqi.proxy.ALProxy'> 2\n"
 
 
+def test_no_message_class_is_made_from_a_definition_of_others():
+    """A definition may be a program. rosbag runs those of a bag, so one module reads bags, which keeps it from that."""
+    folders = (*SOURCES.values(), *(ROOT / name for name in OWN_DEFINITIONS), ROOT / "nao_library_modules/examples")
+    texts = {path.relative_to(ROOT).as_posix(): path.read_text() for top in folders for path in top.rglob("*.py")}
+    assert len(texts) > 1000
+    assert [path for path, text in texts.items() if "generate_dynamic" in text] == []
+    readers = re.compile(r"^\s*(?:import|from) (?:rosbag|rostopic|rosmsg|genpy\.dynamic)\b", re.MULTILINE)
+    assert [path for path, text in texts.items() if readers.search(text)] == [f"{LIBRARY}/ros/bag_types.py"]
+
+
 def test_messages_and_actions_are_apart():
     kinds = {
         name: {path.suffix for path in ROOT.glob(f"{name}/*/*")} & {".msg", ".srv", ".action"}

@@ -1,6 +1,7 @@
 """Bags of the older stack, converted to the types of this library and back."""
 
 import json
+from contextlib import suppress
 
 import pytest
 import rosbag
@@ -46,6 +47,16 @@ def old(tmp_path):
         bag.write("bumper", bumper(bumper=1, state=1), Time(3), connection_header=header)
         bag.write("joint_trajectory/feedback", feedback(as_theirs(JointTrajectoryActionFeedback)), Time(4))
         bag.write("speech", String("hello"), Time(5))
+    return path
+
+
+def crafted(path, made):
+    """A bag whose definition makes a file where it is turned into Python: the name of a constant is a program."""
+    text = f'string [open("{made}", "w")][:]=1\nstring data\n'
+    header = {"topic": "t", "type": "crafted_msgs/Text", "md5sum": "5" * 32, "message_definition": text}
+    message = (header["type"], b"\1\0\0\0x", header["md5sum"], named(String, header["type"]))
+    with rosbag.Bag(str(path), "w") as bag:
+        bag.write("t", message, Time(1), raw=True, connection_header=header)
     return path
 
 
@@ -138,6 +149,24 @@ def test_what_cannot_be_read_or_written_is_refused_and_leaves_nothing(old, tmp_p
     with pytest.raises(NaoError, match="is the bag itself"):
         convert_bag(old, old, OURS, overwrite=True)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["old.bag", "text.bag"]
+
+
+def test_definitions_in_a_bag_are_copied_and_never_run(tmp_path):
+    bag, new, made = crafted(tmp_path / "old.bag", tmp_path / "made"), tmp_path / "new.bag", tmp_path / "made"
+    done = convert_bag(bag, new, OURS)
+    assert dict(done.kept) == {"crafted_msgs/Text": 1} and not made.exists()
+    assert types_in(new) == {"t": "crafted_msgs/Text"} and b'open("' in new.read_bytes()
+    with rosbag.Bag(str(new)) as as_rosbag_does:
+        list(as_rosbag_does.read_messages(raw=True))
+    assert made.exists(), "the bag of this test does no harm: it proves nothing"
+
+
+def test_a_damaged_bag_is_refused_in_words(old, tmp_path):
+    content = old.read_bytes()
+    for place in range(100, len(content), 101):
+        (tmp_path / "damaged.bag").write_bytes(content[:place] + bytes([content[place] ^ 0x5A]) + content[place + 1 :])
+        with suppress(NaoError):
+            convert_bag(tmp_path / "damaged.bag", tmp_path / "new.bag", OURS, overwrite=True)
 
 
 def test_a_topic_of_two_types_is_refused_with_what_to_do(tmp_path):

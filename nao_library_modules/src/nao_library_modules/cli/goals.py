@@ -9,12 +9,11 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any
 
 import click
 
-from ..functions.server_types import DESCRIBE
+from ..functions.server_types import DESCRIBE, installed_message
 from .errors import CommandFailed, CommandInterrupted, StackMissing
 from .output import plain, say_json, say_result
 from .progress import NO_NAMES, Progress
@@ -212,10 +211,9 @@ def function_message(settings: CliSettings, server: str, **fields: Any) -> Any:
 
 
 def message_class(kind: str) -> Any:
-    package, _, name = kind.partition("/")
-    try:
-        return getattr(import_module(f"{package}.msg"), name)
-    except (ImportError, AttributeError):
+    found = installed_message(kind)
+    if found is None:
         raise click.ClickException(
             f"the message {kind} is not known here: build its package, and source that workspace before you call nao"
-        ) from None
+        )
+    return found

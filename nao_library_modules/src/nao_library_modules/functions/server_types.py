@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from ..base.errors import BadGoal
@@ -13,6 +16,8 @@ from ..base.suggestion import of_those
 
 DESCRIBE = "/describe"
 """What the service by which a server describes itself is called behind the name of the action."""
+MESSAGE = re.compile(r"[A-Za-z]\w*/[A-Za-z]\w*", re.ASCII)
+"""Name of a message, as package/Name."""
 PACKAGE = "nao_library_actions"
 SERVERS = {
     "NaoLights": ("NaoLed", "lights.server.NaoLights"),
@@ -80,15 +85,31 @@ def described_type(name: str, response: Any) -> ServerType:
     `name`: its relative name. `response`: DescribeFunctionsResponse of its service NAME/describe. Raises BadGoal if its
     messages are not known in this process.
     """
-    from roslib.message import get_message_class  # not needed by who only looks at names
-
     types = [
-        get_message_class(kind) for kind in (f"{response.action}Action", f"{response.action}Goal", response.message)
+        installed_message(kind) for kind in (f"{response.action}Action", f"{response.action}Goal", response.message)
     ]
     if None in types:
         problem = f"its messages {response.action} and {response.message} are not known to this process"
         raise BadGoal("step", name, "a server whose messages are built, in a workspace that was sourced", problem)
     return ServerType(name, *types, path="")
+
+
+def installed_message(name: str) -> Any:
+    """The class of a message that somebody else names; None if it was not built here.
+
+    No module is imported for a name but a message that genpy has generated, nor is a class made from a definition.
+    """
+    package, _, word = name.partition("/")
+    if not MESSAGE.fullmatch(name):
+        return None
+    try:
+        spec = find_spec(package)  # of a module without a parent: it is not imported
+    except ValueError:  # a module of this process that has no file
+        return None
+    folders = [Path(folder) for folder in (spec and spec.submodule_search_locations) or ()]
+    if not any((folder / "msg" / f"_{word}.py").is_file() for folder in folders):
+        return None
+    return getattr(import_module(f"{package}.msg"), word, None)
 
 
 def _message_type(kind: str) -> Any:

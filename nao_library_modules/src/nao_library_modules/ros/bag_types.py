@@ -3,12 +3,18 @@
 A rosbag is converted as it is: bytes of messages and times stay, and of each topic the first publisher. rosbag's own
 way, a rule of migration for `rosbag fix`, would want both definitions of each type written down, and a function that
 copies each field of messages.
+
+A bag comes from others. The definitions in it are copied as bytes: rosbag would make Python of them and run it, where
+a constant's name may be a program. Only classes that are installed here read messages.
 """
 
 from __future__ import annotations
 
 import importlib
+import struct
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
@@ -59,7 +65,7 @@ def convert_bag(source: Path, target: Path, names: str, overwrite: bool = False)
     done = Conversion()
     try:
         with draft_in(target.parent) as draft:
-            with rosbag.Bag(str(source)) as old:
+            with rosbag.Bag(str(source)) as old, _no_generated_classes():
                 compression = old.get_compression_info().compression
                 with rosbag.Bag(str(draft), "w", compression=compression) as new:
                     _copy(old, new, _Names(names), done)
@@ -68,7 +74,32 @@ def convert_bag(source: Path, target: Path, names: str, overwrite: bool = False)
         raise NaoError(f"{source} has no index, as one whose recording was cut off: rosbag reindex it first") from None
     except (rosbag.ROSBagException, OSError, genpy.MessageException) as error:
         raise NaoError(f"{source} cannot be converted: {error}") from error
+    except (ValueError, LookupError, EOFError, OverflowError, struct.error) as error:  # of bytes that are no bag's
+        problem = f"{type(error).__name__}: {error}"
+        raise NaoError(f"{source} cannot be converted: it is damaged, or no bag ({problem})") from error
     return done
+
+
+class _Raw:
+    """What stands for the class of a message in a bag: its bytes, which nobody reads as fields."""
+
+    def __init__(self, connection: Any) -> None:
+        self._type, self._md5sum = connection.datatype, connection.md5sum
+        self._full_text = connection.msg_def
+
+
+@contextmanager
+def _no_generated_classes() -> Iterator[None]:
+    """Have rosbag read bytes alone; it generates and runs a class for each type even where raw messages are asked for.
+
+    For one thread at a time. Raises AttributeError, before anything is read, where rosbag has no such function.
+    """
+    generate = rosbag.bag._get_message_type
+    rosbag.bag._get_message_type = _Raw
+    try:
+        yield
+    finally:
+        rosbag.bag._get_message_type = generate
 
 
 class _Names:
@@ -109,7 +140,9 @@ def _copy(old: Any, new: Any, names: _Names, done: Conversion) -> None:
         name, content, md5sum = raw[:3]
         known = sums.setdefault(topic, (name, md5sum))
         if known[1] != md5sum:  # rosbag writes one connection for each topic
-            raise rosbag.ROSBagException(f"{topic} has messages of {known[0]} and of {name}: rosbag filter one of them")
+            raise rosbag.ROSBagException(
+                f"{topic} has messages of {known[0]} and of {name}: record each on a topic of its own"
+            )
         pair = names.classes(name)
         if pair is None:
             done.kept[name] += 1

@@ -15,6 +15,9 @@ from functools import lru_cache
 from typing import Any
 
 import rospy
+from roslib.message import get_message_class
+
+from naoqi.errors import NaoError
 
 from ..nao.type_names import AUTO, OURS, THEIRS, choose, installed, type_names, unfit
 
@@ -85,8 +88,11 @@ def _not_here() -> frozenset[str]:
 def as_theirs(kind: Any) -> Any:
     """A type of this library by the name that it has in the older packages.
 
-    The class is derived from `kind`; from genpy's Message alone where its fields are others. KeyError if it has no such
-    name.
+    The class is derived from `kind`; where its fields are others, from a type of this library with these fields.
+
+    Raises:
+        KeyError: It has no such name.
+        NaoError: No type of this library has its fields.
     """
     names = type_names()
     name = names.theirs[kind._type]
@@ -95,9 +101,7 @@ def as_theirs(kind: Any) -> Any:
         return type(kind.__name__, (kind,), body)
     text, is_action = names.their_definition(kind._full_text), set(kind.__slots__) == ACTION_SLOTS
     if names.sums[name] != kind._md5sum and not is_action:
-        from genpy.dynamic import generate_dynamic  # compiles files: for few types, where somebody has them
-
-        return generate_dynamic(name, text)[name]
+        kind = _with_fields_of(name)
     body.update(_full_text=text, __slots__=())
     if is_action:  # actionlib takes the classes of its topics from what an action is made of
         body["__init__"] = lambda self: kind.__init__(
@@ -106,3 +110,17 @@ def as_theirs(kind: Any) -> Any:
     made: Any = type(kind.__name__, (kind,), body)
     made.__slots__ = kind.__slots__  # genpy reads the names of the fields there; the fields themselves are inherited
     return made
+
+
+def _with_fields_of(name: str) -> Any:
+    """A class of this library whose fields are those of a type of theirs; no class is ever generated from a definition.
+
+    Raises NaoError if there is none.
+    """
+    names = type_names()
+    wanted = names.sums[name]
+    for own, theirs in names.theirs.items():
+        kind = get_message_class(own) if names.sums[theirs] == wanted else None
+        if kind is not None and kind._md5sum == wanted:
+            return kind
+    raise NaoError(f"{name} (md5 sum {wanted}): no message of this library has its fields; say messages:={OURS}")
