@@ -63,5 +63,5 @@ pictures: build ## Draw the pictures of README.md and docs/ anew; needs the Debi
 	@PYTHONPATH=nao_sim_bridge/src:nao_library_modules/src .venv/bin/python scripts/readme_pictures.py
 	@scripts/ros-env python3 scripts/readme_behaviors.py
 
-clean: ## Remove the workspace, the virtual environment and what the demonstration left
-	rm -rf .ws .venv demo_output soak_output
+clean: ## Remove the workspace and the virtual environment; what demo and soak have written stays
+	rm -rf .ws .venv

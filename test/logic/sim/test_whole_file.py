@@ -105,7 +105,7 @@ def test_what_killed_processes_left_is_removed_or_named_and_what_others_write_st
     mine, running = WholeFile(path), WholeFile(path)
     running.write(b"new")
     running.flush()
-    (path.parent / ".killed.draft").write_bytes(b"ha")
+    (path.parent / f".nao_library-{'5a' * 16}.draft").write_bytes(b"ha")
     (path.parent / "b.part1.wav").write_bytes(b"lost")
     tidy(tmp_path)
     assert f"{path.parent / 'b.part1.wav'} is a recording that was not ended" in caplog.text

@@ -110,8 +110,10 @@ def test_folders_are_listed_without_what_is_not_for_users(files):
     assert files.listed("~") == {} == files.listed("/tmp")
     for name in ("b.wav", "a.wav", "recordings/cameras/x.jpg", "/tmp/t.wav"):
         files.to_write(name).write_bytes(b"four")
-    (files.folder / ".half.draft").touch()
-    assert list(files.listed("~").items()) == [("a.wav", 4), ("b.wav", 4), ("recordings/", 0)]
+    (files.folder / f".nao_library-{'5a' * 16}.draft").touch()
+    (files.folder / "thesis.draft").write_bytes(b"four")
+    there = [("a.wav", 4), ("b.wav", 4), ("recordings/", 0), ("thesis.draft", 4)]
+    assert list(files.listed("~").items()) == there
     assert files.listed("recordings") == {"cameras/": 0}
     assert files.listed("/home/nao/recordings/cameras/") == {"x.jpg": 4}
     assert files.listed("/tmp/") == {"t.wav": 4} and files.listed("/usr/share/naoqi") == {"wav/": 0}

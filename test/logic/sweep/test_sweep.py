@@ -59,8 +59,10 @@ def test_a_sweep_goes_on_where_it_was_ended(tmp_path):
 
 
 def test_results_that_come_up_later_get_a_column(tmp_path):
+    (tmp_path / "f.csv.part").write_text("somebody's")
     sweep(lambda seed: {"a": 1} if seed == 0 else {"a": 2, "b": 3}, 2, tmp_path / "f.csv", **OPTIONS)
     assert (tmp_path / "f.csv").read_text().splitlines()[0] == "seed,a,b,seconds,error"
+    assert (tmp_path / "f.csv.part").read_text() == "somebody's"
 
 
 def test_a_file_of_another_sweep_is_left_alone(tmp_path):

@@ -8,7 +8,9 @@ import io
 import itertools
 import logging
 import os
+import re
 import shutil
+import stat
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -19,7 +21,8 @@ from naoqi.errors import NaoError
 
 log = logging.getLogger(__name__)
 
-DRAFT, PART = ".draft", ".part"
+PART = ".part"
+_DRAFT = re.compile(r"\.nao_library-[0-9a-f]{32}\.draft")
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -89,9 +92,8 @@ class WholeFile(io.RawIOBase):
         self._trouble: FileTrouble | None = None
         with self._telling():
             path.parent.mkdir(parents=True, exist_ok=True)
-            draft = _draft_path(path.parent)
-            self._file = _locked(draft)
-            self._draft: Path | None = draft
+            self._draft: Path | None
+            self._draft, self._file = _new_draft(path.parent)
 
     def writable(self) -> bool:
         return True
@@ -201,24 +203,37 @@ class WholeFile(io.RawIOBase):
 @contextmanager
 def draft_in(folder: Path) -> Iterator[Path]:
     """An empty file for others to fill by its path; gone at the end unless it was moved. `tidy` leaves it alone."""
-    path = _draft_path(folder)
-    with _locked(path):
+    path, file = _new_draft(folder)
+    with file:
         try:
             yield path
         finally:
             path.unlink(missing_ok=True)
 
 
+def is_draft(name: str) -> bool:
+    """Whether a file of this name is a draft of this library: nobody else names one so, not even by accident."""
+    return _DRAFT.fullmatch(name) is not None
+
+
+def _draft_name(token: str) -> str:
+    return f".nao_library-{token}.draft"
+
+
 def _draft_path(folder: Path) -> Path:
-    return folder / f".{uuid.uuid4().hex}{DRAFT}"
+    return folder / _draft_name(uuid.uuid4().hex)
 
 
-def _locked(draft: Path) -> io.FileIO:
+def _new_draft(folder: Path) -> tuple[Path, io.FileIO]:
     """A new file that `tidy` leaves alone as long as it is open; its rights are those of the umask."""
-    file = io.FileIO(str(draft), "xb")
-    with suppress(OSError):  # not every file system knows locks
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    return file
+    while True:
+        path = _draft_path(folder)
+        file = io.FileIO(str(path), "xb")
+        with suppress(OSError):  # not every file system knows locks
+            fcntl.flock(file, fcntl.LOCK_EX)
+        if os.fstat(file.fileno()).st_nlink:
+            return path, file
+        file.close()  # `tidy` of another process came between
 
 
 def write_whole(path: Path, content: str | bytes, numbered: bool = False) -> Path:
@@ -294,7 +309,9 @@ def move_whole(path: Path, target: Path, overwrite: bool = False) -> Path:
         try:
             os.link(path, draft)
         except OSError:  # another disk, another owner, a file system without links
-            shutil.copy2(path, draft)
+            draft, file = _new_draft(target.parent)
+            with file:
+                shutil.copy2(path, draft)
         if overwrite:
             os.replace(draft, target)
         else:
@@ -313,10 +330,13 @@ def written(path: Path, wanted: Path) -> str:
 
 
 def tidy(folder: Path) -> None:
-    """Remove drafts that killed processes have left in a folder, and name their recordings that replace nothing."""
-    for path in folder.rglob(f"*{DRAFT}"):
-        if _nobody_writes(path):
-            path.unlink(missing_ok=True)
+    """Remove drafts that killed processes have left in a folder, and name their recordings that replace nothing.
+
+    Removed is only what has the name of a draft, belongs to this user and is being written by nobody.
+    """
+    for path in folder.rglob(_draft_name("*")):
+        if is_draft(path.name):
+            _remove_left(path)
     for path in folder.rglob(f"*{PART}[0-9]*"):
         if _nobody_writes(path):
             log.warning("%s is a recording that was not ended; what was to be replaced by it is still there", path)
@@ -346,6 +366,16 @@ def numbered_names(target: Path, mark: str = "-", first: int = 2) -> Iterator[Pa
     yield target
     for number in itertools.count(first):
         yield target.with_name(f"{target.stem}{mark}{number}{target.suffix}")
+
+
+def _remove_left(path: Path) -> None:
+    """Remove a draft unless somebody writes it; who has just begun it notices (`_new_draft`)."""
+    with suppress(OSError):
+        about = path.lstat()
+        if stat.S_ISREG(about.st_mode) and about.st_uid == os.geteuid():
+            with path.open("rb") as file:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                path.unlink()
 
 
 def _nobody_writes(path: Path) -> bool:

@@ -14,7 +14,7 @@ from typing import Iterator, Sequence, Tuple
 
 from nao_sim_bridge.base.config import config_file, read_json, robot_files_directory, section
 from nao_sim_bridge.base.errors import did_you_mean
-from nao_sim_bridge.base.whole_file import DRAFT, FileTrouble, tidy, write_whole
+from nao_sim_bridge.base.whole_file import FileTrouble, is_draft, tidy, write_whole
 
 DEFAULT_RECORD_DIR = Path("~/.ros/nao_recordings")
 # Longest part of a path, and longest path that clients may give, and that this system takes, in bytes.
@@ -168,7 +168,7 @@ class ClientFiles:
         listed: dict[str, int] = {}
         for entry in (entry for folder_here in reversed(found) for entry in folder_here.iterdir()):
             path = _without_links(entry)
-            if path and self._on_robot(path) and entry.name not in hidden and not entry.name.endswith(DRAFT):
+            if path and self._on_robot(path) and entry.name not in hidden and not is_draft(entry.name):
                 with suppress(FileNotFoundError):  # a link to nothing, or one that has gone meanwhile
                     about = path.stat()
                     is_folder = stat.S_ISDIR(about.st_mode)

@@ -8,7 +8,10 @@ import io
 import itertools
 import logging
 import os
+import re
 import shutil
+import stat
+import uuid
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Iterator
@@ -17,7 +20,8 @@ from nao_sim_bridge.base.errors import SimulationError
 
 log = logging.getLogger("nao_sim.files")
 
-DRAFT, PART = ".draft", ".part"
+PART = ".part"
+_DRAFT = re.compile(r"\.nao_library-[0-9a-f]{32}\.draft")
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -64,11 +68,8 @@ class WholeFile(io.RawIOBase):
         self._trouble: FileTrouble | None = None
         with self._telling():
             path.parent.mkdir(parents=True, exist_ok=True)
-            draft = path.parent / f".{os.urandom(16).hex()}{DRAFT}"
-            self._file = draft.open("xb", buffering=0)  # whose rights are those of the umask
-            self._draft: Path | None = draft
-            with suppress(OSError):  # not every file system knows locks
-                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self._draft: Path | None
+            self._draft, self._file = _new_draft(path.parent)
 
     def writable(self) -> bool:
         return True
@@ -181,6 +182,31 @@ class WholeFile(io.RawIOBase):
         super().close()
 
 
+def is_draft(name: str) -> bool:
+    """Whether a file of this name is a draft of this library: nobody else names one so, not even by accident."""
+    return _DRAFT.fullmatch(name) is not None
+
+
+def _draft_name(token: str) -> str:
+    return f".nao_library-{token}.draft"
+
+
+def _draft_path(folder: Path) -> Path:
+    return folder / _draft_name(uuid.uuid4().hex)
+
+
+def _new_draft(folder: Path) -> tuple[Path, io.FileIO]:
+    """A new file that `tidy` leaves alone as long as it is open; its rights are those of the umask."""
+    while True:
+        path = _draft_path(folder)
+        file = io.FileIO(str(path), "xb")
+        with suppress(OSError):  # not every file system knows locks
+            fcntl.flock(file, fcntl.LOCK_EX)
+        if os.fstat(file.fileno()).st_nlink:
+            return path, file
+        file.close()  # `tidy` of another process came between
+
+
 def write_whole(path: Path, content: bytes) -> None:
     """Write a file; one that is there already is replaced, and who reads it meanwhile gets the former one.
 
@@ -192,10 +218,13 @@ def write_whole(path: Path, content: bytes) -> None:
 
 
 def tidy(folder: Path) -> None:
-    """Remove drafts that killed processes have left in a folder, and name their recordings that replace nothing."""
-    for path in folder.rglob(f"*{DRAFT}"):
-        if _nobody_writes(path):
-            path.unlink(missing_ok=True)
+    """Remove drafts that killed processes have left in a folder, and name their recordings that replace nothing.
+
+    Removed is only what has the name of a draft, belongs to this user and is being written by nobody.
+    """
+    for path in folder.rglob(_draft_name("*")):
+        if is_draft(path.name):
+            _remove_left(path)
     for path in folder.rglob(f"*{PART}[0-9]*"):
         if _nobody_writes(path):
             log.warning("%s is a recording that was not ended; what was to be replaced by it is still there", path)
@@ -213,6 +242,16 @@ def _named(draft: Path, name: Path) -> bool:
             return False
         os.replace(draft, name)
     return True
+
+
+def _remove_left(path: Path) -> None:
+    """Remove a draft unless somebody writes it; who has just begun it notices (`_new_draft`)."""
+    with suppress(OSError):
+        about = path.lstat()
+        if stat.S_ISREG(about.st_mode) and about.st_uid == os.geteuid():
+            with path.open("rb") as file:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                path.unlink()
 
 
 def _nobody_writes(path: Path) -> bool:

@@ -6,10 +6,12 @@ import csv
 import itertools
 import time
 from contextlib import contextmanager
+from io import StringIO
 from pathlib import Path
 from typing import Any, Callable, Iterable, Iterator, Mapping, Sequence, TextIO
 
 from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.whole_file import write_whole
 from nao_sim_bridge.sweep.table import ERROR, SECONDS, SEED, Table, Value, read_value
 
 RETRIES = 3
@@ -233,17 +235,15 @@ class _Writer:
         return [*inputs, *(name for name in found if name not in (*inputs, SECONDS, ERROR)), SECONDS, ERROR]
 
     def _begin(self, columns: list[str]) -> None:
-        """Write everything anew, beside the old file until it is whole."""
+        """Write everything anew; until that is whole, the old file stays."""
         if self._file is not None:
             self._file.close()
         self._columns = columns
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        part = self._path.with_name(self._path.name + ".part")
-        with part.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, columns)
-            writer.writeheader()
-            writer.writerows(self.rows)
-        part.replace(self._path)
+        text = StringIO(newline="")
+        writer = csv.DictWriter(text, columns)
+        writer.writeheader()
+        writer.writerows(self.rows)
+        write_whole(self._path, text.getvalue().encode())
         self._file = self._path.open("a", newline="", encoding="utf-8")
 
 
