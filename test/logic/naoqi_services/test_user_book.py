@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from datetime import datetime, timezone
 
 import pytest
@@ -96,4 +97,19 @@ def test_known_people_come_back_from_a_file(book):
     again.learn(["Ada", "Bob"], 0.0)
     again.track(9, 0.0)
     assert again.focused == 4  # numbers of users who were forgotten are not used again
-    again.restore({"users": [{"number": "x"}, {}, 5], "next": "y"})
+
+
+@pytest.mark.parametrize(
+    "users, following",
+    [
+        ([{"number": "x"}], 1), ([{}], 1), ([5], 1), ([], "y"), ([], True), ([], 10**400), ([], math.inf),
+        ([{"number": 1, "name": "Ada", "created": "soon"}], 2),
+        ([{"number": 1, "name": "Ada", "created": "2030-01-01T00:00:00"}], 2),
+        ([{"number": 1, "name": name, "created": "2030-01-01T00:00:00+00:00"} for name in ("Ada", "Bob")], 2),
+    ],
+)  # fmt: skip
+def test_a_file_with_anything_else_than_users_changes_nothing(book, users, following):
+    book.learn(["Ada"], 0.0)
+    with pytest.raises((ValueError, TypeError, LookupError)):
+        book.restore({"users": users, "next": following})
+    assert book.numbers == [1]

@@ -20,7 +20,7 @@ from nao_sim_bridge.base.errors import SimulationError
 
 log = logging.getLogger("nao_sim.files")
 
-PART = ".part"
+PART, BROKEN = ".part", ".broken"
 _DRAFT = re.compile(r"\.nao_library-[0-9a-f]{32}\.draft")
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
@@ -228,6 +228,29 @@ def tidy(folder: Path) -> None:
     for path in folder.rglob(f"*{PART}[0-9]*"):
         if _nobody_writes(path):
             log.warning("%s is a recording that was not ended; what was to be replaced by it is still there", path)
+
+
+def put_aside(path: Path, reason: object, without: str) -> Path | None:
+    """Give what cannot be used another name, which replaces nothing: name.broken, name.broken2, ... The log tells it.
+
+    Returns the new one, None if it cannot be renamed.
+
+    Args:
+        path: Whatever is there: a file, a folder, something else.
+        reason: Why it cannot be used.
+        without: What happens now, for the log: "the robot begins without users".
+    """
+    for number in itertools.count(1):
+        aside = path.with_name(f"{path.name}{BROKEN}{number if number > 1 else ''}")
+        if os.path.lexists(aside):
+            continue
+        try:
+            path.rename(aside)
+        except OSError as error:
+            log.error("%s cannot be used: %s; it stays (%s), and %s", path, reason, error.strerror or error, without)
+            return None
+        log.error("%s cannot be used: %s; it is kept as %s, and %s", path, reason, aside, without)
+        return aside
 
 
 def _named(draft: Path, name: Path) -> bool:

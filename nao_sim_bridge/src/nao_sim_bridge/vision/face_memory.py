@@ -92,8 +92,12 @@ class FaceMemory:
         write_whole(path, content.getvalue())
 
     @classmethod
-    def load(cls, path: Path) -> FaceMemory:
+    def load(cls, path: Path, length: int | None = None) -> FaceMemory:
         """What a file has.
+
+        Args:
+            path: The file.
+            length: Numbers of a description; None: any, as long as all have as many.
 
         Raises:
             FaceFileError: It cannot be read, or is no such file.
@@ -103,8 +107,8 @@ class FaceMemory:
             with Archive(path) as content:
                 names = [str(name) for name in read_array(content.read("names.npy"))]
                 arrays = [read_array(content.read(f"{KEY.format(i)}.npy")) for i in range(len(names))]
-            memory._pictures = dict(zip(names, _checked(arrays)))
-        except (OSError, ValueError) as error:
+            memory._pictures = dict(zip(names, _checked(arrays, length)))
+        except (OSError, ValueError, TypeError) as error:
             raise FaceFileError(f"{str(path)!r} is no file of known faces: {error}") from error
         return memory
 
@@ -123,8 +127,10 @@ def read_array(content: bytes) -> np.ndarray:
     return np.frombuffer(content, kind, offset=file.tell()).reshape(shape)
 
 
-def _checked(arrays: Sequence[np.ndarray]) -> list[np.ndarray]:
-    widths = {array.shape[1:] for array in arrays}
+def _checked(arrays: Sequence[np.ndarray], length: int | None) -> list[np.ndarray]:
+    widths = {array.shape[1:] for array in arrays} | ({(length,)} if length else set())
     if len(widths) > 1 or any(array.ndim != 2 or not 1 <= len(array) <= MOST_PICTURES for array in arrays):
-        raise ValueError("its descriptions do not fit together")
+        raise ValueError("its descriptions do not fit together, or not to faces")
+    if any(array.dtype.kind != "f" or not np.isfinite(array).all() for array in arrays):
+        raise ValueError("its descriptions are not of finite numbers")
     return [array.astype(np.float32) for array in arrays]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Tuple
@@ -34,7 +35,9 @@ UPRIGHT, UPRIGHT_EYES, UPRIGHT_DISTANCE = (96, 112), (48.0, 40.0), 40.0
 # A face is described in this size, px: about that of one two metres away in a VGA picture.
 SMALL = (48, 56)
 CELL = 8
-DIRECTIONS = 8
+DIRECTIONS, TONES = 8, 3
+DESCRIPTION_LENGTH = (DIRECTIONS + TONES) * math.prod(len(range(CELL // 2, size, CELL // 2)) for size in SMALL)
+"""Numbers of a description of a face: of each cell the edges of each direction, its brightness and two colours."""
 # How far from its middle the face counts, in halves of its width and height: at its rim it changes when the head turns.
 RIM = (0.8, 1.0)
 # A cell whose edges are all fainter than this, of 255 a pixel, says nothing.

@@ -57,7 +57,7 @@ def load(path: Path) -> Tuple[KnownPicture, ...]:
         with Archive(path) as content:
             about = [json.loads(str(text)) for text in read_array(content.read("about.npy"))]
             return tuple(_read(content, i, *one) for i, one in enumerate(about))
-    except (OSError, ValueError, TypeError) as error:
+    except (OSError, ValueError, TypeError, RecursionError) as error:
         raise PictureFileError(f"{str(path)!r} is no file of learnt pictures: {error}") from error
 
 
@@ -67,6 +67,8 @@ def _read(content: Archive, number: int, labels: list, file: str) -> KnownPictur
         array = read_array(content.read(f"{part}_{number}.npy"))
         if array.ndim != 2 or array.shape[1] != columns or array.dtype != kind or not len(array):
             raise ValueError(f"{part} of picture {number} are {array.shape} {array.dtype}")
+        if not np.isfinite(array).all():
+            raise ValueError(f"{part} of picture {number} are not finite")
         arrays[part] = array
     if len(arrays["points"]) != len(arrays["descriptions"]):
         raise ValueError(f"points and descriptions of picture {number} do not fit together")

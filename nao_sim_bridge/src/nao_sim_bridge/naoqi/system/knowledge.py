@@ -165,5 +165,5 @@ class ALKnowledge:
 
     def _read(self) -> TripleStore:
         store = TripleStore(lambda: datetime.now(timezone.utc))
-        store.restore(self._file.load())
+        self._file.load(store.restore)
         return store

@@ -85,12 +85,16 @@ class TripleStore:
         }
 
     def restore(self, content: Mapping[str, Any]) -> None:
-        """Know what `content` has said, and nothing else; what is neither a triple nor about one is left out."""
+        """Know what `content` has said, and nothing else.
+
+        Raises:
+            ValueError: It is not what `content` says. So do TypeError and LookupError.
+        """
         self._domains = {}
         for name, entry in content.items():
             place = self._domains[name] = _Domain()
-            place.triples = {(s, p, o): None for s, p, o in _rows(entry, "triples", 3)}
-            for s, p, o, key, value in _rows(entry, "data", 5):
+            place.triples = {(s, p, o): None for s, p, o in _rows(entry["triples"])}
+            for s, p, o, key, value in _rows(entry["data"]):
                 self._node(name, (s, p, o)).data[key, value] = None
         self._count = sum(map(len, self._domains.values()))
         self._look_for_dates()
@@ -264,11 +268,11 @@ def _is_over(text: str, now: datetime) -> bool:
     return date is not None and date <= now
 
 
-def _rows(entry: Any, key: str, length: int) -> list[list[str]]:
-    """Lists of so many texts under a key."""
-    rows = entry.get(key, ()) if isinstance(entry, dict) else ()
-    return [
-        row
-        for row in (rows if isinstance(rows, list) else ())
-        if isinstance(row, list) and len(row) == length and all(isinstance(word, str) for word in row)
-    ]
+def _rows(rows: Any) -> list[list[str]]:
+    """Lists of texts as a file has them."""
+    if not isinstance(rows, list):
+        raise TypeError(f"{type(rows).__name__} instead of a list of triples")
+    for row in rows:
+        if not isinstance(row, list) or not all(isinstance(word, str) for word in row):
+            raise ValueError(f"{row!r} is no list of texts")
+    return rows

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Callable, Mapping
 from xml.etree import ElementTree
@@ -61,15 +61,23 @@ class PreferenceFiles:
         path = self._files.to_read(_path(application, name))
         try:
             content = read_bounded(path, LARGEST_FILE)
-        except TooLarge as error:
+        except (TooLarge, OSError) as error:
             raise ConfigError(path.name, str(error)) from error
-        root = parse_xml(content, path.name)
-        return Preference(root.get("name") or path.stem, root.get("description", ""), _children(root, path.name, 1))
+        return _read(content, path)
 
     def write(self, name: str, content: Preference) -> None:
+        """Write a file that `read` gives back as it is; a BadValue when no file can hold the content."""
         root = ElementTree.Element(ROOT, name=content.name, description=content.description, version="1.0")
         _add(root, content.value)
-        write_whole(self._files.to_change(_path(APPLICATION, name)), ElementTree.tostring(root))
+        path = self._files.to_change(_path(APPLICATION, name))
+        try:
+            text = ElementTree.tostring(root)
+            held = len(text) <= LARGEST_FILE and _read(text, path) == replace(content, name=content.name or path.stem)
+        except (ConfigError, UnicodeEncodeError):  # it has characters that XML has not
+            held = False
+        if not held:
+            raise BadValue("prefs", content.as_value(), f"what an XML file of {LARGEST_FILE} bytes can hold")
+        write_whole(path, text)
 
     def remove(self, name: str) -> None:
         """Remove a file; a NoSuchFile when there is none."""
@@ -111,6 +119,11 @@ def _path(application: str, name: str) -> str:
         if not text or "/" in text or text.startswith("."):
             raise BadValue(field, text, "a name without folders")
     return FOLDER.format(application=application, file=file)
+
+
+def _read(content: bytes, path: Path) -> Preference:
+    root = parse_xml(content, path.name)
+    return Preference(root.get("name") or path.stem, root.get("description", ""), _children(root, path.name, 1))
 
 
 def _children(parent: Element, where: str, depth: int) -> list[Preference]:

@@ -39,11 +39,7 @@ class ALPreferenceManager:
         self._memory = memory
         self._signals = signals
         self._lock = threading.Lock()
-        self._domains: Domains = {
-            domain: {setting: value for setting, value in settings.items() if isinstance(value, str)}
-            for domain, settings in self._file.load().items()
-            if isinstance(settings, dict)
-        }
+        self._domains: Domains = self._file.load(_domains_of)
         for event in (ADDED, CHANGED, REMOVED, DOMAIN_REMOVED):
             memory.declare_event(event, NAME)
 
@@ -139,3 +135,11 @@ def _texts(preferences: list[Preference], before: str = "") -> list[tuple[str, s
         else:
             log.info("%s%s is no text and is not imported", before, one.name)
     return found
+
+
+def _domains_of(content: dict[str, Any]) -> Domains:
+    """Preferences as a file has them; a ValueError for values that are no texts, an AttributeError for no domains."""
+    for domain, settings in content.items():
+        if not all(isinstance(value, str) for value in settings.values()):
+            raise ValueError(f"domain {domain!r} has a value that is no text")
+    return content

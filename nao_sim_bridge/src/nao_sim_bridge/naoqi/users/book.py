@@ -12,6 +12,9 @@ from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.sizes import load_sizes
 
 NOBODY = -1
+LARGEST_NUMBER = 2**31 - 1
+"""That NAOqi's calls can carry."""
+DATES = ("created", "first", "last")
 UNSEEN_S = 2.0
 """After so long without being seen, a session is closed, s of simulated time."""
 FORGOTTEN_S = 600.0
@@ -86,12 +89,11 @@ class UserBook:
 
     def content(self) -> dict[str, Any]:
         """What outlasts a run: who is known by name."""
-        dates = ("created", "first", "last")
         rows = [
             {
                 "number": u.number,
                 "name": u.name,
-                **{d: v.isoformat() for d in dates if (v := getattr(u, d)) is not None},
+                **{d: v.isoformat() for d in DATES if (v := getattr(u, d)) is not None},
             }
             for u in self._users.values()
             if u.permanent
@@ -99,18 +101,19 @@ class UserBook:
         return {"next": self._next, "users": rows}
 
     def restore(self, content: Mapping[str, Any]) -> None:
-        """Know whom a file tells of; what is no user in it is left out."""
-        rows = content.get("users", [])
-        for row in rows if isinstance(rows, list) else []:
-            try:
-                dates = {d: datetime.fromisoformat(row[d]) for d in ("created", "first", "last") if d in row}
-                user = User(int(row["number"]), str(row["name"]), **dates)
-            except (TypeError, KeyError, ValueError):
-                continue
-            self._users[user.number] = user
-        self._next = max([*self._users, 0]) + 1
-        if isinstance(content.get("next"), int):
-            self._next = max(self._next, content["next"])
+        """Know whom `content` has told of, and nobody else; nobody where it is empty.
+
+        Raises:
+            ValueError: It is not what `content` tells. So do TypeError and LookupError; nothing has changed then.
+        """
+        users: dict[int, User] = {}
+        for row in content["users"] if content else []:
+            user = User(_number(row["number"]), row["name"], **_dates(row))
+            if not isinstance(user.name, str) or not user.name or user.number in users:
+                raise ValueError(f"{row!r} is no user with a name and a number of its own")
+            users[user.number] = user
+        self._next = max(max([*users, 0]) + 1, _number(content["next"]) if content else 1)
+        self._users = users
 
     # --- who there is ------------------------------------------------------------------------------------------------
 
@@ -241,3 +244,16 @@ class UserBook:
         self._news[News.DELETED].append(user.number)
         if user.permanent:
             self._news[News.UNKNOWN].append(user.number)
+
+
+def _number(value: Any) -> int:
+    if type(value) is not int or not 1 <= value <= LARGEST_NUMBER:
+        raise ValueError(f"{value!r} is no number of a user, 1 to {LARGEST_NUMBER}")
+    return value
+
+
+def _dates(row: Mapping[str, Any]) -> dict[str, datetime]:
+    dates = {name: datetime.fromisoformat(row[name]) for name in DATES if name in row}
+    if any(date.tzinfo is None for date in dates.values()):
+        raise ValueError(f"{row!r} has a date without a zone")
+    return dates

@@ -8,13 +8,13 @@ from typing import Any, Callable, Iterable, TypeVar
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
-from nao_sim_bridge.base.whole_file import FileTrouble
+from nao_sim_bridge.base.whole_file import FileTrouble, put_aside
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
-from nao_sim_bridge.naoqi.system.robot_file import RobotFile
+from nao_sim_bridge.naoqi.system.robot_file import WITHOUT, RobotFile
 from nao_sim_bridge.naoqi.system.time_zone import TimeZone
 from nao_sim_bridge.naoqi.users.book import NOBODY, News, UserBook
 from nao_sim_bridge.naoqi.vision import face_detection
@@ -78,9 +78,13 @@ class Users:
         self._next_look = 0.0
         self._users_file, self._data_file = RobotFile(files, USERS_FILE), RobotFile(files, DATA_FILE)
         self._book = UserBook(zone.now)
-        self._book.restore(self._users_file.load())
+        self._users_file.load(self._book.restore)
         self._kept = self._book.content()
-        self._data: Data = self._read_data()
+        data = self._data_file.load(_data_of)
+        if self._users_file.aside and data:  # whose users are in the other one: they belong together
+            put_aside(files.folder / DATA_FILE, f"it is about users of {self._users_file.aside}", WITHOUT)
+            data = {}
+        self._data: Data = _about(self._book.numbers, data)
         for event in (*EVENTS.values(), SHOULD_EXIT):
             memory.declare_event(event, "ALUserSession")
         memory.put_quietly(OPEN_SESSIONS, [])
@@ -155,15 +159,6 @@ class Users:
             self._data_file.save(data)
             self._data = data
 
-    def _read_data(self) -> Data:
-        found: Data = {}
-        for domain, entries in self._data_file.load().items():
-            for number, values in entries.items() if isinstance(entries, dict) else ():
-                if isinstance(values, dict):
-                    good = {name: value for name, value in values.items() if type(value) in TYPES}
-                    found.setdefault(domain, {})[number] = good
-        return _about(self._book.numbers, found)
-
     # --- what happens ------------------------------------------------------------------------------------------------
 
     def _learn(self) -> None:
@@ -209,6 +204,17 @@ def _faces(value: Any) -> dict[int, str]:
 
 def _is_face(number: Any) -> bool:
     return type(number) is int and 0 <= number < 2**31  # what NAOqi's calls can carry
+
+
+def _data_of(content: dict[str, Any]) -> Data:
+    """Data as a file has them; a ValueError for anything else, an AttributeError for what has no entries."""
+    for entries in content.values():
+        for number, values in entries.items():
+            if not number.isdecimal() or any(type(value) not in TYPES for value in values.values()):
+                raise ValueError(f"{number!r} has not texts, whole numbers and truth values by name alone")
+            if any(type(value) is int and not -(2**63) <= value < 2**64 for value in values.values()):
+                raise ValueError(f"{number!r} has a number that NAOqi's calls cannot carry")
+    return content
 
 
 def _about(numbers: Iterable[int], data: Data) -> Data:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import logging
+import os
 import threading
 from typing import Any, Callable
 
 import numpy as np
 
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.whole_file import put_aside
 from nao_sim_bridge.vision.face_memory import FaceFileError, FaceMemory
-
-log = logging.getLogger("nao_sim.faces")
+from nao_sim_bridge.vision.faces_features import DESCRIPTION_LENGTH
 
 FILE, OLD_FILE = "faces.npz", "faces_old.npz"
 
@@ -19,7 +19,7 @@ FILE, OLD_FILE = "faces.npz", "faces_old.npz"
 class KnownPeople:
     """Known people; what changes is on the disk before it counts. Any thread.
 
-    A file that cannot be read is put aside, as "faces.npz.broken".
+    A file that cannot be used is put aside, and nobody is known.
 
     Attributes:
         changed: Called when somebody has been learnt or forgotten.
@@ -64,7 +64,7 @@ class KnownPeople:
         path = self._files.to_write(OLD_FILE)
         if not path.is_file():
             return False
-        other = FaceMemory.load(path)
+        other = FaceMemory.load(path, DESCRIPTION_LENGTH)
 
         def take_over(memory: FaceMemory) -> bool:
             memory.take_over(other, policy)
@@ -86,13 +86,11 @@ class KnownPeople:
     def _known(self) -> FaceMemory:
         """The people, read from the file when they are wanted first; with the lock held."""
         if self._memory is None:
-            path = self._files.to_write(FILE)
             self._memory = FaceMemory()
-            if path.is_file():
+            place = self._files.folder / FILE
+            if os.path.lexists(place):
                 try:
-                    self._memory = FaceMemory.load(path)
-                except FaceFileError as error:
-                    aside = path.with_name(path.name + ".broken")
-                    path.replace(aside)
-                    log.error("%s; nobody is known, and it is kept as %s", error, aside)
+                    self._memory = FaceMemory.load(self._files.to_write(FILE), DESCRIPTION_LENGTH)
+                except (FaceFileError, OSError, ValueError) as error:
+                    put_aside(place, error, "nobody is known by the face")
         return self._memory

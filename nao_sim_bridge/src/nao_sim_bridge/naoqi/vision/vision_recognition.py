@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import threading
 from pathlib import Path
 from typing import Any, Callable, Sequence, Tuple
@@ -10,9 +11,10 @@ from typing import Any, Callable, Sequence, Tuple
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile, full_path
+from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile, full_path, load_places
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.whole_file import put_aside
 from nao_sim_bridge.cameras.frame import Frame
 from nao_sim_bridge.cameras.optics import Optics
 from nao_sim_bridge.core.simulation import Simulation
@@ -25,7 +27,7 @@ from nao_sim_bridge.naoqi.vision.vision_extractor import Sight
 from nao_sim_bridge.naoqi.vision.watching import Watching
 from nao_sim_bridge.vision.client import VisionProcess
 from nao_sim_bridge.vision.picture_features import SeenPicture
-from nao_sim_bridge.vision.picture_memory import MOST, KnownPicture, load, save
+from nao_sim_bridge.vision.picture_memory import MOST, KnownPicture, PictureFileError, load, save
 from nao_sim_bridge.world.pictures import read_picture_file
 
 DEFAULT_PATH, DEFAULT_NAME = "/home/nao/naoqi/.local/share/naoqi/vision/visionrecognition/", "current"
@@ -167,7 +169,7 @@ class ALVisionRecognition:
             if database not in (None, self._database):
                 return self._read(database)
             if self._pictures is None:
-                self._pictures = self._read(self._database)
+                self._pictures = self._first()
             return self._pictures
 
     def _change(self, database: str, change: Callable[[Tuple[KnownPicture, ...]], Tuple[KnownPicture, ...]]) -> None:
@@ -181,6 +183,18 @@ class ALVisionRecognition:
                 return
             self._pictures = changed
         self._forget()
+
+    def _first(self) -> Tuple[KnownPicture, ...]:
+        """Pictures of the first database, which nobody has named: one that cannot be used is put aside."""
+        place = self._files.folder / os.path.relpath(self._database, load_places()[0].path)
+        problem: Exception = BadValue(place.name, "no file", "a file")
+        try:
+            if not os.path.exists(place) or place.is_file():
+                return self._read(self._database)
+        except (PictureFileError, OSError, ValueError) as error:
+            problem = error
+        put_aside(place, problem, "no picture is known")
+        return ()
 
     def _read(self, database: str) -> Tuple[KnownPicture, ...]:
         try:
