@@ -209,6 +209,17 @@ def test_a_url_names_the_file_and_what_is_set_goes_there(infos, tmp_path):
         refused("camera_info_url is", path_of, url, NAME, lambda package: "/")
 
 
+@pytest.mark.parametrize("content", [b"{", b"\xff\xfe", b"image_width: .inf\nimage_height: 1\n", b"[" * 9999])
+def test_a_file_that_is_no_calibration_is_kept_when_one_is_set(infos, home, caplog, content):
+    path = home / "camera_info" / f"{NAME}.yaml"
+    path.parent.mkdir(parents=True)
+    path.write_bytes(content)
+    infos.set_fov(*FOV)
+    assert infos.of(320, 240).k == ideal(320, 240, *FOV).k and str(path) in caplog.text
+    assert infos.set(calibration()) == path and infos.of(320, 240).k == calibration().k
+    assert (path.parent / f"{NAME}.yaml.broken").read_bytes() == content
+
+
 def values(**changes):
     return {**{field.name: field.default for field in fields_of(1, 15.0, True, 0, False)}, **changes}
 

@@ -7,6 +7,7 @@ from simulator import PATIENCE
 
 from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.naoqi.users.users import USERS_FILE
+from nao_sim_bridge.vision.faces_features import DESCRIPTION_LENGTH
 
 FACE_EVENT, TRACKED = "FaceDetected", "ALBasicAwareness/HumanTracked"
 GAME = "com.example.game"
@@ -45,7 +46,7 @@ def learn(people, *names):
     import numpy as np
 
     for number, name in enumerate(names):
-        description = np.zeros(128, np.float32)
+        description = np.zeros(DESCRIPTION_LENGTH, np.float32)
         description[number] = 1.0
         assert people.learn(name, description)
 

@@ -84,7 +84,7 @@ class NaoAudioInput(NaoBasic):
         sounds = SoundFunctions(self, self.hearing, self._node.frame_prefix())
         self.add_parts(self.hearing, self.left, self.recogniser, self.card)
         self.add_parts(self.recordings, self.recognition, contexts, sounds, self.energies)
-        self._unrestored: dict[str, Any] | None = self.kept.load()  # what goals had left going, not taken up yet
+        self._unrestored: dict[str, Any] | None = self.kept.load(dict)  # what goals had left going, not taken up yet
         self.serve("nao_audio_in", NaoAudioInAction)
         if self._unrestored:
             self.robot.connection.in_background(self._take_up)

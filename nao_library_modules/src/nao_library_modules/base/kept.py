@@ -8,12 +8,18 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from .whole_file import FileTrouble, write_whole
+from naoqi.errors import NaoError
 
+from .whole_file import FileTrouble, put_aside, write_whole
+
+UNUSABLE = (NaoError, OSError, ValueError, TypeError, LookupError, ArithmeticError, AttributeError, RecursionError)
+"""What reading a file of anything may raise."""
 log = logging.getLogger(__name__)
+Read = TypeVar("Read")
 
 
 class Kept:
@@ -24,15 +30,22 @@ class Kept:
         self._run = run
         self._forgotten = False
 
-    def load(self) -> Any:
-        """What was kept in this run; None if nothing was, or it cannot be read."""
+    def load(self, read: Callable[[Any], Read]) -> Read | None:
+        """What `read` makes of what was kept in this run; None if nothing was.
+
+        A file that cannot be used is put aside, and nothing was kept.
+
+        Args:
+            read: Raises any of `UNUSABLE` where the value is not one that was saved.
+        """
         try:
             told = json.loads(self._path.read_text(encoding="utf-8"))
-            return told["kept"] if told["run"] == self._run else None
+            _encoded(told)
+            return read(told["kept"]) if told["run"] == self._run else None
         except FileNotFoundError:
             return None
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            log.warning("what was kept in %s cannot be read: %s", self._path, error)
+        except UNUSABLE as error:
+            put_aside(self._path, error, "this node begins without what was set up")
             return None
 
     def save(self, value: Any) -> None:
@@ -40,8 +53,8 @@ class Kept:
         if self._forgotten:
             return
         try:
-            write_whole(self._path, json.dumps({"run": self._run, "kept": value}))
-        except FileTrouble as error:
+            write_whole(self._path, _encoded({"run": self._run, "kept": value}))
+        except (FileTrouble, ValueError, RecursionError) as error:
             log.warning("if this node dies it will not know what was set up: %s", error)
 
     def forget(self) -> None:
@@ -49,3 +62,8 @@ class Kept:
         self._forgotten = True
         with contextlib.suppress(OSError):
             self._path.unlink()
+
+
+def _encoded(value: Any) -> bytes:
+    """The bytes of a file; a ValueError for numbers that are not finite and halves of characters."""
+    return json.dumps(value, ensure_ascii=False, allow_nan=False).encode()

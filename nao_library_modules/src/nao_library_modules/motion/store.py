@@ -10,9 +10,12 @@ import yaml
 from ..base.errors import BadGoal
 from ..base.suggestion import did_you_mean
 from ..base.whole_file import give_name, tidy, write_whole
+from ..base.yaml_values import Budget, load_within
 from .recorded_motion import RecordedMotion, motion_of
 
 SUFFIX = ".yaml"
+MOST_VALUES, DEEPEST = 10_000_000, 10
+"""Of a file: values, more than the longest recording of all joints has, and lists in each other."""
 # No separators and no dot in front: a name stays in the folder.
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. -]*")
 NAME_ALLOWED = "letters, digits, '_', '-', '.' and blanks, the first a letter, a digit or '_'"
@@ -48,7 +51,7 @@ class MotionStore:
             if path is None:
                 raise self._unknown(name)
         try:
-            content = yaml.safe_load(path.read_text(encoding="utf-8"))
+            content = load_within(path.read_text(encoding="utf-8"), Budget(MOST_VALUES, DEEPEST))
         except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
             raise BadGoal("str_param", name, "a recorded motion", problem=f"motion {name!r}: {error}") from error
         return motion_of(content, name)

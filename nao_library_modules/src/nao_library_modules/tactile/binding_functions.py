@@ -50,7 +50,7 @@ class BindingFunctions(Part):
         self.bindings = bindings
         self._kept = kept
         self._restoring = threading.Lock()
-        self.unrestored: Sequence[dict[str, Any]] = kept.load() or ()  # links that are not made again yet
+        self.unrestored: Sequence[dict[str, Any]] = kept.load(list) or ()  # links that are not made again yet
 
     def _check_link(
         self, str_param: str, touch: str, count: int, duration: float, behavior: str, context: dict[str, Any]

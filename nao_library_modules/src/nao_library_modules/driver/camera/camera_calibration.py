@@ -10,11 +10,15 @@ import yaml
 
 from naoqi.errors import NaoError
 
+from ...base.yaml_values import Budget, load_within
+
 Row = Tuple[float, ...]
 
 PLUMB_BOB = "plumb_bob"
 NO_DISTORTION = (0.0,) * 5
 NO_ROTATION = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+MOST_VALUES, DEEPEST = 1000, 10
+"""Of a file: values, and lists in each other."""
 SAME_SHAPE = 0.01
 """Share by which width over height may differ between two sizes of the same field of view."""
 MATRICES = {
@@ -92,7 +96,7 @@ def to_yaml(calibration: Calibration) -> str:
 def from_yaml(text: str) -> Calibration:
     """Calibration from the text of a file; raises NaoError if it holds none."""
     try:
-        content = yaml.safe_load(text)
+        content = load_within(text, Budget(MOST_VALUES, DEEPEST))
     except yaml.YAMLError as error:
         raise NaoError(f"it is no YAML: {error}") from error
     if not isinstance(content, dict):
@@ -102,7 +106,7 @@ def from_yaml(text: str) -> Calibration:
         rows = {attribute: _matrix(content, key, columns) for key, (attribute, _, columns) in MATRICES.items()}
     except KeyError as error:
         raise NaoError(f"it has no {error.args[0]}") from error
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise NaoError(f"it holds something else than numbers: {error}") from error
     model = str(content.get("distortion_model", PLUMB_BOB))
     return Calibration(width, height, model=model, name=str(content.get("camera_name", "")), **rows)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from naoqi.errors import NaoError
 
+from ...base.whole_file import put_aside
 from .camera_calibration import Calibration, ideal, scaled
 from .camera_info_files import path_of, read, sized, write
 
@@ -89,8 +90,9 @@ class CameraInfos:
             return False
         try:
             found = read(path, self._name)
-        except NaoError:
-            return False  # it is good for nothing, and may go
+        except NaoError as error:
+            put_aside(path, error, "another calibration takes its place")
+            return False
         return (found.width, found.height) != (calibration.width, calibration.height)
 
     def _find(self, width: int, height: int) -> tuple[Calibration, str] | None:

@@ -82,8 +82,8 @@ class NaoMemory:
         self._watch = MemoryWatch(robot, RosClock(), partial(MemoryTopic, node), largest)
         node.if_it_fails(self._watch.close)
         self._kept = node_file(self._node.name)
-        kept = self._kept.load()
-        self._watch.watch(rules if kept is None else [MemoryRule(**told) for told in kept])
+        kept = self._kept.load(_kept_rules)
+        self._watch.watch(rules if kept is None else kept)
         self._serve("~watch", WatchMemory, self._on_watch)
         self._serve("~unwatch", UnwatchMemory, self._on_unwatch)
         self._serve("~get", GetMemory, self._on_get)
@@ -187,3 +187,10 @@ class MemoryTopic(LazyTopic):
 
     def close(self) -> None:
         self._topic.unregister()
+
+
+def _kept_rules(kept: Any) -> list[MemoryRule]:
+    rules = [MemoryRule(**told) for told in kept]
+    for rule in rules:
+        rule.check()
+    return rules

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import Counter
+from typing import Any
 
 from ...base.kept import Kept
 
@@ -19,7 +20,7 @@ class WalkInhibition:
     def __init__(self, kept: Kept, own: str = "") -> None:
         self._lock = threading.Lock()
         self._kept = kept
-        self._holds: Counter[str] = Counter(kept.load() or {})
+        self._holds: Counter[str] = kept.load(_kept_holds) or Counter()
         self._holds.pop(own, None)
 
     def inhibit(self, owner: str) -> int:
@@ -61,3 +62,9 @@ class WalkInhibition:
     def against(self, node: str) -> list[str]:
         """The other nodes that keep a node from walking."""
         return [owner for owner in self.owners if owner != node]
+
+
+def _kept_holds(kept: Any) -> Counter[str]:
+    if not all(type(count) is int and count > 0 for count in kept.values()):
+        raise ValueError(f"{kept!r} does not count holds on walking")
+    return Counter(kept)

@@ -255,7 +255,7 @@ class StreamingFunctions(Part):
 
     def make_again(self) -> None:
         """Make the jobs again that the node had before it died; those that ran go on, recordings in a further file."""
-        for former in self._module.kept.load() or ():
+        for former in self._module.kept.load(list) or ():
             try:
                 job = self._job(**former["settings"])
                 self.jobs.add(job)
