@@ -24,7 +24,7 @@ from nao_library_modules.functions.message_fields import read_fields
 from nao_library_modules.functions.offline_module import offline_module
 from nao_library_modules.functions.server_types import server_type
 from nao_library_modules.motion.facts import MotionFacts
-from nao_library_modules.motion.gait import places
+from nao_library_modules.motion.gait import GaitRange, places, read_gait, steps
 from nao_library_modules.motion.joints import _key_angles
 from nao_library_modules.motion.stiffness import StiffnessFunctions
 from nao_library_modules.motion.walk import WalkFunctions
@@ -120,3 +120,48 @@ def test_no_function_takes_a_number_that_is_none_or_without_bounds(name):
             if not named:
                 taken.append((example.function, place, value, [str(p) for p in (*found.problems, *found.unchecked)]))
     assert not taken, "\n".join(map(str, taken))
+
+
+def refusal(check, *values):
+    with pytest.raises(BadGoal) as error:
+        check(*values)
+    return str(error.value)
+
+
+def test_a_number_out_of_the_bounds_of_its_field_is_refused_with_their_unit():
+    wrong, looked_at = [], 0
+    for server in offline_servers():
+        message = server_type(server.name).function
+        for function in server.table:
+            for name, field in fields_of(server.table[function], message.__slots__).items():
+                if field.unit and field.check and math.isfinite(field.maximum):
+                    looked_at += 1
+                    value = field.maximum * 2 + 1
+                    listed = read_fields(message._full_text)[name].type.endswith("]")
+                    told = refusal(field.require, name, [value] if listed else value)
+                    if "wx wy wz (Head)" in told:  # it takes a whole pose, so one number is too few
+                        told = refusal(field.require, name, [value] * 6)
+                    if field.unit.replace("Hz", "frames a second") not in told and field.unit not in told:
+                        wrong.append(f"{server.name} {function} {name} ({field.unit}): {told}")
+    assert looked_at > 50 and not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize(
+    "place, unit", [((1e3, 0, 0), "m"), ((0, -1e3, 0), "m"), ((0, 0, 90), "rad"), ((0, 0, math.nan), "rad")]
+)
+def test_of_a_place_x_and_y_are_in_m_and_theta_in_rad(place, unit):
+    ways = fields_of(WalkFunctions.move_to, ["values"])["values"]
+    assert f"to {100 if unit == 'm' else '3.1417'} {unit}" in refusal(ways.require, "values", place)
+    velocity = fields_of(WalkFunctions.move, ["values"])["values"]
+    assert f" {unit}/s (" in refusal(velocity.require, "values", place)
+    step = [beside + by for beside, by in zip((0.0, 0.1, 0.0), place)]
+    assert f" {unit}, seen from the other foot" in refusal(steps, ["LLeg"], step)
+
+
+@pytest.mark.parametrize(
+    "name, unit",
+    [("MaxStepX", "m"), ("MaxStepTheta", "rad"), ("TorsoWy", "rad"), ("MaxStepFrequency", "of the highest")],
+)
+def test_parameters_of_a_walk_are_refused_with_their_unit(name, unit):
+    told = refusal(read_gait, [name], [9.0], {name: GaitRange(0.1, 0.0, 0.5)}, False)
+    assert told.endswith(f"0 to 0.5 {unit}")

@@ -104,3 +104,51 @@ def test_the_table_tells_bounds_and_where_they_hold():
     assert "duration" in rows["time"].where and "ALAudioPlayer.goTo position" in rows["time"].where
     assert "field force" in rows["force"].where and "world mass" in rows["mass"].where
     assert sum(len(row.where) for row in rows.values()) > 150
+
+
+TOLD = {r"\bin (m|s|ms|rad|Hz|degC)\b": None, r"0\.\.1\b": "(0..1 is usual)", r"\b0 to 100\b|\bpercentage\b": "%"}
+"""How the summary of a method tells a unit -> the unit, where not as it stands there."""
+
+
+def units_in(summary):
+    """Units that a text names."""
+    return {unit or found for pattern, unit in TOLD.items() for found in re.findall(pattern, summary)}
+
+
+def test_a_unit_is_one_and_that_of_the_method():
+    """Also where methods call different things by one name: x is a way, a velocity or a share of one."""
+    assert not [kind.name for kind in kinds().values() if " or " in kind.unit or "%," in kind.unit]
+    for method, x, theta in (
+        ("ALMotion.moveTo", "m", "rad"), ("ALMotion.walkTo", "m", "rad"), ("ALMotion.stepTo", "m", "rad"),
+        ("ALNavigation.moveTo", "m", "rad"), ("ALNavigation.navigateTo", "m", "rad"),
+        ("ALMotion.move", "m/s", "rad/s"), ("ALNavigation.move", "m/s", "rad/s"),
+        ("ALMotion.moveToward", "(0..1 is usual)", "(0..1 is usual)"),
+        ("ALMotion.setWalkTargetVelocity", "(0..1 is usual)", "(0..1 is usual)"),
+    ):  # fmt: skip
+        module, name = method.split(".")
+        told = [limits.kind_of(module, name, parameter).unit for parameter in ("x", "y", "theta")]
+        assert told == [x, x, theta], method
+    with pytest.raises(BadValue, match="theta is .*, -1e.06 to 1e.06 rad$"):
+        fitted(module_methods("ALMotion")["moveTo"], [0.1, 0.0, 1e9], "ALMotion")
+    for what, unit in (("Velocity", "rad/s"), ("Acceleration", "rad/s²")):
+        assert limits.kind_of("ALTracker", f"setMaximum{what}", f"p{what}").unit == unit
+
+
+def test_a_method_whose_summary_tells_a_unit_has_a_number_of_that_unit():
+    looked_at, wrong = 0, []
+    for module in {*read_json(config_file(FILE)), *older_tables()["modules"]}:
+        methods = {} if module.startswith("_") else published_methods(module)
+        for name, method in methods.items():
+            numbers = {
+                parameter
+                for overload in method.overloads
+                for kind, parameter in zip(overload.types, overload.names)
+                if kind in ("int", "float") and parameter != "paramValue"  # of several parameters, each with a unit
+            }
+            told = units_in(method.summary)
+            if told and numbers and not name.startswith("get"):  # whose unit is that of the answer
+                looked_at += 1
+                units = {limits.kind_of(module, name, parameter).unit for parameter in numbers}
+                if not told <= units:
+                    wrong.append(f"{module}.{name}: {method.summary!r} has {told}, {numbers} are in {units}")
+    assert looked_at > 20 and not wrong, "\n".join(wrong)

@@ -89,9 +89,17 @@ def read_gait(
         limits = allowed[name]
         if not limits.lower - TOLERANCE <= value <= limits.upper + TOLERANCE:
             problem = f"{name} cannot be {value:g}"
-            raise BadGoal("gait_values", value, f"{limits.lower:.3g} to {limits.upper:.3g}", problem=problem)
+            bounds = f"{limits.lower:.3g} to {limits.upper:.3g} {_unit(name)}"
+            raise BadGoal("gait_values", value, bounds, problem=problem)
         pairs.append([name, float(value)])
     return pairs
+
+
+def _unit(name: str) -> str:
+    """Of a parameter of a walk; a frequency is a share of the highest."""
+    if name.endswith(FREQUENCY):
+        return "of the highest"
+    return "rad" if name.endswith(("Theta", "Wx", "Wy")) else "m"
 
 
 def walk_time(points: Sequence[Place], pairs: GaitPairs, ranges: Mapping[str, GaitRange]) -> float:
@@ -159,11 +167,12 @@ def steps(names: Sequence[str], values: Sequence[float]) -> list[list[float]]:
     rows = [list(values[i : i + 3]) for i in range(0, len(values), 3)]
     for leg, (x, y, theta) in zip(names, rows):
         across = STEP_Y if leg == LEGS[0] else (-STEP_Y[1], -STEP_Y[0])
-        ranges = (("x", x, STEP_X), ("y", y, across), ("theta", theta, (-STEP_THETA, STEP_THETA)))
-        for name, value, (least, most) in ranges:
+        ranges = (("x", x, STEP_X, "m"), ("y", y, across, "m"), ("theta", theta, (-STEP_THETA, STEP_THETA), "rad"))
+        for name, value, (least, most), unit in ranges:
             if not least - ROUNDING <= value <= most + ROUNDING:
                 problem = f"{name} of a step of {leg} cannot be {value:g}"
-                raise BadGoal("values", value, f"{least:g} to {most:g}, seen from the other foot", problem=problem)
+                allowed = f"{least:g} to {most:g} {unit}, seen from the other foot"
+                raise BadGoal("values", value, allowed, problem=problem)
     return rows
 
 

@@ -82,7 +82,7 @@ def _velocity(along: Limit, turn: Limit, what: str, field: Field) -> Field:
         require_count(name, values, 3, what)
         for axis, value, bounds in zip(("x", "y", "theta"), values, (along, along, turn)):
             if not abs(value) <= bounds.highest:
-                allowed = f"-{bounds.highest:.4g} to {bounds.highest:.4g} ({what})"
+                allowed = f"-{bounds.highest:.4g} to {bounds.highest:.4g} {bounds.unit} ({what})".replace("  ", " ")
                 raise BadGoal(name, value, allowed, problem=f"{axis} cannot be {value:g}")
 
     return field.but(check=check)
@@ -123,13 +123,13 @@ def _require_place(name: str, values: Sequence[float]) -> None:
 def _require_effector_goal(name: str, values: Sequence[float]) -> None:
     if len(values) not in (3, 6):
         raise BadGoal(name, list(values), GOAL_OF_EFFECTOR)
-    require_each(name, values, POSE_NUMBER)
+    require_each(name, values, POSE_NUMBER._replace(unit="m, rad"))
 
 
 # Effectors in space
 
-_POSES = numbers("pose", "x y z wx wy wz for each effector").but(unit="m, rad")
-_TRANSFORMS = numbers("pose", "rotation and translation for each effector: 12 numbers, row by row").but(unit="m")
+_POSES = numbers("pose", "x y z wx wy wz for each effector", "m, rad")
+_TRANSFORMS = numbers("pose", "rotation and translation for each effector: 12 numbers, row by row", "m")
 _PATH = "for each time, all of the first effector first"
 
 Parts = Annotated[List[str], NAMES.but(help=PARTS, allowed=PARTS, check=_require_named)]
