@@ -80,8 +80,8 @@ class VideoDeviceSettings:
     def getResolution(self, of: Any) -> int:
         if isinstance(of, str):
             return self._one(of).views[0].resolution
-        tables = self._cameras.tables
-        used = [stream.size for stream in self._cameras.streams if stream.camera == tables.camera(of)]
+        camera = self._cameras.tables.camera(of)
+        used = [stream.size for stream in self._cameras.streams if stream.camera == camera]
         return max(used, key=lambda size: size.width).id if used else IDLE_RESOLUTION
 
     @tells_success

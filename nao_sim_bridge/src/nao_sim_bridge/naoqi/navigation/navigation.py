@@ -73,8 +73,9 @@ class ALNavigation:
 
         As on a robot, a goal that is too far away is not gone to, and the log says so.
         """
-        theta = next((value for value in others if not isinstance(value, (list, tuple))), None)
-        config = next((value for value in others if isinstance(value, (list, tuple))), ())
+        *before, last = others or (None,)
+        is_config = bool(before) or isinstance(last, (list, tuple))
+        theta, config = ((before or [None])[0], last) if is_config else (last, ())
         goal, gait = FootPose(*_three(x, y, theta or 0.0)), gait_of(config)
         if math.hypot(x, y) >= FARTHEST_GOAL:
             log.warning("navigateTo: (%g, %g) is not gone to, allowed is a place nearer than %g m", x, y, FARTHEST_GOAL)

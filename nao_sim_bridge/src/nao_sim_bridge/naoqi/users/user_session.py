@@ -118,7 +118,8 @@ class ALUserSession:
         return source in self._users.domains
 
     def getUserData(self, number: int, name: str, source: str | None = None) -> Any:
-        """What a source says, or what all say by source."""
+        """What a source says, None if nothing, or what all say by source; an UnknownName when there is no such user."""
+        self._ask(lambda book: book.user(number))
         if source is not None:
             return self._users.values(source, number).get(name)
         found = {domain: self._users.values(domain, number) for domain in self._users.domains}
