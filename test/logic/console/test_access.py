@@ -166,6 +166,15 @@ def test_a_file_of_people_without_hashes_is_refused_with_its_lines(tmp_path):
         read_users(path)
 
 
+@pytest.mark.parametrize("content", [b"\xff\xfe", b"[" * 9999, b"ann: [1e999]", None])
+def test_a_file_of_people_that_cannot_be_read_lets_in_nobody_and_stays(tmp_path, content):
+    path = tmp_path / "people.yaml"
+    path.mkdir() if content is None else path.write_bytes(content)
+    with pytest.raises(ConsoleFileError, match="people.yaml"):
+        read_users(path)
+    assert path.is_dir() if content is None else path.read_bytes() == content
+
+
 def test_who_guesses_is_not_listened_to_for_a_while(people):
     now = [0.0]
     sessions = Sessions(read_users(people), clock=lambda: now[0])

@@ -15,8 +15,9 @@ from pathlib import Path
 from naoqi.errors import NaoError
 
 from ...base.whole_file import write_whole
+from ...behaviors.language.errors import Problem
 from ...behaviors.language.yaml_text import dump, line_in
-from ..files.yaml_file import FileReader
+from ..files.yaml_file import ConsoleFileError, FileReader
 
 OPERATOR, OBSERVER = "operator", "observer"
 ROLES = (OPERATOR, OBSERVER)
@@ -49,8 +50,12 @@ def hashed(password: str) -> str:
 
 
 def read_users(path: Path) -> Mapping[str, ConsoleUser]:
-    """The people of a file. Raises ConsoleFileError with all that is wrong with it, OSError if it cannot be read."""
-    reader = FileReader(path.read_text(encoding="utf-8"), path.name)
+    """The people of a file. Raises ConsoleFileError with all that is wrong with it; without them nobody is let in."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConsoleFileError(str(path), [Problem("", f"cannot be read: {error}")]) from error
+    reader = FileReader(text, path.name)
     users = {}
     for name, entry in reader.mapping(
         reader.content, "", reader.content if isinstance(reader.content, dict) else ()

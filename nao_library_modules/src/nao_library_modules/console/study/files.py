@@ -77,7 +77,7 @@ class StudyFiles:
         known = self.protocols()
         if name not in known:
             raise StudyError(f"there is no protocol {name!r}{of_those(name, known)}")
-        return known[name].read_text(encoding="utf-8")
+        return _text(known[name])
 
     def newest_protocol(self) -> str:
         """Name of the protocol of the trial that was begun last; empty if there is none, or its protocol has gone."""
@@ -132,8 +132,8 @@ class StudyFiles:
         path = self.folder / study / PARTICIPANTS
         if not path.is_file():
             return {}
-        numbers = load(path.read_text(encoding="utf-8"), path.name)
-        if not isinstance(numbers, dict) or not all(isinstance(number, int) for number in numbers.values()):
+        numbers = load(_text(path), path.name)
+        if not isinstance(numbers, dict) or not all(type(number) is int for number in numbers.values()):
             raise StudyError(f"{path} is to be a mapping of pseudonyms to numbers")
         return dict(numbers)
 
@@ -199,6 +199,14 @@ class StudyFiles:
         with file:
             fcntl.flock(file, fcntl.LOCK_EX)
             yield
+
+
+def _text(path: Path) -> str:
+    """The text of a file. Raises StudyError if it cannot be read: nobody gives numbers anew, or another protocol."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise StudyError(f"{path} cannot be read: {error}; mend it, or rename it to go on without it") from error
 
 
 def _require_name(name: str, what: str) -> None:
