@@ -159,6 +159,14 @@ def test_passwords_are_hashed_in_a_file_of_its_owner(people):
         add_user(people, "bob", OBSERVER, "short")
 
 
+@pytest.mark.parametrize("password", ["scrypt$A$A", "scrypt$$", "scrypt$AAAA", "plain"])
+def test_who_has_no_hash_that_can_be_read_is_refused_with_the_file(tmp_path, password):
+    path = tmp_path / "people.yaml"
+    path.write_text(f"ann:\n  role: operator\n  password: {password}\n")
+    with pytest.raises(ConsoleFileError, match=r"ann.password \(line 3\): no hash"):
+        read_users(path)
+
+
 def test_a_file_of_people_without_hashes_is_refused_with_its_lines(tmp_path):
     path = tmp_path / "people.yaml"
     path.write_text("ann:\n  role: king\n  password: plain\n")

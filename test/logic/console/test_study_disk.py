@@ -118,6 +118,18 @@ def test_a_log_that_ends_within_a_line_goes_on_behind_the_last_whole_one(tmp_pat
     assert [(event["n"], event["text"]) for event in read_events(left)] == [(1, "whole"), (2, "next")]
 
 
+@pytest.mark.parametrize(
+    "line", [b'{"n": 1e999}', b"[" * 100_000, b'{"n": null}', b"\xff"], ids=["infinite", "nested", "null", "bytes"]
+)
+def test_a_line_that_is_no_event_is_passed_over(tmp_path, line):
+    (tmp_path / EVENTS).write_bytes(b'{"n": 1, "text": "before"}\n' + line + b"\n")
+    log = TrialLog(tmp_path)
+    log.add({"text": "after"})
+    log.close()
+    texts = [event["text"] for event in read_events(tmp_path) if "text" in event]
+    assert texts == ["before", "after"]
+
+
 def test_events_that_find_no_room_in_the_end_are_counted(tmp_path, disk):
     log = TrialLog(tmp_path)
     disk.room = 0

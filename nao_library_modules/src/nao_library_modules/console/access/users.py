@@ -27,6 +27,9 @@ SHORTEST = 8
 _NAME = re.compile(r"[\w.@-]{1,40}")
 
 
+HASHED = re.compile(r"scrypt(\$(?=[^$])(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?){2}")
+
+
 @dataclass(frozen=True)
 class ConsoleUser:
     """A person who may log in. `password`: scrypt$SALT$HASH, both base64."""
@@ -63,7 +66,7 @@ def read_users(path: Path) -> Mapping[str, ConsoleUser]:
         fields = reader.mapping(entry, str(name), ("role", "password"), ("role", "password"))
         role = reader.choice(fields, "role", str(name), ROLES, OBSERVER)
         password = reader.text(fields, "password", str(name))
-        if not re.fullmatch(r"scrypt\$[A-Za-z0-9+/=]+\$[A-Za-z0-9+/=]+", password):
+        if not HASHED.fullmatch(password):
             reader.note(
                 f"{name}.password",
                 "no hash: `nao console --users FILE --add-user NAME` writes one",

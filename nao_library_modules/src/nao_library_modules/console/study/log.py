@@ -237,7 +237,7 @@ def read_events(folder: Path) -> list[dict[str, Any]]:
     for line in content.split(b"\n")[:-1]:
         try:
             event = json.loads(line)
-        except ValueError:
+        except (ValueError, RecursionError):
             continue
         if isinstance(event, dict):
             events.append(event)
@@ -287,7 +287,7 @@ def _whole_part(path: Path) -> tuple[int, int]:
     for line in content[:whole].splitlines()[-2:]:
         try:
             numbers.append(int(json.loads(line)["n"]))
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             numbers.append(content[:whole].count(b"\n"))
     return whole, max(numbers)
 
