@@ -260,7 +260,7 @@ def test_time_does_not_wait_for_one_that_hangs_which_loses_the_oldest_blocks(rob
     device.subscribe("Hangs")
     robot.advance(2 * BLOCK)
     first = hanging.blocks(1)[0][2]
-    monkeypatch.setattr(microphone_clients, "PATIENCE", 0.0)
+    monkeypatch.setattr(microphone_clients, "HANGS", 0.0)
     robot.advance(8.0)
     hanging.may_return.set()
     newest = [time for _, _, time, _ in hanging.blocks(WAITING)]

@@ -111,6 +111,8 @@ class ClientSizes:
     """Of what waits for clients and is kept for them; the file says what each is."""
 
     stuck_s: float
+    found_s: float
+    held_up_s: float
     calls: int
     call_s: float
     changes: int

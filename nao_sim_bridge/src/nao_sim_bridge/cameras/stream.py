@@ -17,7 +17,7 @@ from nao_sim_bridge.cameras.settings import CameraTables, ColorSpace, Resolution
 
 log = logging.getLogger("nao_sim.cameras")
 
-PATIENCE = 10.0
+HELD_UP = load_sizes().clients.held_up_s
 """Wall time, s: time that runs fast waits no longer than this for somebody who has got a frame to ask for the next."""
 MOST_ASKS = load_sizes().clients.frames
 """How many frames may be asked for before the first of them is there."""
@@ -234,7 +234,7 @@ class CameraStream:
         if not self.every:
             return False
         owes = self._owes_since
-        if owes is not None and time.monotonic() - owes > PATIENCE:
+        if owes is not None and time.monotonic() - owes > HELD_UP:
             return False
         return bool(self._pending) or self._drawing > 0 or (owes is not None and self._had_one)
 

@@ -25,7 +25,7 @@ CALLER_IDLE = 20.0
 # Calls that wait for a client's module; with more it loses the oldest.
 WAITING = load_sizes().clients.calls
 # How long a module may take to be found, s: one of a program that has stopped is never connected to.
-PATIENCE = 10.0
+FOUND = load_sizes().clients.found_s
 # libqi reports each service it registers, and warns that it deduces paths it has no use for here.
 QUIET_LIBQI = "qi.path.sdklayout=silent:qimessaging.servicedirectory=warning"
 
@@ -111,7 +111,7 @@ class Broker:
         A RuntimeError when there is none, or its program does not answer.
         """
         found = self._session.service(module, _async=True)
-        return answer(found, threading.Condition(), lambda: True, PATIENCE)
+        return answer(found, threading.Condition(), lambda: True, FOUND)
 
     def names(self) -> list[str]:
         """All services that there are, of the simulator and of clients."""

@@ -7,13 +7,14 @@ from typing import Any
 
 import qi
 
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.background import Background
 from nao_sim_bridge.naoqi.binding.client_calls import answer
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import EVENT, MICRO_EVENT, MemoryStore
 
-PATIENCE = 10.0
+FOUND = load_sizes().clients.found_s
 """s of wall time that a client's service has to have its signal connected to."""
 
 
@@ -214,7 +215,7 @@ class ALMemory:
         connecting = raising.connect(
             lambda *values: self._store.raise_event(event, _one(values), by_client=True), _async=True
         )
-        link = answer(connecting, threading.Condition(), lambda: True, PATIENCE)
+        link = answer(connecting, threading.Condition(), lambda: True, FOUND)
         self._mappings[service, signal, event] = raising, link
 
 

@@ -25,7 +25,7 @@ METHOD, OLDER_METHOD = "processRemote", "processSoundRemote"
 # Blocks that wait for a client, at 170 ms each; it loses the oldest when it is that far behind.
 WAITING = load_sizes().clients.sound_blocks
 # Wall time, s: how long one call may take before the client counts as hanging, and its time is not waited for any more.
-PATIENCE = 5.0
+HANGS = load_sizes().clients.held_up_s
 # While time runs faster than real time, it waits for a client with more blocks than this before it.
 HELD_UP = 2
 
@@ -174,7 +174,7 @@ class _Client:
     def behind(self) -> bool:
         """Whether time should wait for it, where time can wait."""
         called = self._called
-        hangs = called > 0.0 and time.monotonic() - called > PATIENCE
+        hangs = called > 0.0 and time.monotonic() - called > HANGS
         return len(self._blocks) > HELD_UP and not hangs
 
     def listen(self, wanted: MicrophoneFormat) -> None:
