@@ -5,9 +5,9 @@ import signal
 import subprocess
 import sys
 
-from nao_library_modules.ros.startup_grace import PATIENCE
+from naoqi.limits import START_PATIENCE
 
-LIMIT = PATIENCE + 30.0
+LIMIT = START_PATIENCE + 30.0
 """s of a wait; a goal to a robot that has never been there waits for it first."""
 PORT = int(os.environ.get("NAO_PORT", "9559"))
 

@@ -30,11 +30,12 @@ from .errors import (
 if TYPE_CHECKING:
     from .broker import ALBroker
     from .calls import Call
+    from .limits import Timing
     from .module import ALModule
     from .proxy import ALProxy
     from .registry import close_all, connection
     from .robot_connection import Connection
-    from .state import State, Timing
+    from .state import State
 
 __all__ = [
     "ALBroker",
@@ -66,7 +67,7 @@ _HOMES = {
     "Call": "calls",
     "Connection": "robot_connection",
     "State": "state",
-    "Timing": "state",
+    "Timing": "limits",
     "close_all": "registry",
     "connection": "registry",
 }

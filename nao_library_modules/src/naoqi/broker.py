@@ -7,8 +7,8 @@ import threading
 from typing import Any, Dict, List, Optional
 
 from .errors import BrokerError, NaoError
-from .registry import CONNECT_TIMEOUT, connection
-from .serving_session import STEP_LIMIT, ServingSession
+from .registry import connection
+from .serving_session import ServingSession
 from .state import State
 from .worker import Worker
 
@@ -34,7 +34,7 @@ class ALBroker:
         robot_ip: str,
         robot_port: int,
         *,
-        connect_timeout: float = CONNECT_TIMEOUT,
+        connect_timeout: Optional[float] = None,
     ) -> None:
         """Connect to the robot and listen.
 
@@ -44,7 +44,7 @@ class ALBroker:
             listen_ip: Own address on which the robot can call back; `""` is the one towards the robot, `0.0.0.0`
                 means all. A robot that runs on this computer is served on the loopback address only.
             listen_port: Own TCP port; 0 takes a free one.
-            connect_timeout: Limit of the wait for the robot, in s.
+            connect_timeout: Limit of the wait for the robot, in s; None: the patience of the connection.
         """
         self._name = name
         self._listen_port = listen_port
@@ -194,7 +194,7 @@ class ALBroker:
         with self._lock:
             for name, served in self._modules.items():
                 try:
-                    self._session.register(name, served, patience=STEP_LIMIT)
+                    self._session.register(name, served, patience=self.connection.timing.patience)
                     done.append(name)
                 except NaoError as error:
                     logger.error("%s", error)

@@ -13,6 +13,7 @@ import qi
 
 from . import wire
 from .errors import CallTimeout
+from .limits import wait_while_answering
 
 if TYPE_CHECKING:
     from .remote import RemoteMethod
@@ -47,7 +48,8 @@ class Call:
         Returns what the method returned; raw data is `bytes`.
 
         Args:
-            timeout: Limit of the wait in s; None waits as long as the connection lives.
+            timeout: Limit of the wait in s, without the time in which the robot answers nothing at all, see `limits`;
+                None waits as long as the connection lives.
 
         Raises:
             CallTimeout: If the call still runs after the limit. It goes on; `cancel` ends it.
@@ -118,11 +120,16 @@ class Call:
             if time.monotonic() >= deadline:
                 return False
 
+    def _ends_within(self, limit: float) -> bool:
+        return wait_while_answering(self._wait, self.method.module.connection.answering_time, limit)
+
     def _late_value(self, error: RuntimeError, timeout: Optional[float], waited_ms: int) -> Any:
         """The value after the first wait raised: either the call failed, or it takes longer."""
         if str(error) == NOT_YET:
-            if not self._wait(None if timeout is None else max(0.0, timeout - 0.001 * waited_ms)):
-                raise CallTimeout(self.method.module.name, self.method.name, timeout or 0.0) from None
+            if timeout is None:
+                self._wait(None)
+            elif not self._ends_within(max(0.0, timeout - 0.001 * waited_ms)):
+                raise CallTimeout(self.method.module.name, self.method.name, timeout) from None
             try:
                 return self._future.value()
             except RuntimeError as late_error:

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING, Any, List
 
 from .errors import NaoError, RobotUnreachable
-from .session import Live, answered
+from .limits import ANSWER_LIMIT, READY_LIMIT, START_LIMIT
+from .session import Live
 from .translate import is_unknown_service, unknown_module
 
 if TYPE_CHECKING:
     from .robot_connection import Connection
 
-READY_LIMIT = 1.0
-"""Time in s that a registered module may take until it can be called."""
-START_LIMIT = 0.5
-"""Time in s after the connection within which a module may appear: a starting robot registers them in turn."""
-
 
 def module_names(connection: Connection, live: Live) -> List[str]:
     """Names of all modules of the robot. Raises RobotUnreachable if it does not answer."""
     future = live.session.services(_async=True)
-    if not answered(future, connection.timing.connect_limit) or future.hasError():
+    if not connection.answered(future, ANSWER_LIMIT) or future.hasError():
         raise connection.unreachable()
     return [each["name"] for each in future.value()]
 
@@ -32,22 +27,24 @@ def find_module(connection: Connection, live: Live, name: str) -> Any:
     Raises RobotUnreachable if the connection does not answer, UnknownModule if the robot has no module of that name,
     NaoError if the module exists but cannot be called.
     """
-    end, delay = time.monotonic() + READY_LIMIT, 0.005
+    end, delay = connection.answering_time() + READY_LIMIT, 0.005
     while True:
         future = live.session.service(name, _async=True)
-        if not answered(future, connection.timing.connect_limit):
+        if not connection.answered(future, ANSWER_LIMIT):
+            if live is not connection.live:
+                raise connection.unreachable()
             reason = f"no answer to the question where module {name} is"
             raise RobotUnreachable(connection.host, connection.port, reason)
         if not future.hasError():
             return future.value()
         text = future.error().strip()
         if is_unknown_service(text):
-            if time.monotonic() < live.connected_at + START_LIMIT and not live.broken.wait(delay):
+            if connection.answering_time() < live.connected_at + START_LIMIT and not live.broken.wait(delay):
                 continue
             raise unknown_module(name, connection.host, connection.port, module_names(connection, live))
         if live is not connection.live or not live.session.isConnected():
             raise connection.unreachable()
         # The module has just been registered, or is being unregistered.
-        if time.monotonic() >= end or live.broken.wait(delay):
+        if connection.answering_time() >= end or live.broken.wait(delay):
             raise NaoError(f"NAOqi at {connection.address} gave no access to module {name}: {text}")
         delay *= 2.0

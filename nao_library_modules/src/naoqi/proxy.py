@@ -8,7 +8,8 @@ from . import introspection
 from .broker import current_broker
 from .calls import Call
 from .errors import BadArguments
-from .registry import CONNECT_TIMEOUT, connection
+from .limits import Timing
+from .registry import connection
 from .remote import ANSWERED_BY_ALL, RemoteMethod, RemoteModule
 from .robot_connection import Connection
 
@@ -32,7 +33,8 @@ class ALProxy:
         port: Optional[int] = None,
         *,
         timeout: Optional[float] = None,
-        connect_timeout: float = CONNECT_TIMEOUT,
+        connect_timeout: Optional[float] = None,
+        patience: Optional[float] = None,
         lazy: bool = False,
     ) -> None:
         """Find the module.
@@ -43,19 +45,23 @@ class ALProxy:
         Args:
             name: NAOqi's name of the module, such as `ALMotion`.
             ip: Without it, the robot of the newest ALBroker.
-            timeout: Limit of each waiting call, in s. None waits as long as the connection lives.
-            connect_timeout: Limit of the wait for the robot, in s.
+            timeout: Limit of each waiting call, in s, without the time in which the robot is silent. None waits as long
+                as the connection lives.
+            connect_timeout: Limit of the wait for the robot, in s; None: the patience.
+            patience: A robot that is silent so long, in s, is lost: calls under way fail. Of all proxies of this robot;
+                without one it stays as it is, 10 s at first.
             lazy: Connect in the background; until that succeeds, calls fail at once.
         """
         if not isinstance(name, str) or not name:
             reason = "the first is the name of a module"
             raise BadArguments("naoqi", "ALProxy", (name, ip, port), reason=reason)
+        timing = None if patience is None else Timing(patience=patience)
         if ip is None:
             robot = current_broker().connection
-        elif port is None:
-            robot = connection(ip, wait=not lazy, connect_timeout=connect_timeout)
+            robot.timing = timing or robot.timing
         else:
-            robot = connection(ip, port, wait=not lazy, connect_timeout=connect_timeout)
+            address = (ip,) if port is None else (ip, port)
+            robot = connection(*address, wait=not lazy, connect_timeout=connect_timeout, timing=timing)
         self._remote = RemoteModule(name, robot, timeout)
         self.post = Post(self._remote)
         if not lazy:

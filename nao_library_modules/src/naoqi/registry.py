@@ -7,16 +7,12 @@ import threading
 from typing import Dict, Optional, Tuple
 
 from .errors import BadArguments, RobotUnreachable
+from .limits import DEFAULT_TIMING, IDLE_LIMIT, Timing
 from .native_threads import wait_until_idle
 from .robot_connection import Connection
-from .state import State, Timing
+from .state import State
 
 DEFAULT_PORT = 9559
-CONNECT_TIMEOUT = 5.0
-"""Limit of the wait for a robot, in s."""
-DEFAULT_TIMING = Timing()
-IDLE_LIMIT = 0.5
-"""So long the end of the program waits for libqi to have put everything away, in s."""
 
 
 class Registry:
@@ -28,7 +24,7 @@ class Registry:
         self._wanted: Dict[Connection, int] = {}
         self._closed_at_exit = False
 
-    def get(self, host: str, port: int, wait: bool, limit: float, timing: Timing) -> Connection:
+    def get(self, host: str, port: int, wait: bool, limit: Optional[float], timing: Optional[Timing]) -> Connection:
         """The connection to an address; see `connection`."""
         with self._lock:
             if not self._closed_at_exit:
@@ -37,11 +33,13 @@ class Registry:
             found: Optional[Connection] = self._connections.get((host, port))
             if found is None or found.state is State.CLOSED:
                 self._wanted.pop(found, None)
-                found = self._connections[host, port] = Connection(host, port, timing)
+                found = self._connections[host, port] = Connection(host, port, timing or DEFAULT_TIMING)
+            elif timing is not None:
+                found.timing = timing
             self._wanted[found] = self._wanted.get(found, 0) + 1
         if wait:
             try:
-                found.connect(limit)
+                found.connect(found.timing.patience if limit is None else limit)
             except RobotUnreachable:
                 self._give_up(found)
                 raise
@@ -81,8 +79,8 @@ def connection(
     port: int = DEFAULT_PORT,
     *,
     wait: bool = True,
-    connect_timeout: float = CONNECT_TIMEOUT,
-    timing: Timing = DEFAULT_TIMING,
+    connect_timeout: Optional[float] = None,
+    timing: Optional[Timing] = None,
 ) -> Connection:
     """The connection to the NAOqi at an address, opened by the first who asks.
 
@@ -93,8 +91,8 @@ def connection(
         port: TCP port of NAOqi.
         wait: Whether to wait until it stands. Without, it is opened in the background, again and again until
             the robot is there; calls made before then fail at once.
-        connect_timeout: Limit of the wait, in s.
-        timing: How patient the connection is; the first who asks for it decides.
+        connect_timeout: Limit of the wait, in s; None: the patience of the connection.
+        timing: How patient the connection is, for all who share it; the last that was given counts.
     """
     reason = ""
     if not isinstance(ip, str) or not ip.strip():

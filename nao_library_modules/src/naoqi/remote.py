@@ -175,6 +175,7 @@ class RemoteMethod:
             call.arguments,
             self._readable,
             self._method_names,
+            connection.last_error if connection.state == "lost" else "",
         )
         return call_error(raised, site)
 

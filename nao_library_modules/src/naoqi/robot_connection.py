@@ -1,22 +1,25 @@
 """The connection to one robot: opened, watched, and opened again for as long as the program wants it.
 
-Threads: a watching thread opens the session, measures its heartbeat and closes it when the robot is silent.
-A second one calls the listeners, so that a slow listener cannot delay the heartbeat. `live` is the one thing
+Threads: a watching thread opens the session, measures its heartbeat and closes it when the robot is silent for too
+long. A second one calls the listeners, so that a slow listener cannot delay the heartbeat. `live` is the one thing
 that calls read, a single reference that changes in one step; everything else is guarded by one condition.
 """
 
 from __future__ import annotations
 
 import logging
+import math
 import threading
 import time
 from typing import Any, Callable, List, Optional, Tuple
 
 from . import directory
+from .calls import RUNNING
 from .errors import RobotUnreachable
+from .limits import BOOT_LIMIT, EXIT_LIMIT, FLUSH_LIMIT, Timing
 from .presence import Presence
-from .session import Live, answered, open_live, watch_starts
-from .state import Listener, Listeners, State, Timing
+from .session import Live, open_live, watch_starts
+from .state import Listener, Listeners, State
 from .subscriptions import EventSubscriptions
 from .tasks import TaskTable
 from .translate import connect_reason
@@ -25,13 +28,8 @@ logger = logging.getLogger("naoqi")
 
 Witness = Callable[[str, str, Tuple[Any, ...]], Optional[Callable[[Any], None]]]
 
-FLUSH_LIMIT = 0.5
-"""So long `close` waits for the robot to have received everything, in s."""
-EXIT_LIMIT = 1.0
-"""So long `close` waits for calls that must end because it has closed the session, in s."""
-
-BOOT_LIMIT = 120.0
-"""So long after the connection ALMemory is looked for, to hear of a new start of NAOqi, in s."""
+SLICE_MS = 100
+"""Wait for an answer, in ms, until it is seen whether the session still stands."""
 
 
 class Connection:
@@ -40,6 +38,7 @@ class Connection:
     Attributes:
         host: Name or address of the robot.
         port: TCP port of NAOqi.
+        timing: How patient it is; may be replaced at any time.
         live: The session while there is one, else None.
         generation: How many sessions there have been.
         latency: Round trip of the last heartbeat in s; None while not connected.
@@ -68,6 +67,9 @@ class Connection:
         self._failed_attempts = 0
         self._complained = False
         self._check = ""
+        self._silent_since: Optional[float] = None
+        self._answering: Tuple[float, Optional[float], float] = (0.0, time.monotonic(), math.inf)
+        """s counted so far; since when more is counted, None while it is not; how much of it counts at most."""
         self._opening: Optional[Live] = None
         self._closing = threading.Event()
         self._listeners = Listeners(f"naoqi listeners {self.address}")
@@ -77,7 +79,7 @@ class Connection:
         self._watcher.start()
 
     def __repr__(self) -> str:
-        return f"<Connection {self.address} {self._state}>"
+        return f"<Connection {self.address} {'silent' if self.silent else self._state}>"
 
     @property
     def address(self) -> str:
@@ -88,13 +90,30 @@ class Connection:
     def state(self) -> State:
         return self._state
 
-    def add_listener(self, listener: Listener) -> None:
+    @property
+    def silent(self) -> float:
+        """How long a connected robot has answered nothing, s, if that is longer than `timing.silence`; else 0.
+
+        Calls under way and new ones wait for it, until it answers or the connection is lost.
+        """
+        since = self._silent_since
+        return 0.0 if since is None else time.monotonic() - since
+
+    def answering_time(self) -> float:
+        """A clock, s, that stands still while a connected robot owes an answer, and while this program is stopped.
+
+        Limits of answers are counted by it: a silent robot is the matter of `timing.patience`.
+        """
+        counted, since, most = self._answering
+        return counted if since is None else counted + min(time.monotonic() - since, most)
+
+    def add_listener(self, listener: Listener, silence: bool = False) -> None:
         """Have a function called with the new state at each later change, from a thread of this connection.
 
         Listeners are called one after the other, in the order in which they were added. They may make remote
-        calls; what they raise is logged.
+        calls; what they raise is logged. `silence`: call it also when `silent` begins or ends.
         """
-        self._listeners.add(listener)
+        self._listeners.add(listener, silence)
 
     def remove_listener(self, listener: Listener) -> None:
         """Call this function no more; one that was never added is no error."""
@@ -172,6 +191,17 @@ class Connection:
         if live is not None:
             live.services.pop(name, None)
 
+    def answered(self, future: Any, limit: float) -> bool:
+        """Wait for a future of libqi while there is a session.
+
+        `limit`: in s of `answering_time`. Returns whether it is finished.
+        """
+        end = self.answering_time() + limit
+        while future.wait(SLICE_MS) == RUNNING:
+            if self.live is None or self.answering_time() >= end:
+                return False
+        return True
+
     def module_names(self) -> List[str]:
         """Names of all modules the robot has. Raises RobotUnreachable if there is no session."""
         live = self.live
@@ -191,10 +221,11 @@ class Connection:
             # Requests leave in order, so an answered one proves that posts and cancellations have arrived.
             live.heartbeat(_async=True).wait(int(1000.0 * FLUSH_LIMIT))
             live.broken.set()
+            live.session.close()  # what the watching thread waits for fails, also when the robot is silent
         if opening is not None:
             opening.close()
         if threading.current_thread() is not self._watcher:
-            self._watcher.join(self.timing.heartbeat_limit + 1.0)
+            self._watcher.join(EXIT_LIMIT)
         self._listeners.close()
         self.presence.wait_until_empty(EXIT_LIMIT)
 
@@ -226,7 +257,7 @@ class Connection:
 
     def _open(self) -> Live:
         try:
-            return open_live(self.host, self.port, self.timing.connect_limit, self._announce)
+            return open_live(self.host, self.port, self.timing.patience, self._announce)
         finally:
             with self._condition:
                 self._opening = None
@@ -244,25 +275,64 @@ class Connection:
             logger.warning("connection to NAOqi at %s is back after %.1f s", self.address, seconds)
         else:
             logger.debug("connected to NAOqi at %s", self.address)
+        live.connected_at = self.answering_time()
         self._change(State.CONNECTED, live)
 
     def _watch(self, live: Live) -> str:
         """Exchange heartbeats until the session ends; return why it did."""
         while True:
             sent = time.monotonic()
+            self._answering = (self.answering_time(), None, 0.0)
             future = live.heartbeat(_async=True)
-            if not answered(future, self.timing.heartbeat_limit):
-                return f"no heartbeat for {self.timing.heartbeat_limit:g} s"
+            if not self._answered(future):
+                return f"silent for {self.timing.patience:g} s"
             if future.hasError():
                 return future.error().rstrip(".").lower()
-            self.latency = time.monotonic() - sent
-            if live.start_watch is None and sent < live.connected_at + BOOT_LIMIT:
-                watch_starts(live, self.timing.heartbeat_limit)
+            answered = time.monotonic()
+            self.latency = answered - sent
+            self._answering = (self._answering[0], answered, 2.0 * self.timing.heartbeat_period)
+            self._note_silence(None)
+            if live.start_watch is None and self.answering_time() < live.connected_at + BOOT_LIMIT:
+                watch_starts(live, self.timing.silence)
             if self._closing.is_set() or live.broken.wait(self.timing.heartbeat_period):
                 return "NAOqi has started again" if live.has_restarted else "closed by the robot"
 
+    def _answered(self, future: Any) -> bool:
+        """Wait for the answer to a heartbeat, and tell of silence; False if the patience is over.
+
+        Parts are counted, and not the clock read: a program that was itself stopped for a while finds the time over and
+        the answer waiting, and needs only a moment to read it.
+        """
+        sent, waited, part = time.monotonic(), 0.0, self.timing.heartbeat_period
+        while future.wait(int(1000.0 * part)) == RUNNING:
+            waited += part
+            if waited >= self.timing.patience or self._closing.is_set():
+                return False
+            if waited >= self.timing.silence:
+                self._note_silence(sent)
+        return True
+
+    def _note_silence(self, since: Optional[float]) -> None:
+        """The robot is silent since then, or (None) answers; only a change is told."""
+        before = self._silent_since
+        if (since is None) == (before is None):
+            return
+        with self._condition:
+            self._silent_since = since
+            self._listeners.tell(self._state, silence=True)
+        if before is None:
+            logger.warning(
+                "NAOqi at %s has not answered for %.1f s: calls wait for it, up to %g s",
+                self.address,
+                self.silent,
+                self.timing.patience,
+            )
+        else:
+            logger.warning("NAOqi at %s answers again, after %.1f s", self.address, time.monotonic() - before)
+
     def _leave(self, live: Live, reason: str) -> None:
-        self.latency = None
+        self.latency = self._silent_since = None
+        self._answering = (self.answering_time(), time.monotonic(), math.inf)
         if self._closing.is_set():
             self.live = None
         else:

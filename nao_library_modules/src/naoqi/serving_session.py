@@ -5,12 +5,12 @@ from __future__ import annotations
 import logging
 import socket
 import threading
-import time
 from typing import TYPE_CHECKING, Any, Callable, Dict, Optional
 
 from .errors import BrokerError, NaoError, RobotUnreachable
+from .limits import ANSWER_LIMIT
 from .remote import ANSWERED_BY_ALL, RemoteModule
-from .session import Live, answered, connect_session
+from .session import Live, connect_session
 
 if TYPE_CHECKING:
     from .robot_connection import Connection
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 logger = logging.getLogger("naoqi")
 
 ANY_ADDRESS = "0.0.0.0"
-STEP_LIMIT = 5.0
-"""Time limit of each step of registering a module, in s."""
 NAME_IN_USE = "already registered"
 
 
@@ -82,7 +80,7 @@ class ServingSession:
         robot, generation = self._connection, self._connection.generation
         try:
             live.session.listen(f"tcp://{self.host}:{port}")
-            connect_session(live.session, robot.host, robot.port, robot.timing.connect_limit)
+            connect_session(live.session, robot.host, robot.port, robot.timing.patience)
         except RobotUnreachable:
             live.close()
             raise
@@ -105,10 +103,11 @@ class ServingSession:
         A robot that was silent for a while may learn late that our former session is gone. Raises BrokerError if the
         name is taken, or the module cannot be called; RobotUnreachable if the robot does not answer.
         """
-        end, delay = time.monotonic() + patience, 0.05
+        clock, delay = self._connection.answering_time, 0.05
+        end = clock() + patience
         while True:
             future = self._live.session.registerService(name, served, _async=True)
-            if not answered(future, STEP_LIMIT):
+            if not self._connection.answered(future, ANSWER_LIMIT):
                 reason = f"no answer to the registration of {name}"
                 raise RobotUnreachable(self._connection.host, self._connection.port, reason)
             if not future.hasError():
@@ -118,7 +117,7 @@ class ServingSession:
             text = future.error().strip()
             if NAME_IN_USE not in text:
                 raise BrokerError(self._broker, f"module {name!r} cannot be registered: {text}")
-            if time.monotonic() >= end or self._down.wait(delay):
+            if clock() >= end or self._down.wait(delay):
                 raise BrokerError(self._broker, f"the robot has a module {name!r} already; choose another name")
             logger.info("broker %s: the name %s is still taken; trying again", self._broker, name)
             delay = min(2.0 * delay, 0.5)
@@ -127,19 +126,20 @@ class ServingSession:
         """Take a module back; one that is not registered is no error."""
         service_id = self._service_ids.pop(name, None)
         if service_id is not None and self._live is not None:
-            answered(self._live.session.unregisterService(service_id, _async=True), STEP_LIMIT)
+            self._connection.answered(self._live.session.unregisterService(service_id, _async=True), ANSWER_LIMIT)
 
     def _wait_until_served(self, name: str) -> None:
         """Wait until the module answers; for some ms after its registration libqi may still refuse calls."""
-        module = RemoteModule(name, self._connection, STEP_LIMIT)
-        end, delay = time.monotonic() + STEP_LIMIT, 0.005
+        module = RemoteModule(name, self._connection, ANSWER_LIMIT)
+        clock, delay = self._connection.answering_time, 0.005
+        end = clock() + ANSWER_LIMIT
         while True:
             try:
                 self._connection.forget_service(name)  # of a module that had the name before
                 module.method(ANSWERED_BY_ALL)()
                 return
             except NaoError as error:
-                if time.monotonic() >= end or self._down.wait(delay):
+                if clock() >= end or self._down.wait(delay):
                     raise BrokerError(self._broker, f"module {name!r} does not answer: {error}") from error
                 delay = min(2.0 * delay, 0.5)
 

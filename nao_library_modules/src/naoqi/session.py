@@ -31,7 +31,7 @@ class Live:
         broken: Set when libqi reports the end of the session, and when the program wants it.
         services: Remote objects found so far, by name.
         lookups: Held while a remote object is looked for, by name.
-        connected_at: Monotonic time of its connection, in s.
+        connected_at: When it was connected, in s of `Connection.answering_time`.
         start_watch: Tells when NAOqi starts again behind this session; None while that cannot be known.
     """
 
@@ -139,7 +139,6 @@ def open_live(host: str, port: int, limit: float, announce: Callable[[Live], Non
         future = live.session.service("ServiceDirectory", _async=True)
         directory = _value(future, host, port, deadline - time.monotonic())
         live.heartbeat = directory.machineId
-        live.connected_at = time.monotonic()
         watch_starts(live, deadline - time.monotonic())
         return live
     except RobotUnreachable:

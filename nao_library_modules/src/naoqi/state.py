@@ -1,12 +1,11 @@
-"""Where a connection stands, who wants to hear of it, and how patient it is."""
+"""Where a connection stands, and who wants to hear of it."""
 
 from __future__ import annotations
 
 import enum
 import logging
 import threading
-from dataclasses import dataclass
-from typing import Callable, List, Sequence
+from typing import Callable, Dict, Sequence
 
 from .worker import Worker
 
@@ -14,7 +13,10 @@ logger = logging.getLogger("naoqi")
 
 
 class State(str, enum.Enum):
-    """Where a connection stands; equal to its text, so `connection.state == "connected"` works."""
+    """Where a connection stands; equal to its text, so `connection.state == "connected"` works.
+
+    A connected robot may be silent for a while: see `Connection.silent`.
+    """
 
     CONNECTING = "connecting"
     CONNECTED = "connected"
@@ -23,23 +25,6 @@ class State(str, enum.Enum):
 
     def __str__(self) -> str:
         return self.value
-
-
-@dataclass(frozen=True)
-class Timing:
-    """How patient a connection is, all in s.
-
-    A silent robot is given up `heartbeat_period + heartbeat_limit` after its last sign of life at the latest,
-    so the defaults make calls under way fail within 2 s. Raise the limit where a slow network carries large
-    images: the answer to a heartbeat has to wait behind them.
-    """
-
-    heartbeat_period: float = 0.3  # pause between two heartbeats
-    heartbeat_limit: float = 1.3  # a heartbeat must be answered within this time
-    connect_limit: float = 5.0  # an attempt to connect is given up after this time
-    first_delay: float = 0.2  # pause after the first failed attempt; it doubles with each further one
-    longest_delay: float = 2.0  # longest pause between two attempts
-    patience: float = 10.0  # a robot that has not been reached for so long is complained about in the log
 
 
 Listener = Callable[[State], None]
@@ -51,24 +36,23 @@ class Listeners:
     def __init__(self, name: str) -> None:
         """Make an empty list. `name`: of the thread."""
         self._lock = threading.Lock()  # guards the list; not held during calls
-        self._listeners: List[Listener] = []
+        self._listeners: Dict[Listener, bool] = {}  # whether it hears of silence as well; in the order of their calls
         self._worker = Worker(name)
 
-    def add(self, listener: Listener) -> None:
-        """Call this function after those that are here already."""
+    def add(self, listener: Listener, silence: bool) -> None:
+        """Call this function after those that are here already; at the begin and end of silence only with `silence`."""
         with self._lock:
-            self._listeners.append(listener)
+            self._listeners[listener] = silence
 
     def remove(self, listener: Listener) -> None:
         """Call this function no more; one that was never added is no error."""
         with self._lock:
-            if listener in self._listeners:
-                self._listeners.remove(listener)
+            self._listeners.pop(listener, None)
 
-    def tell(self, state: State) -> None:
-        """Have everybody who is here now called with this state; does not wait for it."""
+    def tell(self, state: State, silence: bool = False) -> None:
+        """Have those who are here now called with this state; does not wait for it. `silence`: it began or ended."""
         with self._lock:
-            listeners = tuple(self._listeners)
+            listeners = tuple(each for each, hears in self._listeners.items() if hears or not silence)
         self._worker.submit(lambda: self._call(listeners, state))
 
     def in_background(self, job: Callable[[], None]) -> None:

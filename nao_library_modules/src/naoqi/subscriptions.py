@@ -7,6 +7,7 @@ import threading
 from typing import TYPE_CHECKING, Any, Collection, Dict, Set, Tuple
 
 from .errors import NaoError, RobotUnreachable, UnknownModule
+from .limits import ANSWER_LIMIT
 from .remote import RemoteMethod, RemoteModule
 from .worker import Worker
 
@@ -18,8 +19,6 @@ logger = logging.getLogger("naoqi")
 MEMORY = "ALMemory"
 ENDED_BY = {"unsubscribeToEvent": "subscribeToEvent", "unsubscribeToMicroEvent": "subscribeToMicroEvent"}
 OBSERVED_METHODS = frozenset(ENDED_BY) | frozenset(ENDED_BY.values())
-RENEWAL_LIMIT = 5.0
-"""Time limit of each renewed subscription, in s."""
 
 Key = Tuple[str, str, str]
 """Subscribing method, event, module."""
@@ -34,7 +33,7 @@ class EventSubscriptions:
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
-        self._memory = RemoteModule(MEMORY, connection, RENEWAL_LIMIT)
+        self._memory = RemoteModule(MEMORY, connection, ANSWER_LIMIT)
         self._lock = threading.Lock()  # guards the table
         self._arguments: Dict[Key, Tuple[Any, ...]] = {}
         self._owned: Set[str] = set()

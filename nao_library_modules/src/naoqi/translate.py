@@ -54,6 +54,7 @@ class CallSite:
     arguments: Tuple[Any, ...]  # as they were sent
     overloads: Callable[[], List[str]]  # asked only when needed: the signatures of the method, in words
     methods: Callable[[], List[str]]  # asked only when needed: names of the methods of the module
+    lost: str  # why the connection is lost; empty while it is not known, or stands
 
 
 def connect_reason(text: str) -> Reason:
@@ -75,7 +76,7 @@ def call_error(raised: Exception, site: CallSite) -> NaoError:
         reason = f"{site.module}.{site.method} was not carried out: the module, or the connection, has just gone"
         return RobotUnreachable(site.host, site.port, reason)
     if text in BROKEN_UNDER_WAY:
-        return ConnectionLost(site.host, site.port, text.rstrip("."), f"{site.module}.{site.method}")
+        return ConnectionLost(site.host, site.port, site.lost or text.rstrip("."), f"{site.module}.{site.method}")
     if text in CANCELED:
         return CallCanceled(site.module, site.method)
     unsendable = _unsendable(site.arguments)

@@ -8,6 +8,9 @@ import pytest
 
 from nao_library_modules.processes.supervisor import Status, SupervisorState
 from nao_library_modules.ros.health import GoalCounter, Level, connection_report, launch_report
+from naoqi.limits import Timing
+
+SILENT = "silent: goals and calls wait, until the robot is lost after 10 s without an answer"
 
 
 @pytest.mark.parametrize(
@@ -15,15 +18,18 @@ from nao_library_modules.ros.health import GoalCounter, Level, connection_report
     [
         ({}, Level.OK, "connected"),
         ({"latency": 0.8}, Level.WARN, "connected, but answers take 0.8 s"),
+        ({"silent": 3.2}, Level.WARN, SILENT),
         ({"state": "connecting"}, Level.ERROR, "connecting: no answer yet"),
         ({"state": "lost", "last_error": "refused"}, Level.ERROR, "lost: refused"),
     ],
 )
 def test_connection(facts, level, text):
-    connection = {"state": "connected", "latency": 0.002, "generation": 1, "last_error": None, **facts}
+    connection = {"state": "connected", "latency": 0.002, "silent": 0.0, "generation": 1, "last_error": None, **facts}
+    connection["timing"] = Timing()
     report = connection_report("10.0.0.7:9559", SimpleNamespace(**connection))
     assert (report.level, report.message, report.values["address"]) == (level, text, "10.0.0.7:9559")
     assert report.values["latency (ms)"] == (f"{1000 * connection['latency']:.1f}")
+    assert report.values["state"] == ("silent" if connection["silent"] else connection["state"])
 
 
 def test_goals_are_counted_by_their_end_and_the_last_error_is_kept():

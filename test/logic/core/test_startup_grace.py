@@ -10,7 +10,7 @@ from genpy import Duration
 from recorded_node import RecordedNode
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules.ros.startup_grace import require_patience
+from nao_library_modules.ros.startup_grace import require_start_patience
 from nao_library_modules.server import nao_basic
 from nao_library_modules.server.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
@@ -25,7 +25,7 @@ AWAITED = f"the robot at {ADDRESS}"
 class Connection:
     """A connection of the proxy layer, in the state that the test says."""
 
-    latency = 0.001
+    latency, silent = 0.001, 0.0
 
     def __init__(self, state, generation):
         self.state, self.generation, self.last_error = state, generation, None
@@ -97,7 +97,7 @@ def absent():
 
 def test_the_first_goal_waits_for_the_robot_and_says_so(absent, caplog):
     caplog.set_level("INFO")
-    module = Module(absent, patience=LIMIT)
+    module = Module(absent, start_patience=LIMIT)
     end = module.start("look")
     assert (module.chains, module.server.end) == (0, None)
     told = module.node.descriptions["Module"](DescribeFunctionsRequest())
@@ -110,8 +110,8 @@ def test_the_first_goal_waits_for_the_robot_and_says_so(absent, caplog):
     assert len(absent.listeners) == 1, "who waited listens no more"
 
 
-def test_patience_is_counted_from_the_start_of_the_module(absent):
-    module = Module(absent, patience=0.2)
+def test_the_start_patience_is_counted_from_the_start_of_the_module(absent):
+    module = Module(absent, start_patience=0.2)
     assert module.play("look").text.endswith("not reached yet.")
     assert module.feedback() == [(AWAITED, 0, "", 1), ("", 0, "look", 1)]
     assert module.play("look").end == "aborted"
@@ -119,7 +119,7 @@ def test_patience_is_counted_from_the_start_of_the_module(absent):
 
 
 def test_preemption_ends_the_wait(absent):
-    module = Module(absent, patience=60.0)
+    module = Module(absent, start_patience=60.0)
     end = module.start("look")
     module.server.preempt()
     assert end().end == "preempted"
@@ -127,12 +127,12 @@ def test_preemption_ends_the_wait(absent):
 
 @pytest.mark.parametrize("state", ["lost", "closed", "connecting"])
 def test_nobody_waits_for_a_robot_that_went_away(state):
-    module = Module(Connection(state, 1), patience=0.2)
+    module = Module(Connection(state, 1), start_patience=0.2)
     assert module.play("look").end == "aborted" and module.feedback() == [("", 0, "look", 1)]
 
 
 def test_functions_that_need_no_robot_do_not_wait_unless_one_does(absent):
-    module = Module(absent, patience=0.3)
+    module = Module(absent, start_patience=0.3)
     module.without_robot = frozenset({"look"})
     module.play("look")
     assert module.feedback() == [("", 0, "look", 1)]
@@ -162,8 +162,8 @@ def test_a_launch_file_is_started_at_once_or_when_asked_for_and_stopped_with_the
     assert made[-1][0] == module.launchpath and done[-2:] == ["stop", "start"]
 
 
-def test_a_patience_is_a_time():
-    assert [require_patience(value) for value in (0, 12.5)] == [0, 12.5]
+def test_a_start_patience_is_a_time():
+    assert [require_start_patience(value) for value in (0, 12.5)] == [0, 12.5]
     for value in (-1.0, float("inf"), float("nan"), True, "30"):
         with pytest.raises(NaoError, match="0 to 86400 s"):
-            require_patience(value)
+            require_start_patience(value)

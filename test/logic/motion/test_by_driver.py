@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -36,13 +37,19 @@ class Call:
         pass
 
 
+def made_of(proxy, owners):
+    """A robot all of whose modules are this proxy."""
+    connection = SimpleNamespace(answering_time=time.monotonic)
+    return SimpleNamespace(proxy=lambda name: proxy, connection=connection, owners=owners)
+
+
 @pytest.fixture
 def robot():
     return Calls()
 
 
 def call(robot, driver, method, *arguments, module="ALMotion"):
-    proxies = RobotByDriver(SimpleNamespace(proxy=lambda name: robot, owners=OwnerLine("nobody:0")), driver)
+    proxies = RobotByDriver(made_of(robot, OwnerLine("nobody:0")), driver)
     return proxies.proxy(module).call_async(method, *arguments)
 
 
@@ -98,7 +105,7 @@ def test_a_stop_is_told_to_the_robot_whatever_the_driver_does(robot):
 def test_a_walk_by_the_driver_is_taken_back_from_it_when_this_process_dies(robot):
     told = []
     owners = SimpleNamespace(sending=lambda *call: told.append(call))
-    motion = RobotByDriver(SimpleNamespace(proxy=lambda name: robot, owners=owners), Calls()).proxy("ALMotion")
+    motion = RobotByDriver(made_of(robot, owners), Calls()).proxy("ALMotion")
     motion.call_async("moveTo", 0.1, 0.2, 0.3)
     motion.call_async("angleInterpolationWithSpeed", YAW, [0.1], 0.2)
     assert told == [

@@ -104,7 +104,7 @@ def test_calls_are_readable_and_raw_data_are_seen_but_not_in_names():
 
 
 def error_of(text, *arguments):
-    site = CallSite("nao", 9559, "ALLeds", "fade", arguments, lambda: ["fade(string, float)"], lambda: METHODS)
+    site = CallSite("nao", 9559, "ALLeds", "fade", arguments, lambda: ["fade(string, float)"], lambda: METHODS, "")
     return call_error(RuntimeError(text), site)
 
 

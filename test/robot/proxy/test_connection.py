@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import hashlib
+import signal
 import socket
+import subprocess
+import sys
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 
 import pytest
 import qi
+from waits import hold
 
 import naoqi
 from naoqi import directory, errors
+from naoqi.limits import Timing
 from naoqi.native_threads import wait_until_idle
-from naoqi.state import Timing
 
+SILENT, SPEAKING = ("connected", True), ("connected", False)
+HASTY = Timing(heartbeat_period=0.1, silence=0.2, patience=0.6)
+"""A connection that does not wait long."""
 SOON = 10.0
 """More than any machine needs; the promise itself is of the settings, see Timing."""
 
@@ -43,6 +50,7 @@ def test_a_connection_knows_how_it_is(robot, eventually):
 def test_a_loss_fails_the_call_under_way_in_time_and_the_same_proxy_works_again(
     robot, proxy, pool, begun, states, harm, repair
 ):
+    proxy.connection.timing = HASTY
     method, followed = proxy.add, states(proxy.connection)
     call = pool.submit(proxy.begin)
     begun()
@@ -52,7 +60,8 @@ def test_a_loss_fails_the_call_under_way_in_time_and_the_same_proxy_works_again(
     assert type(error) is errors.ConnectionLost and error.call == "ALTest.begin"
     assert time.monotonic() - start < SOON
     followed.wait_for("lost")
-    assert ("heartbeat" in proxy.connection.last_error) is (harm == "silence")
+    assert proxy.connection.last_error == {"kill": "closed by the robot", "silence": "silent for 0.6 s"}[harm]
+    assert proxy.connection.last_error in str(error) or harm == "kill"
     with pytest.raises(errors.RobotUnreachable, match="lost .* s ago .*reconnecting"):
         proxy.add(1, 2)
     getattr(robot, repair)()
@@ -143,6 +152,88 @@ def test_the_end_waits_for_a_thread_of_libqi_that_is_still_at_work():
     assert wait_until_idle(SOON) and working.isFinished()
 
 
-def test_a_silent_robot_is_given_up_within_two_seconds():
+def test_a_robot_that_goes_is_noticed_within_two_seconds_and_one_that_is_slow_is_waited_for():
     timing = Timing()
-    assert timing.heartbeat_period + timing.heartbeat_limit < 2.0
+    assert timing.heartbeat_period < 2.0 and timing.heartbeat_period < timing.silence < timing.patience == 10.0
+
+
+class Silence:
+    """Follows when a connection becomes silent, and when it is no longer: state, and whether it is."""
+
+    def __init__(self, connection):
+        self.seen, self._connection, self._news = [], connection, threading.Condition()
+        connection.add_listener(self._hear, silence=True)
+
+    def _hear(self, state):
+        with self._news:
+            self.seen.append((str(state), self._connection.silent > 0.0))
+            self._news.notify_all()
+
+    def wait_for(self, *seen):
+        with self._news:
+            self._news.wait_for(lambda: len(self.seen) >= len(seen), SOON)
+            assert self.seen == list(seen)
+
+
+def test_calls_under_way_new_ones_and_new_proxies_wait_for_a_silent_robot(robot, proxy, pool, begun, states, caplog):
+    connection = proxy.connection
+    connection.timing = Timing(heartbeat_period=0.05, silence=0.1, patience=SOON)
+    under_way, followed, silence = pool.submit(proxy.begin), states(connection), Silence(connection)
+    begun()
+    robot.silence()
+    silence.wait_for(SILENT)
+    waiting = [
+        pool.submit(proxy.add, 1, 2),
+        pool.submit(lambda: proxy.call_async("add", 3, 4).result(timeout=0.2)),
+        pool.submit(lambda: robot.proxy("Switch") and 5),
+    ]
+    assert wait(waiting, 0.5, FIRST_COMPLETED).done == set(), "the limit of a call is of a robot that answers"
+    assert "silent" in repr(connection)
+    robot.speak()
+    assert [each.result(SOON) for each in waiting] == [3, 7, 5]
+    silence.wait_for(SILENT, SPEAKING)
+    proxy.finish(6)
+    assert under_way.result(SOON) == 6
+    assert followed.seen == [] and (connection.generation, connection.silent) == (1, 0.0)
+    texts = [each.getMessage() for each in caplog.records if each.name == "naoqi"]
+    assert len(texts) == 2 and "calls wait for it, up to 10 s" in texts[0] and "answers again, after" in texts[1]
+
+
+def test_a_call_that_the_robot_leaves_open_has_its_limit_while_it_answers_others(proxy):
+    call = proxy.call_async("begin")
+    with pytest.raises(errors.CallTimeout, match="0.3 s"):
+        call.result(timeout=0.3)
+
+
+@pytest.mark.parametrize("patience, state", [(SOON, "connected"), (0.6, "lost")])
+def test_a_connection_to_a_silent_robot_is_closed_soon(robot, proxy, patience, state):
+    connection, began = proxy.connection, time.monotonic()
+    connection.timing = Timing(heartbeat_period=0.05, silence=0.1, patience=patience)
+    silence = Silence(connection)
+    robot.silence()
+    silence.wait_for(*([SILENT] if state == "connected" else [SILENT, ("lost", False)]))
+    connection.close()
+    assert connection.state == "closed" and time.monotonic() - began < SOON
+
+
+PROGRAM = """
+import logging, sys, naoqi
+logging.basicConfig(stream=sys.stdout, format="%(message)s")
+proxy = naoqi.ALProxy("ALTest", "127.0.0.1", int(sys.argv[1]), patience=1.0)
+call = proxy.call_async("begin")
+print("ready", flush=True)
+sys.stdin.readline()
+print(call.done(), proxy.add(1, 2), proxy.connection.generation)
+"""
+
+
+def test_a_program_that_was_itself_stopped_does_not_take_the_robot_for_lost(robot):
+    program = subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, str(robot.port)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    with program:
+        assert program.stdout.readline() == "ready\n"
+        hold(program.pid)
+        time.sleep(1.5)  # longer than its patience
+        program.send_signal(signal.SIGCONT)
+        assert program.communicate("\n", SOON)[0] == "False 3 1\n", "and it logs nothing"

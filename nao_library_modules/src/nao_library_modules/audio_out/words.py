@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import WORD_TIMES_LIMIT, wait_while_answering
 
 from ..functions.memory_functions import MEMORY
 from ..robot.event_relay import EventRelay
@@ -22,8 +23,6 @@ STARTED = "ALTextToSpeech/TextStarted"
 ENDS = ("ALTextToSpeech/TextDone", "ALTextToSpeech/TextInterrupted")
 TIMES = "NaoSimulation/SpeechTimes"
 """A key of simulated robots: [onset, end] of the text that was spoken last, s of the robot."""
-ANSWER_LIMIT = 0.5
-"""s that the end of a text waits for its last events and their times: they may come after the answer of the call."""
 
 
 class SpokenWords:
@@ -146,4 +145,9 @@ class SpokenWords:
     def _await_times(self, begun: float) -> None:
         unknown = not set(ENDS).intersection(self._events.names)  # no event comes at the end
         with self._lock:
-            self._answered.wait_for(lambda: not self._asked and (unknown or self._ended > begun), ANSWER_LIMIT)
+            known = lambda: not self._asked and (unknown or self._ended > begun)  # noqa: E731
+            wait_while_answering(
+                lambda left: self._answered.wait_for(known, left),
+                self._module.robot.connection.answering_time,
+                WORD_TIMES_LIMIT,
+            )

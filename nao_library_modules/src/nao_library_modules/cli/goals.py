@@ -13,6 +13,8 @@ from typing import Any
 
 import click
 
+from naoqi.limits import GOAL_END_LIMIT
+
 from ..functions.server_types import DESCRIBE, installed_message
 from .errors import CommandFailed, CommandInterrupted, StackMissing
 from .output import plain, say_json, say_result
@@ -21,8 +23,6 @@ from .settings import CliSettings
 
 SERVER_LIMIT = 10.0
 """s until a server that is there must have been found."""
-CANCEL_LIMIT = 15.0
-"""s that a server may take to end a goal that was cancelled: it waits until the robot stands still."""
 LOOK_PERIOD = 1.0
 """s between two looks whether the server is still there."""
 
@@ -158,8 +158,8 @@ class GoalRun:
             cancelled = self._watch.cancel(handle)
             if cancelled and progress is not None:
                 progress.note("stopping")
-        if not self._watch.over.wait(CANCEL_LIMIT):
-            raise CommandFailed(f"the goal was cancelled {CANCEL_LIMIT:g} s ago and does not end")
+        if not self._watch.over.wait(GOAL_END_LIMIT):
+            raise CommandFailed(f"the goal was cancelled {GOAL_END_LIMIT:g} s ago and does not end")
         return cancelled
 
     def _end(self, handle: Any, began: float) -> GoalEnd:

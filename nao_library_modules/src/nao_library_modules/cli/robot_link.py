@@ -8,22 +8,21 @@ from collections.abc import Sequence
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ..base.suggestion import did_you_mean
 from .errors import CommandFailed, StackMissing
 
-LIMIT = 5.0
-"""s that the robot has for an answer."""
 MEMORY = "ALMemory"
 
 
 class DirectRobot:
     """A connection to one robot, for a `with` block.
 
-    `address`: IP and port. `limit`: s for the connection and for each answer.
+    `address`: IP and port. `limit`: s for the connection; None for the patience of the connection.
     """
 
-    def __init__(self, address: tuple[str, int], limit: float = LIMIT) -> None:
+    def __init__(self, address: tuple[str, int], limit: float | None = None) -> None:
         self._address = address
         self._limit = limit
         self._connection: Any = None
@@ -54,7 +53,7 @@ class DirectRobot:
     def call(self, module: str, method: str, *arguments: Any) -> Any:
         """Call a method. Raises CommandFailed if the robot refuses."""
         try:
-            return self._proxy(module).call_async(method, *arguments).result(timeout=self._limit)
+            return self._proxy(module).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
         except NaoError as error:
             raise CommandFailed(str(error)) from None
 

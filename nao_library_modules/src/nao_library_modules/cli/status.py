@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from ..nao.body_devices import CHARGE
+from ..ros.health import SILENT
 from .errors import CommandFailed, StackMissing
 from .goals import start_node
 from .output import table
@@ -31,6 +32,7 @@ def read_status(stack: Stack) -> dict[str, Any]:
         "address": f"{ip}:{port}",
         "master": stack.graph.uri,
         "connected": False,
+        "silent": "",
         "battery": None,
         "awake": None,
         "posture": None,
@@ -40,6 +42,7 @@ def read_status(stack: Stack) -> dict[str, Any]:
     }
     found.update(_robot((ip, port)))
     found["diagnostics"] = reports.result()
+    found["silent"] = reports.silent(found["address"])
     return found
 
 
@@ -85,12 +88,17 @@ class _Diagnostics:
         self._lock = threading.Lock()
         self._reports: dict[str, Any] = {}
         self._began = time.monotonic()
+        self._silent: dict[str, str] = {}
         self._subscriber = rospy.Subscriber(DIAGNOSTICS, DiagnosticArray, self._on_array)
 
     def _on_array(self, message: Any) -> None:
         """Called from a thread of ROS."""
         with self._lock:
             self._reports.update((status.name, status) for status in message.status)
+
+    def silent(self, address: str) -> str:
+        """What a node told, by the time of `result`, of a robot that does not answer for the moment; else empty."""
+        return self._silent.get(address, "")
 
     def result(self) -> dict[str, Any]:
         """Counts by level, and the reports that are not ok."""
@@ -105,7 +113,14 @@ class _Diagnostics:
             for status, name in sorted(zip(reports, level), key=lambda pair: pair[0].name)
             if name != LEVELS[0]
         ]
+        self._silent = silent_robots(reports)
         return {**counts, "problems": problems}
+
+
+def silent_robots(reports: Iterable[Any]) -> dict[str, str]:
+    """Address -> what a node reports of the robot there, of those that do not answer for the moment."""
+    told = [({each.key: each.value for each in status.values}, status.message) for status in reports]
+    return {values["address"]: text for values, text in told if values.get("state") == SILENT and "address" in values}
 
 
 def _number(level: Any) -> int:
@@ -114,8 +129,9 @@ def _number(level: Any) -> int:
 
 def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
     stiffness = found["stiffness"]
+    reached = "SILENT" if found["silent"] else "connected" if found["connected"] else "NOT REACHED"
     rows = [
-        ("robot", f"{found['robot']} at {found['address']}, {'connected' if found['connected'] else 'NOT REACHED'}"),
+        ("robot", f"{found['robot']} at {found['address']}, {reached}"),
         ("master", found["master"]),
     ]
     if found["battery"] is not None:
@@ -126,6 +142,8 @@ def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
         rows.append(
             ("stiffness", f"{stiffness['stiff']} of {stiffness['joints']} joints, mean {stiffness['mean']:.2f}")
         )
+    if found["silent"]:
+        rows.append(("", found["silent"]))
     if found.get("problem"):
         rows.append(("problem", found["problem"]))
     yield from table(rows)

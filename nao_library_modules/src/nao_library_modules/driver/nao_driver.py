@@ -14,7 +14,7 @@ from naoqi.errors import NaoError
 from ..robot.robot import Robot
 from ..ros.driver_types import require_types
 from ..ros.health import Level, Report, connection_report
-from ..ros.node import own_as_node, robot_address, start_node
+from ..ros.node import own_as_node, robot_address, start_node, take_patience
 from ..ros.node_interface import NodeInterface
 from .base.node import keep
 from .parts import ALL, PARTS, chosen, part_class
@@ -112,19 +112,21 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
     A launched node whose name another node takes comes back when that one has ended.
 
     ROS API:
-        Parameters `~pip`, `~pport`: the robot; `nao_driver/messages`, see `driver_types`; `~parts` ("all"): words of
-        `PARTS`; `~watches` (false): as `run_module` takes it. Publishes `/diagnostics`. Each part has the topics,
-        services, actions and parameters that it has as a node of its own, under the same names.
+        Parameters `~pip`, `~pport`: the robot; `patience`, see `take_patience`; `nao_driver/messages`, see
+        `driver_types`; `~parts` ("all"): words of `PARTS`; `~watches` (false): as `run_module` takes it. Publishes
+        `/diagnostics`. Each part has the topics, services, actions and parameters that it has as a node of its own,
+        under the same names.
     """
     options = start_node(NAME, description, argv)
     try:
         require_types()
         ip, port = robot_address(options, rospy.get_param)
         words = chosen(rospy.get_param("~parts", ALL))
+        robot = Robot(ip, port)
+        take_patience(robot)
     except NaoError as error:
         rospy.logfatal("%s", error)
         return 1
-    robot = Robot(ip, port)
     own_as_node(robot, watches=bool(rospy.get_param("~watches", False)))
     driver = Driver(robot, words)
     keep(robot, driver.reports, driver.close)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ..base.once_per_connection import OncePerConnection
 from ..nao.light_names import plain_words
@@ -15,8 +16,6 @@ from .fields import Question
 
 log = logging.getLogger(__name__)
 
-LIMIT = 3.0
-"""s that the robot has for an answer: who asks for a description is waiting for more than this."""
 
 LIGHTS: Sequence[Question] = (("ALLeds", "listGroups"), ("ALLeds", "listLEDs"))
 JOINTS: Sequence[Question] = (("ALMotion", "getBodyNames", "Chains"), ("ALMotion", "getBodyNames", "Body"))
@@ -48,7 +47,7 @@ class Choices:
         own = self._own(function, field)
         if own:
             return tuple(own)
-        if not asked or self._robot.connection.state != "connected":
+        if not asked or self._robot.connection.state != "connected" or self._robot.connection.silent:
             return ()
         told = [word for question in asked for word in self._answer(question)]
         words = plain_words(told) if asked is LIGHTS else []
@@ -60,7 +59,7 @@ class Choices:
             if key not in known:
                 module, method, *arguments = question
                 try:
-                    answer = self._robot.proxy(module).call_async(method, *arguments).result(timeout=LIMIT)
+                    answer = self._robot.proxy(module).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
                 except NaoError as error:
                     log.debug("%s.%s cannot be asked: %s", module, method, error)
                     return ()

@@ -33,6 +33,7 @@ class KnownRobot:
             state="not connected",
             generation=1,
             last_error="",
+            silent=0.0,
             add_listener=ignore,
             remove_listener=ignore,
             in_background=ignore,

@@ -10,10 +10,11 @@ from contextlib import contextmanager
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import CLEAN_UP_LIMIT
 
 from ..base.cancellation import CancellationToken
 from ..base.errors import BadGoal
-from ..robot.robot import CLEAN_UP_LIMIT, wait_for_calls
+from ..robot.robot import wait_for_calls
 from .chain import FunctionChain, seconds
 
 log = logging.getLogger(__name__)

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import CLEAN_UP_LIMIT
 
 from ..functions.memory_functions import MEMORY
 from ..functions.parts import Part
 from ..nao.light_names import LightNames
-from ..robot.robot import CLEAN_UP_LIMIT
 from ..server.nao_basic import NaoBasic
 from .state import Values, light_intensity, memory_keys, restoring_calls
 

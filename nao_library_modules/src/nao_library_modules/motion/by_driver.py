@@ -54,6 +54,7 @@ class ProxyByDriver:
 
     def __init__(self, robot: Any, module: str, driver: NaoRobotDriver, ways: dict[str, Callable[..., Any]]) -> None:
         self._proxy = robot.proxy(module)
+        self._answering_time = robot.connection.answering_time
         self._witness = partial(robot.owners.sending, module)
         self._driver = driver
         self._ways = ways
@@ -63,6 +64,7 @@ class ProxyByDriver:
         call = way(*args) if way is not None and self._driver.there() else None
         if call is None:
             return self._proxy.call_async(method, *args)
+        call.clock = self._answering_time
         # It would go on without this process all the same.
         ended = self._witness(method, args, self._driver.walk_cure() if method in WALKS else None)
         if ended is not None:

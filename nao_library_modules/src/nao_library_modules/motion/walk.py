@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import STANDING_LIMIT, STOP_LIMIT
 
 from ..base.errors import BadGoal, WalkStopped
 from ..base.once_per_connection import OncePerConnection
@@ -56,11 +57,6 @@ log = logging.getLogger(__name__)
 WORLD = 1
 """The frame that `frame` means by this number."""
 WAIT = "waitUntilMoveIsFinished"
-
-STANDING_LIMIT = 2.0
-"""s that a robot whose walk was stopped may take to stand, before it is told how far it got."""
-STOP_LIMIT = 10.0
-"""s that the robot may take to stand on both feet; it takes about one."""
 
 
 class WalkFunctions(BodyPart):

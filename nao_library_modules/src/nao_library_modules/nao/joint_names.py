@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from naoqi.errors import NaoError, RobotError
+from naoqi.limits import ANSWER_LIMIT
 
 from ..base.once_per_connection import OncePerConnection
 
@@ -27,8 +28,6 @@ CHAINS = (
     "BodyActuators",
 )
 """Names that stand for several joints. Not every robot knows all of them."""
-LIMIT = 5.0
-"""s that the robot may take to answer."""
 
 
 class JointNames:
@@ -54,7 +53,7 @@ class JointNames:
         chains = {}
         for chain, call in calls.items():
             try:
-                chains[chain] = tuple(call.result(timeout=LIMIT))
+                chains[chain] = tuple(call.result(timeout=ANSWER_LIMIT))
             except RobotError:
                 continue  # a robot without this chain says so
         if "Body" not in chains:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from naoqi.limits import ANSWER_LIMIT
+
 from ..base.errors import CannotWalk
 from .joint_names import LEGS, MOTION
 
 SOFTEST = 0.6
 """Stiffness of a leg's joint above which NAOqi walks."""
-LIMIT = 2.0
-"""s that the robot may take to answer: orders to stop wait as long."""
 
 
 def require_stiff(stiffnesses: Mapping[str, float]) -> None:
@@ -26,9 +26,9 @@ def require_stiff(stiffnesses: Mapping[str, float]) -> None:
 def ask_for_stiff_legs(robot: Any) -> None:
     """Ask a robot for the stiffness of its legs. Raises CannotWalk as above; NaoError if it cannot be asked."""
     ask = robot.proxy(MOTION).call_async
-    stiffnesses = ask("getStiffnesses", list(LEGS)).result(timeout=LIMIT)
+    stiffnesses = ask("getStiffnesses", list(LEGS)).result(timeout=ANSWER_LIMIT)
     if min(stiffnesses) > SOFTEST:
         return
     calls = [ask("getBodyNames", leg) for leg in LEGS]
-    names = [name for call in calls for name in call.result(timeout=LIMIT)]
+    names = [name for call in calls for name in call.result(timeout=ANSWER_LIMIT)]
     require_stiff(dict(zip(names, stiffnesses)))

@@ -9,16 +9,12 @@ from functools import partial
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT, LOST_PATIENCE
 
 from ..nao.joint_names import MOTION
 from .watch import Owned
 
 log = logging.getLogger(__name__)
-
-LIMIT = 2.0
-"""s that a question to the robot may take."""
-ROBOT_LIMIT = 5.0
-"""s to wait for a robot that is lost as well."""
 
 
 class Stops:
@@ -41,7 +37,7 @@ class Stops:
             if module in self._elsewhere:
                 self._elsewhere[module](method, arguments)
             else:
-                self._robot.connection.wait_connected(ROBOT_LIMIT)
+                self._robot.connection.wait_connected(LOST_PATIENCE)
                 completed = self._completed(module, method, arguments)
                 # Not waited for: a walk ends on both feet, and the next thing is to be stopped meanwhile.
                 self._robot.proxy(module).call_async(method, *completed).add_done_callback(partial(_log_failure, owned))
@@ -58,7 +54,7 @@ class Stops:
         return [joints, self._ask(MOTION, "getAngles", joints, False), 1.0] if method == "setAngles" else [joints]
 
     def _ask(self, module: str, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(module).call_async(method, *arguments).result(timeout=LIMIT)
+        return self._robot.proxy(module).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
 
 
 def _log_failure(owned: Owned, call: Any) -> None:

@@ -8,18 +8,14 @@ from typing import Any
 
 import naoqi
 from naoqi.errors import NaoError
+from naoqi.limits import STOPPED_LIMIT
 
 from ..base.cancellation import CancellationToken
 from ..owners.line import OwnerLine
 
-# A cancelled call ends at once on a robot that knows cancellation. One that does not must not hold up
-# preemption.
-CANCEL_LIMIT = 0.5
 # Most calls are answered within this time (s). Waiting for the answer alone is quicker than waiting for
 # answer or interrupt, which then comes that much later at most.
 QUICK_ANSWER = 0.005
-# Clean-up calls cannot be interrupted, so they are bounded.
-CLEAN_UP_LIMIT = 2.0
 
 
 class Robot:
@@ -107,4 +103,4 @@ def _cancel(calls: Iterable[Any]) -> None:
         call.add_done_callback(lambda _, event=event: event.set())
         call.cancel()
     for event in ended:
-        event.wait(CANCEL_LIMIT)
+        event.wait(STOPPED_LIMIT)

@@ -8,14 +8,12 @@ from collections.abc import Callable
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import CANCELLED_LIMIT, STOPPED_LIMIT
 
 from ..base.cancellation import CancellationToken
-from .robot import CANCEL_LIMIT, QUICK_ANSWER
+from .robot import QUICK_ANSWER
 
 log = logging.getLogger(__name__)
-
-CANCEL_PATIENCE = 0.1
-"""s that a cancelled call has to end by itself, as it does on a robot that knows cancellation."""
 
 
 def run_task(call: Any, interrupt: CancellationToken, stop: Callable[[], None]) -> Any:
@@ -36,15 +34,15 @@ def run_task(call: Any, interrupt: CancellationToken, stop: Callable[[], None]) 
 def end_call(call: Any, stop: Callable[[], None]) -> None:
     """Cancel a call and see it end, so that it changes nothing any more."""
     call.cancel()
-    if call.wait(CANCEL_PATIENCE):
+    if call.wait(CANCELLED_LIMIT):
         return
     try:
         stop()
     except NaoError as error:
         log.warning("what was interrupted may go on: %s", error)
         return
-    if not call.wait(CANCEL_LIMIT):
-        log.warning("what was interrupted goes on: the robot did not end it within %g s", CANCEL_LIMIT)
+    if not call.wait(STOPPED_LIMIT):
+        log.warning("what was interrupted goes on: the robot did not end it within %g s", STOPPED_LIMIT)
 
 
 def wait_for_call(call: Any, interrupt: CancellationToken, limit: float | None = None) -> bool:

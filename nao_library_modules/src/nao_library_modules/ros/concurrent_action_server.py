@@ -10,13 +10,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import START_PATIENCE
 
 from ..base.cancellation import CancellationToken
 from ..base.errors import Preempted
 from ..base.limits import limit
 from .action_server import let_the_client_note_the_goal
 from .health import GoalCounter
-from .startup_grace import PATIENCE, StartupGrace
+from .startup_grace import StartupGrace
 
 log = logging.getLogger(__name__)
 
@@ -78,7 +79,7 @@ class ConcurrentActionServer:
         self._claims = claims
         self._execute = execute
         self._with_feedback = with_feedback
-        self._startup_grace = None if robot is None else StartupGrace(robot, PATIENCE)
+        self._startup_grace = None if robot is None else StartupGrace(robot, START_PATIENCE)
         self._lock = threading.Lock()
         self._members: list[_Member] = []
         self._closed = False

@@ -14,6 +14,7 @@ import actionlib
 import rospy
 
 from naoqi.errors import NaoError
+from naoqi.limits import wait_while_answering
 
 from .driver_types import spoken
 from .goal_tracker import GoalTracker, server_connection
@@ -23,9 +24,13 @@ LOOK_PERIOD = 0.005
 
 
 class DriverCall:
-    """A call under way; see `naoqi.calls.Call`. Any thread."""
+    """A call under way; see `naoqi.calls.Call`. Any thread.
+
+    `clock`: by which limits are counted; that of a robot's answers stands still while it is silent.
+    """
 
     def __init__(self) -> None:
+        self.clock: Callable[[], float] = time.monotonic
         self._answer: Future = Future()
 
     def done(self) -> bool:
@@ -37,7 +42,9 @@ class DriverCall:
 
     def result(self, timeout: float | None = None) -> Any:
         """Wait for its end, and what it answered. Raises NaoError if it failed, or is not over in time."""
-        if not self.wait(timeout):
+        if timeout is None:
+            self.wait()
+        elif not wait_while_answering(self.wait, self.clock, timeout):
             raise NaoError(f"{self}: no answer within {timeout:g} s")
         return self._answer.result()
 

@@ -12,6 +12,8 @@ from typing import Any, ClassVar
 
 from actionlib import CommState
 
+from naoqi.limits import GOAL_END_LIMIT
+
 from ..owners.line import GOAL, OwnerLine
 
 ACKNOWLEDGEMENT_LIMIT = 5.0
@@ -33,6 +35,8 @@ class GoalTracker:
     """
 
     owners: ClassVar[OwnerLine | None] = None
+    END_LIMIT: ClassVar[float] = GOAL_END_LIMIT
+    """s that a server may take to end a goal that was cancelled."""
 
     def __init__(self, on_end: Callable[[], None] | None = None) -> None:
         self.acknowledged = threading.Event()

@@ -12,6 +12,9 @@ from ..processes.supervisor import Supervisor, SupervisorState
 SLOW_ANSWER = 0.5
 """A robot that takes longer than this (s) to answer is reported as slow."""
 
+SILENT = "silent"
+"""State, among those of the connection, of a robot that does not answer but is not lost yet."""
+
 
 class Level(IntEnum):
     """Severity, with the numbers of diagnostic_msgs/DiagnosticStatus."""
@@ -55,14 +58,20 @@ class GoalCounter:
 
 def connection_report(address: str, connection: Any) -> Report:
     """State of the connection to the robot. `address`: `ip:port`. `connection`: connection of the proxy layer."""
-    latency = connection.latency
+    latency, silent = connection.latency, connection.silent
     values = {
         "address": address,
-        "state": str(connection.state),
+        "state": SILENT if silent else str(connection.state),
+        "silent for (s)": f"{silent:.1f}",
         "latency (ms)": "" if latency is None else f"{1000.0 * latency:.1f}",
         "connections made": str(connection.generation),
         "last error": connection.last_error or "",
     }
+    if silent:
+        # Without how long it is: what all nodes report alike is told once.
+        patience = connection.timing.patience
+        message = f"silent: goals and calls wait, until the robot is lost after {patience:g} s without an answer"
+        return Report(Level.WARN, message, values)
     if values["state"] != "connected":
         return Report(Level.ERROR, f"{values['state']}: {values['last error'] or 'no answer yet'}", values)
     if latency is not None and latency > SLOW_ANSWER:

@@ -11,7 +11,10 @@ import rosgraph
 import rospy
 
 from naoqi.errors import NaoError
+from naoqi.limits import Timing
 
+from ..base.field_checks import number_parameter
+from ..base.limits import limit
 from ..owners.host import watch_owners
 from ..owners.line import OwnerLine
 from ..processes.closing import exit_in_time
@@ -19,7 +22,7 @@ from .goal_tracker import GoalTracker
 from .master_watch import MasterWatch
 from .node_place import TAKEN, NodePlace, wait_for_name
 from .server_node import forward_logs
-from .startup_grace import require_patience
+from .startup_grace import require_start_patience
 
 DEFAULT_IP = "127.0.0.1"
 DEFAULT_PORT = 9559
@@ -103,8 +106,8 @@ def run_module(
 
     ROS API:
         Parameters `~pip`, `~pport`: the robot. `~autostart`, `~launchpath` ("package launchfile"): launch
-        file to start with the module. `~patience`: s from the start for which goals wait for a robot that has never
-        been reached (default 30).
+        file to start with the module. `~start_patience`: s from the start for which goals wait for a robot that
+        has never been reached (default 30). `patience`: see `take_patience`.
     """
     options = start_node(name, description, argv)
     try:
@@ -115,8 +118,9 @@ def run_module(
             autostart=bool(rospy.get_param("~autostart", False)),
             launchpath=launch_path(rospy.get_param("~launchpath", "")),
             **{name: rospy.get_param(f"~{name}", default) for name, default in (parameters or {}).items()},
-            **_patience(),
+            **_start_patience(),
         )
+        take_patience(made.robot)
     except NaoError as error:
         rospy.logfatal("%s", error)
         return 1
@@ -170,6 +174,18 @@ def robot_beside(name: str, default: Any) -> Any:
     return rospy.get_param(name, rospy.get_param(name.replace("~", f"{SERVER}/"), default))
 
 
-def _patience() -> dict[str, float]:
+def take_patience(robot: Any) -> None:
+    """Take over the parameter `patience`: s that the robot may be silent before it is lost (default 10).
+
+    That of the node itself counts, else the nearest of the namespaces around it. Raises NaoError if it is no such time.
+    """
+    name = rospy.search_param("patience")
+    if name is not None:
+        patience = number_parameter(name, rospy.get_param(name), limit("patience"))
+        robot.connection.timing = Timing(patience=patience)
+
+
+def _start_patience() -> dict[str, float]:
     """The parameter, where it is set: a module may have been written without it."""
-    return {"patience": require_patience(rospy.get_param("~patience"))} if rospy.has_param("~patience") else {}
+    name = "start_patience"
+    return {name: require_start_patience(rospy.get_param(f"~{name}"))} if rospy.has_param(f"~{name}") else {}

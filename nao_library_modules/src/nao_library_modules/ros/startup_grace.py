@@ -14,12 +14,9 @@ from ..base.limits import limit
 
 log = logging.getLogger(__name__)
 
-PATIENCE = 30.0
-"""s from the start of a module: a robot or simulator that is launched together with it is there by then."""
 
-
-def require_patience(value: Any) -> float:
-    return number_parameter("~patience", value, limit("wait"))
+def require_start_patience(value: Any) -> float:
+    return number_parameter("~start_patience", value, limit("wait"))
 
 
 class StartupGrace:

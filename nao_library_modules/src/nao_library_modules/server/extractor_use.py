@@ -11,12 +11,12 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from naoqi.errors import NaoError
+from naoqi.limits import CLEAN_UP_LIMIT
 
 from ..base.cancellation import CancellationToken
 from ..functions.memory_functions import MEMORY
 from ..functions.parts import Part
 from ..robot.event_relay import EventRelay
-from ..robot.robot import CLEAN_UP_LIMIT
 from ..robot.robot_task import wait_for_call
 from .nao_basic import NaoBasic
 

@@ -13,6 +13,7 @@ from genpy import Duration, Time
 from nao_library_msgs.msg import FunctionResult
 from nao_library_msgs.srv import CheckGoals
 from naoqi.errors import NaoError
+from naoqi.limits import START_PATIENCE, Timing
 
 from ..base.answers import Outcome, values_of
 from ..base.errors import FunctionFailed, Preempted, RobotLost, cut
@@ -32,7 +33,7 @@ from ..robot.event_relay import EventRelay
 from ..robot.robot import Robot
 from ..robot.robot_clock import RobotClock
 from ..ros.health import GoalCounter, connection_report, launch_report
-from ..ros.startup_grace import PATIENCE, StartupGrace
+from ..ros.startup_grace import StartupGrace
 
 log = logging.getLogger(__name__)
 
@@ -112,8 +113,9 @@ class NaoBasic(FunctionRunner):
         launchpath: LaunchPath | None = None,
         robot: Any = None,
         node: Any = None,
-        patience: float = PATIENCE,
+        start_patience: float = START_PATIENCE,
         kept: Any = None,
+        patience: float | None = None,
     ) -> None:
         """Connect in the background; the robot need not be there yet.
 
@@ -126,8 +128,9 @@ class NaoBasic(FunctionRunner):
             launchpath: `(package, launchfile)` that belongs to the module; the attribute may be set at any time.
             robot: Proxies and connection, where not those of ip and port.
             node: ROS side, where not that of this process's node.
-            patience: s from now on for which goals wait for a robot that has never been reached.
+            start_patience: s from now on for which goals wait for a robot that has never been reached.
             kept: Where what goals set up is kept beyond the death of the node, where not in the file of the node.
+            patience: s that the robot may be silent before it is lost; None: as it is, 10 at first.
         """
         if not isinstance(autostart, bool):
             raise NaoError(f"autostart is {autostart!r}: True or False")
@@ -139,6 +142,8 @@ class NaoBasic(FunctionRunner):
         self.port = port
         self.launchpath = launchpath
         self.robot = robot or Robot(ip, port)
+        if patience is not None:
+            self.robot.connection.timing = Timing(patience=patience)
         self.server: Any = None
         self._served: Any = None  # the server that `serve` made
         self._heeded: Any = None  # the server of the module's own whose preemption ends waits
@@ -154,7 +159,7 @@ class NaoBasic(FunctionRunner):
         self._node = node
         self.kept = kept or node.kept()
         self._goals = GoalCounter()
-        self._startup_grace = StartupGrace(self.robot, patience)
+        self._startup_grace = StartupGrace(self.robot, start_patience)
         self._progress = (0, "", 0)  # index of the function that began last, its name, how many the chain has
         self._running: tuple[tuple[str, ...], int] = ((), 0)  # functions of the goal that runs, and the one that does
         self._idle = threading.Event()

@@ -36,7 +36,13 @@ KINDS = {
     "said": "what it says",
 }
 LEVEL_COLOURS = {OK: "positive", ERROR: "negative"}
-STATE_COLOURS = {"connected": "positive", "connecting": "warning", "lost": "negative", "closed": "negative"}
+STATE_COLOURS = {
+    "connected": "positive",
+    "connecting": "warning",
+    "silent": "warning",
+    "lost": "negative",
+    "closed": "negative",
+}
 JOINT = "joint"
 SENSOR_TRACES = tuple(f"{kind}:{name}" for kind, names in TRACE_NAMES.items() for name in names)
 

@@ -19,7 +19,7 @@ class BodyWatch:
     Attributes:
         acquire: Follows the body until what it returns is called.
         status: The body; replaced at each report.
-        connection: connecting, connected, lost or closed; empty until it is told.
+        connection: connecting, connected, silent, lost or closed; empty until it is told.
         address: Of the robot.
         problem: What went wrong last with its connection.
     """

@@ -6,15 +6,13 @@ import threading
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT, FILE_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...robot.robot_task import run_task
 from .audio_requests import RecordingRequest
 
 PLAYER, RECORDER, DEVICE = "ALAudioPlayer", "ALAudioRecorder", "ALAudioDevice"
-ANSWER_LIMIT = 2.0
-FILE_LIMIT = 10.0
-"""s that the robot has to begin a file, or to complete it."""
 
 
 class AudioPlayer:

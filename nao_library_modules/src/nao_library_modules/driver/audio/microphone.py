@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from naoqi import ALBroker, ALModule
 from naoqi.errors import NaoError, UnknownModule
+from naoqi.limits import ANSWER_LIMIT, STREAM_LIMIT
 
 from ...ros.health import Level, Report
 from ..base.lazy_subscription import LazySubscription
@@ -20,9 +20,6 @@ log = logging.getLogger(__name__)
 
 DEVICE, MEMORY = "ALAudioDevice", "ALMemory"
 VERSIONS = ("RobotConfig/Head/Version", "RobotConfig/Body/Version")
-ANSWER_LIMIT = 5.0
-SILENCE_LIMIT = 3.0
-"""s without a block, of the robot's time and of ours, after which the robot is asked again."""
 
 
 @dataclass(frozen=True)
@@ -151,8 +148,8 @@ class Microphone:
         """Whether blocks come. On a simulation that stands still, none are due."""
         with self._lock:
             wall, ros = self._last
-        quiet = min(time.monotonic() - wall, self._clock.now() - ros)
-        if quiet < SILENCE_LIMIT:
+        quiet = min(self._robot.connection.answering_time() - wall, self._clock.now() - ros)
+        if quiet < STREAM_LIMIT:
             return True
         if not self._silent:
             log.warning("%s", self._silence())
@@ -164,7 +161,7 @@ class Microphone:
         return f"no sound comes from the microphones: the robot has to reach this program at {where}"
 
     def _note_life(self) -> None:
-        self._last = (time.monotonic(), self._clock.now())
+        self._last = (self._robot.connection.answering_time(), self._clock.now())
 
     # --- in the thread of the module ------------------------------------------------------------------------------
 

@@ -20,6 +20,7 @@ from nao_library_actions.msg import (
 )
 from nao_library_msgs.msg import WordRecognized
 from naoqi.errors import NaoError, UnknownModule
+from naoqi.limits import ANSWER_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal
@@ -41,7 +42,7 @@ from .speech_settings import (
     given_parameters,
     join_vocabulary,
 )
-from .speech_voice import ANSWER_LIMIT, SPEECH
+from .speech_voice import SPEECH
 
 START = "start_recognition"
 SHUTDOWN_LIMIT = 1.0

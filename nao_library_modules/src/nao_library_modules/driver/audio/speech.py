@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT, LOST_WORD_LIMIT, TEXT_PATIENCE
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import Preempted, RobotLost
@@ -18,16 +19,12 @@ from ...robot.event_relay import EventRelay
 from ...robot.robot_task import end_call
 from ...ros.health import Level, Report
 from .speech_settings import SpeechSettings
-from .speech_voice import ANSWER_LIMIT, SPEECH, BorrowedVoice
+from .speech_voice import SPEECH, BorrowedVoice
 
 log = logging.getLogger(__name__)
 
 STARTED = f"{SPEECH}/TextStarted"
 SIGNS_OF_LIFE = (STARTED, f"{SPEECH}/CurrentSentence", f"{SPEECH}/CurrentWord")
-QUIET_LIMIT = 120.0
-"""s of the robot's time without a word after which a text is given up."""
-PATIENCE = 3.0
-"""s that a text waits for a robot that has never been reached yet: its sender may have started in the same moment."""
 LONGEST_QUEUE = int(limit("waiting texts").highest)
 CLOSE_LIMIT = 2.0
 
@@ -213,7 +210,7 @@ class RobotSpeech:
         """Wait a moment for a robot that was never there; one that was lost fails the text at once."""
         connection = self._robot.connection
         while connection.state == "connecting" and not utterance.interrupt.is_set():
-            left = PATIENCE - (time.monotonic() - utterance.arrived)
+            left = TEXT_PATIENCE - (time.monotonic() - utterance.arrived)
             if left <= 0.0 or connection.wait_connected(min(left, 0.5)):
                 break
         utterance.interrupt.check()
@@ -233,9 +230,9 @@ class RobotSpeech:
         call.add_done_callback(lambda _: news.trigger())
         with interrupt.waking(news.trigger):
             while not news.is_set():
-                left = self._last_sign + QUIET_LIMIT - self._clock.now()
+                left = self._last_sign + LOST_WORD_LIMIT - self._clock.now()
                 if left <= 0.0:
-                    quiet = f"the robot has said nothing for {QUIET_LIMIT:g} s: the text was given up"
+                    quiet = f"the robot has said nothing for {LOST_WORD_LIMIT:g} s: the text was given up"
                     interrupt.trigger(NaoError(quiet))
                     return
                 self._clock.wait(left, news)

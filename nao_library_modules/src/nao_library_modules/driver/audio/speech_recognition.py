@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ...robot.event_relay import EventRelay
 from ...ros.health import Report
@@ -17,8 +18,6 @@ from .speech_settings import SpeechSettings
 
 RECOGNITION = "ALSpeechRecognition"
 HEARD = "WordRecognized"
-ANSWER_LIMIT = 5.0
-"""s that the robot has to answer; a new vocabulary takes it a while."""
 CLOSE_LIMIT = 1.0
 SPOTTED = re.compile(r"<\.\.\.>")
 """What stands for the words before and after one that was spotted."""

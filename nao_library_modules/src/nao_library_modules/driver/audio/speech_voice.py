@@ -6,14 +6,13 @@ import logging
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from .speech_settings import SpeechSettings
 
 log = logging.getLogger(__name__)
 
 SPEECH = "ALTextToSpeech"
-ANSWER_LIMIT = 2.0
-"""s that the robot has to answer a question about its voice."""
 METHODS = {
     "language": ("getLanguage", "setLanguage"),
     "voice": ("getVoice", "setVoice"),

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import logging
 import threading
-import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
+from naoqi.limits import FIRST_PICTURE_LIMIT, STREAM_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import Preempted
@@ -24,10 +24,6 @@ from .camera_subscriber import DEVICE, CameraSubscriber, StreamSettings
 
 log = logging.getLogger(__name__)
 
-SILENCE_LIMIT = 3.0
-"""s without a picture, of the robot's time and of ours, after which the robot is asked anew."""
-BEGIN_LIMIT = 15.0
-"""The same before the first picture: a camera, or a simulator's renderer, may have to start."""
 FAILURE_PAUSE = 0.5
 """s after which a stream that failed begins again."""
 SLOW = 0.8
@@ -219,8 +215,8 @@ class CameraStream:
     def _is_alive(self) -> bool:
         """Whether pictures come. On a simulation that stands still, none are due."""
         wall, ros = self._last
-        quiet = min(time.monotonic() - wall, self._clock.now() - ros)
-        limit = (SILENCE_LIMIT if self._shows else BEGIN_LIMIT) + self._settings.period
+        quiet = min(self._robot.connection.answering_time() - wall, self._clock.now() - ros)
+        limit = (STREAM_LIMIT if self._shows else FIRST_PICTURE_LIMIT) + self._settings.period
         if quiet < limit or self._subscription is None:
             return True
         self._fail_once("no picture has come for some time")
@@ -277,7 +273,7 @@ class CameraStream:
             self._sink(picture, self._times.take(last, self._last[1]))
 
     def _note_life(self) -> None:
-        self._last = (time.monotonic(), self._clock.now())
+        self._last = (self._robot.connection.answering_time(), self._clock.now())
 
     def _fail_once(self, problem: str) -> None:
         if problem != self._problem:

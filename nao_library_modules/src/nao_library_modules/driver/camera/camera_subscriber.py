@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError, RobotError, RobotUnreachable
+from naoqi.limits import ANSWER_LIMIT
 
 from ...nao.camera_facts import CAMERA_NAMES
 
 log = logging.getLogger(__name__)
 
 DEVICE = "ALVideoDevice"
-ANSWER_LIMIT = 5.0
 
 
 @dataclass(frozen=True)

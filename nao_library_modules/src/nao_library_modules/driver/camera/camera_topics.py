@@ -13,6 +13,7 @@ from sensor_msgs.srv import SetCameraInfo, SetCameraInfoResponse
 from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ...base.suggestion import did_you_mean
 from ...nao.camera_facts import CAMERA_NAMES, CAMERAS, SIZES
@@ -27,7 +28,7 @@ from .camera_info_files import camera_name
 from .camera_infos import CameraInfos
 from .camera_settings import TUNINGS, changed_tunings, fields_of, settled, stream_settings
 from .camera_stream import CameraStream
-from .camera_subscriber import ANSWER_LIMIT, DEVICE
+from .camera_subscriber import DEVICE
 from .camera_tuning import NO_ANSWER, CameraTuning
 from .image_compression import FORMATS, JPEG, compress
 from .image_messages import from_info, header_of, to_compressed, to_image, to_info

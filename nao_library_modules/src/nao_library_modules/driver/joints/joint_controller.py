@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT, MOVE_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
@@ -28,10 +29,6 @@ STIFFEN_TIME = 0.5
 """s in which the whole body gets stiff or limp."""
 REPORT_PERIOD = 0.1
 """s of this computer between two reports of a motion under way."""
-QUICK_LIMIT = 2.0
-"""s that a call which does not wait for motion may take."""
-SERVICE_LIMIT = 60.0
-"""s that waking up or going to rest may take."""
 ALIVE, LIFELESS = "solitary", "disabled"
 
 
@@ -178,10 +175,10 @@ class JointController:
         return False
 
     def _quick(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(MOTION).call_async(method, *arguments).result(timeout=QUICK_LIMIT)
+        return self._robot.proxy(MOTION).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
 
     def _service(self, module: str, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(module).call_async(method, *arguments).result(timeout=SERVICE_LIMIT)
+        return self._robot.proxy(module).call_async(method, *arguments).result(timeout=MOVE_LIMIT)
 
 
 class InitialStiffness:

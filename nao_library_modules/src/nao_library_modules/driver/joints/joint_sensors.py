@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ...base.paths import config_file
 from ...base.rotations import Vector
@@ -29,8 +30,6 @@ INERTIAL = tuple(
 # Both hips are turned by one motor, and the robot's memory has it under the name of the left one.
 SHARED_MOTORS = {"RHipYawPitch": "LHipYawPitch"}
 FRAME_WORLD = 1
-LIMIT = 1.0
-"""s that the robot may take for one reading."""
 MOTORS_FIELDS = {"_source", "voltage_v", "gear_efficiency", "motors"}
 MOTOR_FIELDS = {"model", "no_load_rpm", "gear_ratios"}
 
@@ -76,15 +75,17 @@ class JointSensors:
         """
         values = self._robot.proxy(MEMORY).call_async("getListData", self._keys)
         torso = self._ask_torso() if self._use_odometry else None
-        return self._reading(values.result(timeout=LIMIT), None if torso is None else _six(torso.result(timeout=LIMIT)))
+        return self._reading(
+            values.result(timeout=ANSWER_LIMIT), None if torso is None else _six(torso.result(timeout=ANSWER_LIMIT))
+        )
 
     def read_torso(self) -> tuple[float, ...]:
         """Its x, y, z (m), roll, pitch, yaw (rad) in the robot's odometry. Raises NaoError if it cannot be asked."""
-        return _six(self._ask_torso().result(timeout=LIMIT))
+        return _six(self._ask_torso().result(timeout=ANSWER_LIMIT))
 
     def read_stiffnesses(self) -> tuple[float, ...]:
         """Stiffness of each joint, 0 to 1; NaN where the robot gives none. Raises NaoError if it cannot be asked."""
-        values = self._robot.proxy(MEMORY).call_async("getListData", self._stiffness_keys).result(timeout=LIMIT)
+        values = self._robot.proxy(MEMORY).call_async("getListData", self._stiffness_keys).result(timeout=ANSWER_LIMIT)
         return tuple(_number(value) for value in values)
 
     def _ask_torso(self) -> Any:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Callable
 from contextlib import suppress
 from functools import lru_cache
 from typing import Any
@@ -16,7 +18,6 @@ from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
-from ...base.clock import WallClock
 from ...base.errors import BadGoal
 from ...base.field_checks import require_length, require_within
 from ...base.limits import limit
@@ -28,7 +29,8 @@ PLACE, PLACES = limit("place"), limit("places")
 PATIENCE = 2.0
 """s that a frame may take to appear."""
 OLDEST = 2.0
-"""s that the robot may have been where odometry has it last. Simulated time may be fast: of real time as well."""
+"""s that the robot may have been where odometry has it last, also by the clock of its answers: simulated time may be
+fast, and a robot that is silent does not say where it is."""
 
 
 @lru_cache(maxsize=None)
@@ -40,11 +42,14 @@ def _frames_of_tf() -> tf2_ros.Buffer:
 
 
 class PlanarFrames:
-    """Looks frames up, in /tf or in the given buffer. Any thread may ask."""
+    """Looks frames up, in /tf or in the given buffer. Any thread may ask.
 
-    def __init__(self, buffer: Any = None) -> None:
+    `answering_time`: of the connection to the robot; a robot that is silent is where it was.
+    """
+
+    def __init__(self, buffer: Any = None, answering_time: Callable[[], float] = time.monotonic) -> None:
         self._given = buffer
-        self._wall = WallClock()
+        self._answering_time = answering_time
         self._seen: dict[tuple[str, str], tuple[rospy.Time, float]] = {}
 
     @property
@@ -93,15 +98,15 @@ class PlanarFrames:
         return frame == outer
 
     def _unchanged(self, child: str, frame: str, stamp: rospy.Time) -> float:
-        """For how long, in s of real time, old transforms with this stamp have been found."""
-        now = self._wall.now()
+        """For how long, in s of the robot's answers, old transforms with this stamp have been found."""
+        now = self._answering_time()
         last, since = self._seen.get((child, frame), (None, now))
         self._seen[child, frame] = (stamp, since if last == stamp else now)
         return now - self._seen[child, frame][1]
 
-    def _look_up(self, frame: str, child: str, time: rospy.Time, patience: float) -> TransformStamped:
+    def _look_up(self, frame: str, child: str, stamp: rospy.Time, patience: float) -> TransformStamped:
         try:
-            return self._buffer.lookup_transform(frame, child, time, rospy.Duration.from_sec(patience))
+            return self._buffer.lookup_transform(frame, child, stamp, rospy.Duration.from_sec(patience))
         except (tf2_ros.TransformException, tf2_ros.InvalidArgumentException) as error:
             raise NaoError(f"{child} cannot be found in {frame}: {error}") from error
 

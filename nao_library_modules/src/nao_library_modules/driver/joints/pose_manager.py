@@ -22,6 +22,7 @@ from nao_library_actions.msg import (
     JointTrajectoryGoal,
 )
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.field_checks import require_within
@@ -35,7 +36,7 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ..base.node import interrupt_when_lost
-from .joint_controller import FRACTION, QUICK_LIMIT, STIFFEN_TIME
+from .joint_controller import FRACTION, STIFFEN_TIME
 
 POSTURE = "ALRobotPosture"
 STOP_WALK = "stop_walk_srv"
@@ -120,14 +121,14 @@ class PoseManager:
     def _take_posture(self, goal: BodyPoseWithSpeedGoal, interrupt: CancellationToken) -> GoalOutcome:
         require_within("speed", goal.speed, FRACTION)
         posture = self._robot.proxy(POSTURE)
-        known = posture.call_async("getPostureList").result(timeout=QUICK_LIMIT)
+        known = posture.call_async("getPostureList").result(timeout=ANSWER_LIMIT)
         if goal.posture_name not in known:
             raise UnknownPose(goal.posture_name, known, "posture")
         motion = self._robot.proxy(MOTION)
         run_task(motion.call_async("stiffnessInterpolation", "Body", 1.0, STIFFEN_TIME), interrupt, lambda: None)
 
         def stop() -> None:
-            posture.call_async("stopMove").result(timeout=QUICK_LIMIT)
+            posture.call_async("stopMove").result(timeout=ANSWER_LIMIT)
 
         if not run_task(posture.call_async("goToPosture", goal.posture_name, goal.speed), interrupt, stop):
             raise NaoError(f"the robot did not reach the posture {goal.posture_name}")

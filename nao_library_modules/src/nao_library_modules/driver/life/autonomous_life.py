@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import UnknownModule
+from naoqi.limits import ANSWER_LIMIT, MOVE_LIMIT
 
 from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
@@ -15,9 +16,6 @@ from ..base.lazy_subscription import LazySubscription
 LIFE, MEMORY = "ALAutonomousLife", "ALMemory"
 STATE = "AutonomousLife/State"
 STATES = ("disabled", "solitary", "interactive", "safeguard")
-CHANGE_LIMIT = 60.0
-"""s that a change of state may take: the robot may get up for it."""
-ANSWER_LIMIT = 5.0
 
 
 @dataclass(frozen=True)
@@ -58,7 +56,7 @@ class AutonomousLife:
 
     def set_state(self, state: str) -> None:
         """Change the state, and wait until it is reached."""
-        self._robot.proxy(LIFE).call_async("setState", state).result(timeout=CHANGE_LIMIT)
+        self._robot.proxy(LIFE).call_async("setState", state).result(timeout=MOVE_LIMIT)
 
     def set_enabled(self, ability: Ability, enabled: bool) -> None:
         try:

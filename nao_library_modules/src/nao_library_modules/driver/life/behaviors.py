@@ -6,11 +6,11 @@ import logging
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT, CLEAN_UP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.suggestion import did_you_mean
-from ...robot.robot import CLEAN_UP_LIMIT
 from ...robot.robot_task import run_task
 
 log = logging.getLogger(__name__)
@@ -18,7 +18,6 @@ log = logging.getLogger(__name__)
 MODULE = "ALBehaviorManager"
 ANIMATIONS = "animations/"
 """Beginning of the names of those that only move joints: others may wake the robot themselves."""
-ANSWER_LIMIT = 5.0
 # So many behaviours are named in an error.
 MOST_NAMED = 20
 

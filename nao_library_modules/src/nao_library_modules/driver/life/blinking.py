@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any, Tuple
 
 from naoqi.errors import NaoError
+from naoqi.limits import CLEAN_UP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.field_checks import require_within, require_zero_or
 from ...base.limits import limit
-from ...robot.robot import CLEAN_UP_LIMIT
 from ...robot.robot_task import run_task
 from ...ros.concurrent_action_server import Replaced
 

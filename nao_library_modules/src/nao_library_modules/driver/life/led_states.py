@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ...base.once_per_connection import OncePerConnection
 from ...nao.body_devices import PREFIX
@@ -13,8 +14,6 @@ from ...nao.light_names import COLOUR_PARTS, colour_part
 from .blinking import Colour
 
 LEDS, MEMORY = "ALLeds", "ALMemory"
-LIMIT = 2.0
-"""s that the robot may take for one answer."""
 BLUE_DEVICES = "Ears/"
 """What the names of LEDs begin with that are blue; those that have no colour in their names and are not are white."""
 
@@ -31,7 +30,7 @@ class LedReader:
         lights = self._names()
         devices = [device for light in lights.values() for device in light]
         values = self._robot.proxy(MEMORY).call_async("getListData", [PREFIX + device for device in devices])
-        found = values.result(timeout=LIMIT)
+        found = values.result(timeout=ANSWER_LIMIT)
         if len(found) != len(devices):
             raise NaoError(f"the robot's memory holds {len(found)} values of {len(devices)} LEDs")
         return shown(lights, dict(zip(devices, found)))
@@ -39,9 +38,9 @@ class LedReader:
     def _read_names(self) -> dict[str, tuple[str, ...]]:
         """LEDs of each light; all at once, for one after the other takes a second on a wireless network."""
         leds = self._robot.proxy(LEDS)
-        names = leds.call_async("listLEDs").result(timeout=LIMIT)
+        names = leds.call_async("listLEDs").result(timeout=ANSWER_LIMIT)
         calls = [leds.call_async("listLED", name) for name in names]
-        return joined({name: tuple(call.result(timeout=LIMIT)) for name, call in zip(names, calls)})
+        return joined({name: tuple(call.result(timeout=ANSWER_LIMIT)) for name, call in zip(names, calls)})
 
 
 def joined(lights: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:

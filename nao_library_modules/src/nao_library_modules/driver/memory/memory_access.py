@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from naoqi.limits import ANSWER_LIMIT
+
 from ...base.errors import BadGoal
 from ...base.suggestion import did_you_mean
 from .memory_names import is_pattern, matching
 
 MEMORY = "ALMemory"
-ANSWER_LIMIT = 5.0
 BATCH = 500
 """Keys in one question."""
 

@@ -10,6 +10,7 @@ from geometry_msgs.msg import Pose2D, Twist, Vector3
 from std_srvs.srv import Empty
 
 from naoqi.errors import NaoError, RobotError
+from naoqi.limits import ANSWER_LIMIT, STOP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.places import Place
@@ -19,13 +20,10 @@ from ...owners.line import SERVICE
 from ...robot.robot_task import run_task
 from ...ros.node_interface import NodeInterface
 from ..base.lazy_topic import LazyTopic
-from ..joints.joint_controller import QUICK_LIMIT
 from ..joints.joint_sensors import MEMORY
 
 LISTENER_LIMIT = 5.0
 """s to wait for somebody who listens to the commands."""
-STOP_LIMIT = 10.0
-"""s that a walking robot may take to stand."""
 FAILED = "ALMotion/MoveFailed"
 STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
 
@@ -79,7 +77,7 @@ class WalkTopics:
         self._commands.publish(Twist(Vector3(x, y, 0.0), Vector3(0.0, 0.0, yaw)))
 
     def walking(self) -> bool:
-        return bool(self._robot.proxy(MOTION).call_async("moveIsActive").result(timeout=QUICK_LIMIT))
+        return bool(self._robot.proxy(MOTION).call_async("moveIsActive").result(timeout=ANSWER_LIMIT))
 
     def why_stopped(self) -> str:
         """Cause of the robot's event MoveFailed since `prepare`, an obstacle for example; empty without one."""
@@ -113,7 +111,7 @@ class WalkTopics:
     def _last_failure(self) -> list:
         """Value of the event: cause, whether the walk had begun, place of an obstacle. Empty before the first one."""
         try:
-            value = self._robot.proxy(MEMORY).call_async("getData", FAILED).result(timeout=QUICK_LIMIT)
+            value = self._robot.proxy(MEMORY).call_async("getData", FAILED).result(timeout=ANSWER_LIMIT)
         except RobotError:
             return []  # nothing has failed yet, or the robot has no such event
         return list(value) if isinstance(value, (list, tuple)) else []

@@ -68,7 +68,7 @@ class NaoPathFollower:
         self._settings = FollowerSettings.read(node.param)
         self._base = frame_parameter(node, "~base_frame_id", FOOTPRINT)
         self._odom = frame_parameter(node, "~odom_frame_id", ODOM)
-        self._frames = PlanarFrames()
+        self._frames = PlanarFrames(answering_time=robot.connection.answering_time)
         self._legs = WalkTopics(robot, node, self._settings.use_vel_ctrl)
         self._clock = RosClock()
         self._touching = True

@@ -14,6 +14,8 @@ FACE_DISTANCE = 0.4
 """m: to what is further away the robot turns its face; it walks ahead faster than sideways."""
 PROGRESS = 0.02
 """m that count as progress."""
+LONGEST_ROUND = 1.0
+"""s that a round counts at most: in a longer one the robot was silent, or this program stopped."""
 
 
 def velocity(way: Place, settings: FollowerSettings) -> tuple[float, float, float]:
@@ -43,13 +45,16 @@ class StuckWatch:
     def __init__(self, limit: float) -> None:
         self._limit = limit
         self._best = math.inf
-        self._since = 0.0
+        self._waited, self._checked = 0.0, 0.0
 
     def check(self, now: float, rest: float) -> None:
         """Note at `now` s that `rest` m of the way are left. Raises NaoError if it has not become less for too long."""
+        round_time, self._checked = min(max(0.0, now - self._checked), LONGEST_ROUND), now
         if rest < self._best - PROGRESS or math.isinf(self._best):
-            self._best, self._since = rest, now
-        elif self._limit > 0.0 and now - self._since > self._limit:
+            self._best, self._waited = rest, 0.0
+            return
+        self._waited += round_time
+        if self._limit > 0.0 and self._waited > self._limit:
             raise NaoError(
                 f"no progress for {self._limit:g} s, with {rest:.2f} m still to go: something is in the way, "
                 "or the robot does not walk"

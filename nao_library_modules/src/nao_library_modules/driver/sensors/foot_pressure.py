@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from naoqi.limits import ANSWER_LIMIT
+
 from ...nao.body_devices import SIDES, sensor_key, weight_keys
 
 MEMORY = "ALMemory"
@@ -16,7 +18,6 @@ CENTER = "{}Foot/FSR/CenterOfPressure/{}"
 CONTACT = "{}FootContact"
 LIGHTEST = 0.5
 """N: below it a foot has no centre of pressure."""
-ANSWER_LIMIT = 1.0
 
 
 @dataclass(frozen=True)

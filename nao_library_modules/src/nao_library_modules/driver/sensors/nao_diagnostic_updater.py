@@ -13,6 +13,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from nao_library_msgs.msg import ConnectionState, RobotInfo, StringStamped
 from nao_library_msgs.srv import GetRobotInfo, GetRobotInfoResponse
 from naoqi.errors import NaoError, UnknownMethod, UnknownModule
+from naoqi.limits import ANSWER_LIMIT
 
 from ...base.answers import json_of
 from ...base.cancellation import CancellationToken
@@ -26,7 +27,6 @@ from .body_reports import Thresholds, body_reports, keys_of, network_reports, pa
 log = logging.getLogger(__name__)
 
 MEMORY, NETWORKS = "ALMemory", "ALConnectionManager"
-ANSWER_LIMIT = 2.0
 SHUTDOWN_LIMIT = 3.0
 DEFAULT_RATE = 0.5
 THRESHOLDS = {
@@ -77,7 +77,7 @@ class NaoDiagnosticUpdater:
         self._connection = self._node.publisher("connection", ConnectionState, queue_size=10, latch=True)
         self._node.offer("get_robot_config", GetRobotInfo, self._robot_config)
         # After the service: a part that cannot offer it leaves no listener.
-        robot.connection.add_listener(self._on_state)
+        robot.connection.add_listener(self._on_state, silence=True)
         self._on_state(robot.connection.state)
         self._thread = threading.Thread(target=self._run, name="diagnosis", daemon=True)
         self._thread.start()
@@ -97,6 +97,8 @@ class NaoDiagnosticUpdater:
         """Called from the connection's thread for listeners."""
         connection = self._robot.connection
         message = ConnectionState(address=self._robot.address, state=str(state), connections=connection.generation)
+        if connection.silent:
+            message.state = ConnectionState.SILENT
         message.last_error = connection.last_error or ""
         message.header.stamp = rospy.Time.now()
         publish(self._connection, message)

@@ -16,6 +16,7 @@ from std_srvs.srv import Empty
 from nao_library_msgs.msg import FaceDetected, LandmarkDetected, MovementDetected
 from nao_library_msgs.srv import LearnFace, LearnFaceResponse, VisionMotionSensitivity
 from naoqi.errors import BadArguments, NaoError, UnknownMethod
+from naoqi.limits import LEARN_LIMIT
 
 from ...nao.camera_facts import CAMERA_NAMES, TOP
 from ...robot.image_clock import ImageClock
@@ -38,8 +39,6 @@ MOVEMENT = ExtractorKind(
     "MovementDetection/MovementInfo",
 )
 QUEUE = 10
-LEARN_LIMIT = 30.0
-"""s that the robot may take to learn a face: it waits for a good view."""
 
 
 class NaoVisionServices:

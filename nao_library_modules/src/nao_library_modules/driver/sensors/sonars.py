@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ...nao.body_devices import NEAREST, SONARS, echo_of
 from ...ros.health import Level, Report
@@ -14,8 +15,6 @@ from ..base.lazy_subscription import LazySubscription
 from ..base.polling import Polling
 
 SONAR, MEMORY = "ALSonar", "ALMemory"
-ANSWER_LIMIT = 5.0
-READ_LIMIT = 1.0
 
 
 def range_of(value: Any) -> float:
@@ -69,7 +68,7 @@ class Sonars:
     def _read(self) -> None:
         if not self._measuring.running:
             return  # the memory holds what was measured for somebody else, long ago
-        values = self._robot.proxy(MEMORY).call_async("getListData", list(SONARS.values())).result(timeout=READ_LIMIT)
+        values = self._robot.proxy(MEMORY).call_async("getListData", list(SONARS.values())).result(timeout=ANSWER_LIMIT)
         if len(values) != len(SONARS):
             raise NaoError(f"the robot's memory answers {values!r} for {', '.join(SONARS.values())}")
         self._sink({side: range_of(value) for side, value in zip(SONARS, values)})

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ...nao.body_devices import FOOT_CONTACT
 from ...nao.touch_names import BY_EVENT
@@ -19,7 +20,6 @@ from ..base.lazy_subscription import LazySubscription
 log = logging.getLogger(__name__)
 
 MEMORY = "ALMemory"
-ANSWER_LIMIT = 5.0
 HEAD, HAND, BUMPER, CHEST, FEET = "head", "hand", "bumper", "chest button", "feet"
 
 

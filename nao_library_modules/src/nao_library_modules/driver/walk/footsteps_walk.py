@@ -14,19 +14,17 @@ from typing import Any
 
 from almath import Pose2D, Position2D, avoidFootCollision, clipFootWithEllipse
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT, STOP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.places import Place
 from ...nao.joint_names import MOTION
 from ...nao.stiff_legs import ask_for_stiff_legs
-from ..joints.joint_controller import QUICK_LIMIT
 from .walk_commands import LEFT, RIGHT, FootStep
 
 STEP_TIME = 0.5
 """s from step to step."""
-STOP_LIMIT = 10.0
-"""s that a walking robot may take to stand."""
 TOO_EARLY = 0.6
 """Share of the time of all steps: a walk that ends before was stopped."""
 MIN_X, MAX_X = -0.04, 0.08
@@ -165,7 +163,7 @@ class FootstepWalk:
         legs = [step.leg for step in steps]
         places = [list(step.place) for step in steps]
         times = [STEP_TIME * (index + 1) for index in range(len(steps))]
-        self._motion("setFootSteps", legs, places, times, clear).result(timeout=QUICK_LIMIT)
+        self._motion("setFootSteps", legs, places, times, clear).result(timeout=ANSWER_LIMIT)
 
     def _made(self, count: int, before: int | None, taken_back: bool = False) -> int | None:
         """How many of `count` steps are made, by those that are left.
@@ -173,7 +171,7 @@ class FootstepWalk:
         None while the robot has not planned them: it takes the pose for walking first, with no step left. `before` is
         the last answer. With `taken_back`, only the steps that can still be taken back will not be made.
         """
-        _, fixed, changeable = self._motion("getFootSteps").result(timeout=QUICK_LIMIT)
+        _, fixed, changeable = self._motion("getFootSteps").result(timeout=ANSWER_LIMIT)
         if before is None and not fixed and not changeable:
             return None
         ahead = len(changeable) + (0 if taken_back else len(fixed))

@@ -34,7 +34,7 @@ class NaoqiMoveTo:
         self._node = node
         self._base = frame_parameter(node, "~base_frame_id", FOOTPRINT)
         self._odom = frame_parameter(node, "~odom_frame_id", ODOM)
-        self._frames = PlanarFrames()
+        self._frames = PlanarFrames(answering_time=robot.connection.answering_time)
         self._walk = MoveToWalk(robot)
         self._node.subscriber("move_base_simple/goal", PoseStamped, self._on_goal, queue_size=1)
         self._node.subscriber("move_base_simple/cancel", Empty, lambda _: self._walk.cancel(), queue_size=1)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import STOP_LIMIT
 
 from ...base.places import Place
 from ...nao.joint_names import MOTION
@@ -17,8 +18,6 @@ from ...ros.health import Level, Report
 
 log = logging.getLogger(__name__)
 
-STOP_LIMIT = 10.0
-"""s that a walking robot may take to stand."""
 END_LIMIT = 1.0
 
 

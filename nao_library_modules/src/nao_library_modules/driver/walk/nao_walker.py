@@ -15,6 +15,7 @@ from std_srvs.srv import Empty
 from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import CmdPoseService, CmdVelService, SetArmsEnabled, StepTargetService
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
 from ...nao.joint_names import MOTION
 from ...ros.health import Report
@@ -22,7 +23,7 @@ from ...ros.node_interface import AlreadyOffered, NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
 from ..base.node import number, whenever
-from ..joints.joint_controller import QUICK_LIMIT, InitialStiffness, JointController
+from ..joints.joint_controller import InitialStiffness, JointController
 from .head_scan import HeadScan
 from .walk_commands import Velocity, read_gait_config, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
@@ -208,7 +209,7 @@ class NaoWalker:
 
     def _serve_arms(self, _: str, request: Any) -> None:
         arms = request.left_arm, request.right_arm
-        self._robot.proxy(MOTION).call_async("setMoveArmsEnabled", *arms).result(timeout=QUICK_LIMIT)
+        self._robot.proxy(MOTION).call_async("setMoveArmsEnabled", *arms).result(timeout=ANSWER_LIMIT)
 
     def _gait(self) -> list[list[Any]]:
         if not self._node.param("~use_foot_gait_config", False):
@@ -223,7 +224,7 @@ class NaoWalker:
             protect = self._node.param("~enable_foot_contact_protection", None)
             if protect is not None:
                 config = [[CONTACT_PROTECTION, bool(protect)]]
-                self._robot.proxy(MOTION).call_async("setMotionConfig", config).result(timeout=QUICK_LIMIT)
+                self._robot.proxy(MOTION).call_async("setMotionConfig", config).result(timeout=ANSWER_LIMIT)
             self._init_stiffness.apply()
         except NaoError as error:
             rospy.logerr("the robot does not take the parameters of the walk: %s", error)
@@ -236,7 +237,7 @@ class NaoWalker:
         active = None
         if self._robot.connection.state == "connected":
             try:
-                active = self._robot.proxy(MOTION).call_async(IS_ACTIVE).result(timeout=QUICK_LIMIT)
+                active = self._robot.proxy(MOTION).call_async(IS_ACTIVE).result(timeout=ANSWER_LIMIT)
                 self._journal.succeeded(IS_ACTIVE)
             except NaoError as error:
                 self._journal.failed(IS_ACTIVE, error)

@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
+from naoqi.limits import ANSWER_LIMIT, CLEAN_UP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.clock import WallClock
@@ -17,7 +18,6 @@ from ...base.errors import Preempted
 from ...nao.joint_names import MOTION
 from ...nao.stiff_legs import ask_for_stiff_legs
 from ...robot.robot_task import run_task
-from ..joints.joint_controller import QUICK_LIMIT
 from .walk_commands import FootStep, GaitConfig, Target, Velocity
 from .walk_orders import Command, Mailbox, Order, Stop, Superseded, WalkEnded
 from .walk_timing import WalkPace, WalkWatchdog
@@ -98,7 +98,7 @@ class Walker:
         if not only_own or self._box.first is not None or self.doing != STANDS:
             self._stop_at_the_end(limit)
         self._news.stop()
-        self._thread.join(QUICK_LIMIT)
+        self._thread.join(CLEAN_UP_LIMIT)
 
     def _stop_at_the_end(self, limit: float) -> None:
         last = Order(Stop(), CLOSED)
@@ -262,7 +262,7 @@ class Walker:
         return call
 
     def _quick(self, method: str, *arguments: Any) -> Any:
-        return self._start(method, *arguments).result(timeout=QUICK_LIMIT)
+        return self._start(method, *arguments).result(timeout=ANSWER_LIMIT)
 
     # --- ends, in threads of the proxy layer, which must not wait -----------------------------------------------
 

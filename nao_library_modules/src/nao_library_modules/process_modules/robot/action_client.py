@@ -28,8 +28,6 @@ SERVER_LIMIT = 20.0
 """s of the computer to wait for a server: simulated time may run so fast that a node is not up within much of it."""
 LOOK_PERIOD = 0.5
 """s of the plan's clock after which is looked how long that was."""
-CANCEL_LIMIT = 5.0
-"""s that a server may take to end a goal that was cancelled."""
 
 
 @dataclass(frozen=True)
@@ -130,8 +128,10 @@ class PlanActionClient:
             if not done.value:
                 with uninterrupted():
                     cancelled = watch.cancel(handle)
-                    if not wait_until(lambda: done.value, [done], CANCEL_LIMIT):
-                        log.warning("the goal of %s was cancelled %g s ago and does not end", self.name, CANCEL_LIMIT)
+                    if not wait_until(lambda: done.value, [done], watch.END_LIMIT):
+                        log.warning(
+                            "the goal of %s was cancelled %g s ago and does not end", self.name, watch.END_LIMIT
+                        )
             if done.value and on_end is not None:
                 on_end(_end_of(handle))
         if cancelled:

@@ -41,14 +41,19 @@ OLD_FRAMES = 5
 """So many frames may be older than the request: they were on their way. A camera that sends more of them has another
 clock, and its stamps do not count."""
 
+SILENCE_GRACE = 1.0
+"""s of ROS time that pictures are waited for at least while the robot is silent, and after that."""
+
 
 class Frames:
     """The newest frame of a topic, for one function that waits for it."""
 
-    def __init__(self, topic: str, clock: Any, interrupt: CancellationToken) -> None:
+    def __init__(self, topic: str, clock: Any, interrupt: CancellationToken, connection: Any) -> None:
+        """Wait for none yet. `connection`: of the robot, whose silence gives its cameras more time."""
         self._topic = topic
         self._clock = clock
         self._interrupt = interrupt
+        self._connection = connection
         self._news = CancellationToken()
         self._newest: Frame | None = None
         self._old = 0
@@ -74,6 +79,8 @@ class Frames:
                     return frame
                 self._old += 1
                 continue
+            if self._connection.silent:
+                end = max(end, self._clock.now() + SILENCE_GRACE)
             remaining = end - self._clock.now()
             if remaining <= 0.0:
                 raise NaoError(f"no picture came from {self._topic} within {timeout:g} s: is its camera running?")
@@ -144,7 +151,7 @@ class PictureFunctions(Part):
         count = count or 1
         answers = []
         began = module.clock.now()
-        frames = Frames(source, module.clock, module.interrupt)
+        frames = Frames(source, module.clock, module.interrupt, module.robot.connection)
         with closing(cameras.topics.subscribe(source, frames.take)):
             for number in range(1, count + 1):
                 due = began + (number - 1) * interval
