@@ -16,7 +16,6 @@ from nao_library_modules.driver.camera.camera_formats import Picture, read_pictu
 from nao_library_modules.driver.camera.camera_info_files import camera_name, path_of, write
 from nao_library_modules.driver.camera.camera_infos import CameraInfos
 from nao_library_modules.driver.camera.camera_settings import changed_tunings, fields_of, settled, stream_settings
-from nao_library_modules.driver.camera.camera_stream import PictureRate
 from nao_library_modules.driver.camera.camera_subscriber import StreamSettings
 from nao_library_modules.driver.camera.image_compression import compress
 from nao_library_modules.driver.camera.image_messages import from_info, header_of, to_compressed, to_image, to_info
@@ -243,19 +242,3 @@ def test_what_the_robot_is_asked_for():
     refused("resolution is 5: one of 0 .160x120., 1 .320x240.", stream_settings, values(resolution=5), 0)
     refused("color_space is 14: one of 0 .Yuv", stream_settings, values(color_space=14), 0)
     refused("source is 2: one of 0 .top., 1 .bottom.", stream_settings, values(source=2), 0)
-
-
-def test_the_rate_is_that_of_the_last_seconds():
-    meter = PictureRate()
-    for number in range(100):
-        meter.note(number / 30.0, 1 / 30.0)
-        assert (meter.rate is None) == (number < 30)
-    for number in range(1, 61):
-        meter.note(99 / 30.0 + number / 15.0, 1 / 15.0)
-    assert meter.rate == pytest.approx(15.0, abs=0.01)
-    assert (meter.count, meter.missed) == (160, 0)
-    for times, missed in (((0.0, 0.1, 0.4, 0.5), 2), ((50.0, 50.1, 1.0, 1.1), 0)):  # set back, a clock misses none
-        meter = PictureRate()
-        for time in times:
-            meter.note(time, 0.1)
-        assert meter.missed == missed

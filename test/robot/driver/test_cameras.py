@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 
 import pytest
@@ -68,6 +69,22 @@ def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, vide
     assert taken == sorted(set(taken)) and all(time >= own for time, own in zip(taken, times))
     stream.want(False)
     eventually(lambda: not ours(video))
+
+
+def test_pictures_that_are_taken_up_too_slowly_are_told_with_the_rate_reached(
+    video, driver_robot, clock, closing, until, caplog
+):
+    gate = threading.Semaphore(0)
+    settings = StreamSettings(0, 0, 13, 30)
+    stream = closing(CameraStream(driver_robot, NAME, settings, clock, lambda *picture: gate.acquire()))
+    stream.want(True)
+    # One every half second.
+    until(lambda: gate.release() or stream.report().level == Level.WARN, limit=60.0, step=0.5)
+    gate.release(1000)
+    report = stream.report()
+    assert report.message == f"only {report.values['rate reached (1/s)']} of 30 pictures a second"
+    assert float(report.values["rate reached (1/s)"]) < 4.0 and report.values["rate asked for (1/s)"] == "30"
+    assert len([message for message in caplog.messages if "of 30 pictures a second" in message]) == 1
 
 
 def test_without_a_robot_there_are_no_pictures_and_it_says_why(clock, closing):

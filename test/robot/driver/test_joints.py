@@ -237,6 +237,13 @@ def test_keys_are_found_by_name_and_pattern_and_written_as_they_are(robot, drive
     assert heard.get(timeout=robot.patience) == 1.5
 
 
+def test_the_rate_at_which_data_is_read_is_told_beside_the_one_asked_for(watch, topics, until):
+    watch.watch([MemoryRule(CHARGE, 20.0)])
+    assert not [name for name in watch.report().values if name.startswith("rate")]
+    topics[CHARGE].tell(True)
+    until(lambda: watch.report().values.get("rate reached of 20 (1/s)"), step=0.025)
+
+
 def test_data_is_published_at_its_rate_while_somebody_listens(watch, robot, topics, until, eventually):
     watch.watch([MemoryRule(CHARGE, 20.0), MemoryRule("Device/SubDeviceList/*/Position/Sensor/Value", 10.0)])
     assert watch.watched(CHARGE) == {CHARGE: CHARGE} and topics[CHARGE].kind == "float"

@@ -12,6 +12,7 @@ from naoqi.errors import NaoError, RobotUnreachable
 from ...base.cancellation import CancellationToken
 from ...ros.health import Level, Report
 from .rate import Rate
+from .rate_meter import RateMeter
 
 log = logging.getLogger(__name__)
 
@@ -28,10 +29,11 @@ class Polling:
         """Nothing is wanted yet.
 
         `read` asks the robot for what `name` says and hands on its answer, in the thread of this object, at `rate` Hz
-        of the clock (WallClock or RosClock).
+        of the clock (WallClock or RosClock). Readings that are late are left out; see RateMeter for what is told then.
         """
         self._robot = robot
         self._name = name
+        self._asked = rate
         self._period = 1.0 / rate
         self._clock = clock
         self._read = read
@@ -39,7 +41,7 @@ class Polling:
         self._condition = threading.Condition()
         self._wanted = False
         self._closed = False
-        self._count = 0
+        self._meter = RateMeter(name, "readings")
         self._problem = ""
         self._logged = ""
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
@@ -53,12 +55,18 @@ class Polling:
             self._condition.notify_all()
 
     def report(self) -> Report:
-        values = {"asked for every (ms)": f"{1000 * self._period:.0f}", "readings": str(self._count)}
+        values = {
+            "asked for every (ms)": f"{1000 * self._period:.0f}",
+            **self._meter.values(self._asked),
+            "readings": str(self._meter.count),
+            "missed readings": str(self._meter.missed),
+        }
         if not self._wanted:
             return Report(Level.OK, "nobody listens", values)
         if self._problem:
             return Report(Level.ERROR, f"the {self._name} cannot be read: {self._problem}", values)
-        return Report(Level.OK, "read", values)
+        slow = self._meter.problem(self._asked)
+        return Report(Level.WARN, slow, values) if slow else Report(Level.OK, "read", values)
 
     def close(self, limit: float = 2.0) -> None:
         """Read no more; waits up to `limit` s for the thread."""
@@ -96,6 +104,7 @@ class Polling:
     def _read_on(self) -> None:
         rate = Rate(self._clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
         last = None
+        self._meter.restart()  # nobody wanted any until now, or there was no robot
         while rate.wait() and self._robot.connection.state == "connected":
             now = self._clock.now()
             if now == last:
@@ -103,4 +112,4 @@ class Polling:
             last = now
             self._read()
             self._problem = self._logged = ""
-            self._count += 1
+            self._meter.note(now, self._asked)

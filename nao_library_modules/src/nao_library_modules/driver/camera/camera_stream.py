@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,6 +18,7 @@ from ...robot.image_clock import ImageClock
 from ...robot.robot import wait_for_calls
 from ...ros.health import Level, Report
 from ..base.lazy_subscription import CLOSE_LIMIT, LazySubscription
+from ..base.rate_meter import RateMeter
 from .camera_formats import RESOLUTIONS, SPACES, Picture, read_picture
 from .camera_subscriber import DEVICE, CameraSubscriber, StreamSettings
 
@@ -26,12 +26,6 @@ log = logging.getLogger(__name__)
 
 FAILURE_PAUSE = 0.5
 """s after which a stream that failed begins again."""
-SLOW = 0.8
-"""Share of the rate that was asked for below which the pictures are reported as too few."""
-WINDOW = 3.0
-"""s that the rate is measured over."""
-GAP = 1.5
-"""Periods between two pictures from which on some are missing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,41 +34,6 @@ class CameraSubscription:
 
     handle: str
     interrupt: CancellationToken = field(default_factory=CancellationToken)
-
-
-class PictureRate:
-    """Counts pictures (`count`), and missed ones between them (`missed`). Any thread may ask."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._times: deque[float] = deque()
-        self.count = 0
-        self.missed = 0
-
-    def restart(self) -> None:
-        """Begin another stream: the time until its first picture is no gap."""
-        with self._lock:
-            self._times.clear()
-
-    def note(self, time: float, period: float) -> None:
-        """Count a picture taken at `time`, s; `period`, s, should be between two of them."""
-        with self._lock:
-            if self._times and time < self._times[-1]:
-                self._times.clear()
-            since = time - self._times[-1] if self._times else 0.0
-            if since > GAP * period:
-                self.missed += round(since / period) - 1
-            self.count += 1
-            self._times.append(time)
-            while self._times[-1] - self._times[0] > WINDOW and len(self._times) > 2:
-                self._times.popleft()
-
-    @property
-    def rate(self) -> float | None:
-        """Pictures a second; None until a second has been seen."""
-        with self._lock:
-            span = self._times[-1] - self._times[0] if self._times else 0.0
-            return (len(self._times) - 1) / span if span >= 1.0 else None
 
 
 class CameraStream:
@@ -114,7 +73,7 @@ class CameraStream:
         self._subscription: CameraSubscription | None = None
         self._closed = False
         self._times = ImageClock()
-        self._rate = PictureRate()
+        self._rate = RateMeter(name, "pictures")
         self._last = (0.0, 0.0)
         self._shows = False
         self._problem = ""
@@ -149,6 +108,8 @@ class CameraStream:
                     raise
                 # It ended meanwhile, because nobody looks any more: the settings are those of the next one.
             self._settings = settings
+            if settings.frame_rate != before.frame_rate:
+                self._rate.restart()
 
     def _change_back(self, handle: str, tried: StreamSettings, before: StreamSettings) -> None:
         try:
@@ -158,13 +119,12 @@ class CameraStream:
             self._lazy.restart()
 
     def report(self) -> Report:
-        settings, rate = self._settings, self._rate.rate
+        settings = self._settings
         values = {
             "camera": CAMERA_NAMES[settings.camera],
             "size": RESOLUTIONS[settings.resolution],
             "colour space": SPACES[settings.color_space][0],
-            "rate asked for (1/s)": str(settings.frame_rate),
-            "rate reached (1/s)": "" if rate is None else f"{rate:.1f}",
+            **self._rate.values(settings.frame_rate),
             "pictures": str(self._rate.count),
             "missed pictures": str(self._rate.missed),
             "last error": self._lazy.problem or self._problem,
@@ -174,9 +134,8 @@ class CameraStream:
         if not self._lazy.running or self._problem:
             problem = self._lazy.problem or self._problem or "the robot is not connected"
             return Report(Level.ERROR, f"no pictures: {problem}", values)
-        if rate is not None and rate < SLOW * settings.frame_rate:
-            return Report(Level.WARN, f"only {rate:.1f} of {settings.frame_rate} pictures a second", values)
-        return Report(Level.OK, "pictures come", values)
+        slow = self._rate.problem(settings.frame_rate)
+        return Report(Level.WARN, slow, values) if slow else Report(Level.OK, "pictures come", values)
 
     def close(self) -> None:
         self._lazy.close()
@@ -266,7 +225,7 @@ class CameraStream:
             last = picture.time
             self._note_life()
             self._shows = True
-            self._rate.note(last, period)
+            self._rate.note(last, self._settings.frame_rate)
             if self._problem:
                 self._problem = ""
                 log.info("%s: pictures come again", self._name)

@@ -113,10 +113,14 @@ class WatchedKey:
     # --- the pace -------------------------------------------------------------------------------------------------
 
     @property
+    def rate(self) -> float:
+        """Most messages a second; 0 for no limit."""
+        return self.rule.rate or (0.0 if self.is_event else DATA_RATE)
+
+    @property
     def period(self) -> float:
         """Least time between two messages, s; 0 for no limit."""
-        rate = self.rule.rate or (0.0 if self.is_event else DATA_RATE)
-        return 1.0 / rate if rate else 0.0
+        return 1.0 / self.rate if self.rate else 0.0
 
     def wait(self, now: float) -> float:
         """Time until data is to be read, s, 0 if it is due now; keys of one rate are due together."""

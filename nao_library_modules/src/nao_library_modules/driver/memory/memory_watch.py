@@ -15,6 +15,7 @@ from ...base.errors import BadGoal
 from ...robot.event_relay import EventRelay
 from ...ros.health import Level, Report
 from ..base.polling import FASTEST, RETRY
+from ..base.rate_meter import RateMeter
 from .memory_access import MEMORY, MemoryAccess
 from .memory_key import WatchedKey
 from .memory_names import matching, topics_of
@@ -51,6 +52,7 @@ class MemoryWatch:
         self._work = threading.Lock()
         self._rules = MemoryRules()
         self._keys: dict[str, WatchedKey] = {}
+        self._meters: dict[float, RateMeter] = {}  # of each rate at which data is read, Hz: its keys are due together
         self._homeless: deque[tuple[WatchedKey, Any]] = deque()  # events that need another topic first
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), self._on_event)
         self._stale = True
@@ -120,7 +122,12 @@ class MemoryWatch:
             return Report(Level.OK, "nothing is watched", values)
         if self._problem or self._overflow:
             return Report(Level.ERROR, self._problem or self._overflow, values)
-        return Report(Level.OK, "watched", values)
+        problems = []
+        for rate, meter in sorted(self._meters.copy().items()):
+            facts = meter.values(rate)
+            values[f"rate reached of {rate:g} (1/s)"] = facts["rate reached (1/s)"]
+            problems += filter(None, [meter.problem(rate)])
+        return Report(Level.WARN, "; ".join(problems), values) if problems else Report(Level.OK, "watched", values)
 
     def close(self) -> None:
         self._robot.connection.remove_listener(self._wake)
@@ -244,12 +251,22 @@ class MemoryWatch:
         # libqi brings events that follow each other closely in any order: what was held need not be the newest.
         for (key, value), newest in zip(held, self._memory.values([key.name for key, _ in held])):
             self._hand_over(key, value if newest is None else newest)
+        self._measure(now, due)
         for key, value in zip(due, self._memory.values([key.name for key in due])):
             key.was_read(now)
             waits.append(key.wait(now))
             if value is not None:
                 self._hand_over(key, value)
         return min(waits)
+
+    def _measure(self, now: float, due: list[WatchedKey]) -> None:
+        """Note that data is read, for each rate; rates of which no key is wanted any more are forgotten."""
+        wanted = {key.rate for key in self._keys.values() if key.wanted and not key.is_event}
+        for rate in set(self._meters) - wanted:
+            del self._meters[rate]
+        for rate in {key.rate for key in due}:
+            meter = self._meters.setdefault(rate, RateMeter(f"memory keys at {rate:g} Hz", "readings"))
+            meter.note(now, rate)
 
     def _mind_events(self) -> None:
         """Subscribe the events that have subscribers here, or whose type is not known yet; those only."""
