@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 import random
 import signal
-import time
-from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -21,7 +19,7 @@ DURATIONS = RESULTS / "durations.json"
 SLOWEST = 20
 ALONE = "alone"
 STACK = f"{ALONE} ros"
-LIMITS = {"ros": 300, "slow": 900}
+LIMITS = {"ros": 900, "slow": 1800}
 """s that a case of a level may take, where not as pyproject.toml says; the first one starts the stack."""
 
 # Whoever starts the tests in the background of a shell has them ignore Ctrl-C, and so would the programs that they
@@ -44,10 +42,7 @@ def stack(tmp_path_factory):
 def pytest_addoption(parser):
     parser.addoption("--words", default="", help="run tests with one of these words in their path or name")
     parser.addoption("--closing", default="", help="file for the closing line")
-    parser.addoption("--failures", default="", help="file for the names of the tests that failed, one a line")
-    parser.addoption("--again", default="", help="file with names of tests, one a line: run these alone")
     parser.addoption("--shuffle", default="", help="run the files in a random order of this seed")
-    parser.addoption("--until", type=float, default=float("inf"), help="time (s since 1970) after which no case begins")
 
 
 def pytest_configure(config):
@@ -81,11 +76,6 @@ def pytest_collection_modifyitems(config, items):
         left_out = [item for item in items if not any(word in item.nodeid.lower() for word in words)]
         config.hook.pytest_deselected(items=left_out)
         items[:] = [item for item in items if item not in set(left_out)]
-    again = config.getoption("--again")
-    if again:
-        named = set(Path(again).read_text(encoding="utf-8").splitlines())
-        config.hook.pytest_deselected(items=[item for item in items if item.nodeid not in named])
-        items[:] = [item for item in items if item.nodeid in named]
     seed = config.getoption("--shuffle")
     if seed:
         random.Random(seed).shuffle(items)
@@ -169,7 +159,7 @@ def _name(report):
 
 
 def pytest_terminal_summary(terminalreporter, config):
-    """The slowest tests, how long each file took, what did not begin, and the closing line."""
+    """The slowest tests, how long each file took, and the closing line."""
     if hasattr(config, "workerinput"):
         return
     reports = [r for group in terminalreporter.stats.values() for r in group if hasattr(r, "duration")]
@@ -184,16 +174,7 @@ def pytest_terminal_summary(terminalreporter, config):
         terminalreporter.line(f"{duration:7.2f} s  {name}")
     RESULTS.mkdir(parents=True, exist_ok=True)
     DURATIONS.write_text(json.dumps({**_durations(), **{file: round(t, 2) for file, t in took.items()}}, indent=0))
-    left_out = Counter(_name(report).split("::")[0] for report in terminalreporter.stats.get("skipped", []))
-    if left_out:
-        terminalreporter.section(f"not begun, because the time was up: {left_out.total()}")
-        for file, cases in sorted(left_out.items()):
-            terminalreporter.line(f"{cases:7}    {file}")
     count = {name: len(terminalreporter.stats.get(name, [])) for name in ("passed", "failed", "error")}
-    failures = config.getoption("--failures")
-    if failures:
-        failed = [_name(report) for kind in ("failed", "error") for report in terminalreporter.stats.get(kind, [])]
-        Path(failures).write_text("".join(f"{name}\n" for name in dict.fromkeys(failed)))
     closing = config.getoption("--closing")
     if closing:
         Path(closing).write_text(f"{count['passed']} passed, {count['failed'] + count['error']} failed\n")
@@ -213,20 +194,10 @@ def pytest_runtest_teardown(item, nextitem):
         stack.rest()
 
 
-class TimeIsUp(pytest.skip.Exception):
-    """A case that does not begin, because the time of the whole run is up."""
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup(item):
-    if time.time() > item.config.getoption("--until"):
-        raise TimeIsUp("the time is up")
-
-
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item, call):
     report = yield
-    if report.skipped and not (hasattr(report, "wasxfail") or call.excinfo.errisinstance(TimeIsUp)):
+    if report.skipped and not hasattr(report, "wasxfail"):
         report.outcome = "failed"
         report.longrepr = f"skipped, which shows nothing: {call.excinfo.value}"
     return report

@@ -27,7 +27,7 @@ class Lights(RobotTestCase):
     def test_a_chain_succeeds_with_feedback_of_each_function_and_its_results(self):
         run = self.play(intensity("Brain0", 0.25), intensity("Brain1", 0.5), LedFunction(function="ping"))
         self.ends(run, GoalStatus.SUCCEEDED)
-        wait_until(lambda: len(run.feedback) == 3, 10.0, "the feedback, which has a topic of its own")
+        wait_until(lambda: len(run.feedback) == 3, 60.0, "the feedback, which has a topic of its own")
         steps = [(feedback.index, feedback.function, feedback.count) for _, feedback in run.feedback]
         self.assertEqual(steps, [(0, "setIntensity", 3), (1, "setIntensity", 3), (2, "ping", 3)])
         self.assertEqual([result.function for result in run.result.results], ["setIntensity", "setIntensity", "ping"])
@@ -63,7 +63,7 @@ class Lights(RobotTestCase):
     def test_a_client_whose_clock_is_ahead_locks_nobody_out(self):
         publisher = rospy.Publisher("NaoLights/goal", NaoLedActionGoal, queue_size=1)
         self.addCleanup(publisher.unregister)
-        wait_until(lambda: publisher.get_num_connections() > 0, 10.0, "NaoLights")
+        wait_until(lambda: publisher.get_num_connections() > 0, 60.0, "NaoLights")
         early = NaoLedActionGoal(goal=NaoLedGoal([intensity("Brain0", 0.25)]))
         early.goal_id.stamp = rospy.Time.now() + rospy.Duration(10000)
         publisher.publish(early)

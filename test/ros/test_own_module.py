@@ -47,7 +47,7 @@ class OwnFunction(RobotTestCase):
     def behave(self, step):
         goal = NaoBehaviorGoal([BehaviorFunction(function="runBehavior", text=f"help: x\ndo: [{step}]")])
         client = SimpleActionClient("NaoBehavior", NaoBehaviorAction)
-        self.assertTrue(client.wait_for_server(rospy.Duration(20)))
+        self.assertTrue(client.wait_for_server(rospy.Duration(60)))
         return send(client, goal)
 
     def knows_blink(self):
@@ -83,6 +83,6 @@ class OwnModule(RobotTestCase):
         self.ends(run, GoalStatus.PREEMPTED)
         name = "Mine/Begun"
         run = self.send(f("insertData", f"{name}=1"), f("robotName", time=Duration(10000)))
-        wait_until(lambda: self.robot.module("ALMemory").getDataList(name), 30.0, "the goal")
+        wait_until(lambda: self.robot.module("ALMemory").getDataList(name), 60.0, "the goal")
         self.succeed(f("systemVersion"))
         self.ends(run, GoalStatus.PREEMPTED)

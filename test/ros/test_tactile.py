@@ -32,7 +32,7 @@ class Tactile(RobotTestCase):
     def waiting(self, *functions):
         """Send a goal, and come back when it waits."""
         run = self.send(*functions)
-        wait_until(lambda: any(each.status == "waiting" for _, each in run.feedback), 30.0, "a goal that waits")
+        wait_until(lambda: any(each.status == "waiting" for _, each in run.feedback), 60.0, "a goal that waits")
         return run
 
     def test_a_wait_ends_with_its_touch_and_with_no_other(self):

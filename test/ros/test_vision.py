@@ -46,7 +46,7 @@ class Vision(RobotTestCase):
         run.cancel()
         self.ends(run, GoalStatus.PREEMPTED)
         frames = lambda: {each.id: each.frames for each in self.succeed(f("listThreads")).threads}  # noqa: E731
-        wait_until(lambda: frames().get("walk", 0) >= 5, 30.0, "frames of the recording")
+        wait_until(lambda: frames().get("walk", 0) >= 5, 60.0, "frames of the recording")
         (video,) = self.succeed(f("stopRecording", id="walk")).recordings
         self.assertGreaterEqual(video.frames, 5)
         capture = cv2.VideoCapture(video.path)

@@ -35,12 +35,12 @@ class Autostart(unittest.TestCase):
         module = subprocess.Popen([sys.executable, "-c", MODULE.format(port=PORT)])
         self.addCleanup(module.kill)
         client = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
-        self.assertTrue(client.wait_for_server(Duration(30)))
-        wait_until(lambda: send(client, NaoLedGoal([HALF])).wait().state == GoalStatus.SUCCEEDED, 40.0, "a simulator")
+        self.assertTrue(client.wait_for_server(Duration(60)))
+        wait_until(lambda: send(client, NaoLedGoal([HALF])).wait().state == GoalStatus.SUCCEEDED, 60.0, "a simulator")
         self.assertIn("/nao_sim", rosnode.get_node_names())
         module.send_signal(signal.SIGINT)
-        self.assertEqual(module.wait(30.0), 0)
-        wait_until(lambda: not rosnode.rosnode_ping("/nao_sim", max_count=1), 20.0, "the end of the simulator")
+        self.assertEqual(module.wait(60.0), 0)
+        wait_until(lambda: not rosnode.rosnode_ping("/nao_sim", max_count=1), 60.0, "the end of the simulator")
 
 
 if __name__ == "__main__":

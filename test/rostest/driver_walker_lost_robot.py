@@ -27,7 +27,7 @@ class DriverWalkerLostRobot(MortalSimulator, unittest.TestCase):
     def setUp(self):
         self.addCleanup(self.kill)
         for name in ("cmd_pose_srv", "stop_walk_srv"):
-            rospy.wait_for_service(name, 30.0)
+            rospy.wait_for_service(name, 60.0)
         self.walk_to = rospy.ServiceProxy("cmd_pose_srv", CmdPoseService)
         self.stop = rospy.ServiceProxy("stop_walk_srv", Empty)
 
@@ -35,7 +35,7 @@ class DriverWalkerLostRobot(MortalSimulator, unittest.TestCase):
         """Start a simulator, and have its robot stand up."""
         super().start()
         self.motion = ALProxy("ALMotion", "127.0.0.1", PORT, lazy=True)
-        self.motion.connection.wait_connected(30.0)
+        self.motion.connection.wait_connected(60.0)
         wait_until(lambda: self.succeeds(self.stop), LIMIT, "nao_walker and the robot")
         wait_until(lambda: self.succeeds(self.motion.wakeUp), LIMIT, "a robot that is awake")
 
@@ -65,7 +65,7 @@ class DriverWalkerLostRobot(MortalSimulator, unittest.TestCase):
         wait_until(self.motion.moveIsActive, LIMIT, "a walk")
         began = time.monotonic()
         self.kill()
-        thread.join(10.0)
+        thread.join(60.0)
         self.assertLess(time.monotonic() - began, 2.5)
         self.assertRegex(ends[0], f"127.0.0.1:{PORT}")
 

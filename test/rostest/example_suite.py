@@ -25,7 +25,7 @@ class ExampleSuite(RobotTestCase):
     def test_a_touch_of_the_head_is_waited_for(self):
         tactile = self.robot.action_client("NaoTactile", NaoTactileAction)
         run = send(tactile, NaoTactileGoal([TactileFunction(function="waitForTouch", sensors=["head"], timeout=60.0)]))
-        wait_until(lambda: any(told.status == "waiting" for _, told in run.feedback), 20.0, "the robot waits")
+        wait_until(lambda: any(told.status == "waiting" for _, told in run.feedback), 60.0, "the robot waits")
         self.robot.press(["Head/Touch/Front"])
         self.assertEqual(run.wait().result.touched, ["front head"])
 

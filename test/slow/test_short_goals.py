@@ -51,4 +51,4 @@ def test_their_ends_are_not_lost_and_the_status_stays_short(tmp_path):
     finally:
         for process in (server, master):
             process.send_signal(signal.SIGINT)
-            process.wait(30.0)
+            process.wait(60.0)

@@ -42,6 +42,6 @@ def test_actionlib_learns_of_an_end_that_comes_early(tmp_path, monkeypatch, patc
     monkeypatch.setattr(module, "ActionClient", lambda *_: below)
     client = module.SimpleActionClient("any", None)
     client.send_goal("goal", done_cb=lambda *end: ends.append(end))
-    below.news.join(10.0)
+    below.news.join(60.0)
     assert ends == ([(3, "goal")] if patched else [])
     assert (client.simple_state == module.SimpleGoalState.DONE) == patched

@@ -7,7 +7,7 @@ import rospy
 import tf2_ros
 from sensor_msgs.msg import CameraInfo, Image
 
-LIMIT = 30.0
+LIMIT = 60.0
 CHANNELS = {"bgr8": 3, "rgb8": 3, "mono8": 1, "yuv422": 2}
 MAGENTA = [0.9, 0.0, 0.9]
 
@@ -72,14 +72,14 @@ class Geometry:
 
     def __init__(self, robot):
         self._robot = robot
-        self._buffer = tf2_ros.Buffer()
+        self._buffer = tf2_ros.Buffer(rospy.Duration(600))  # a busy computer looks back
         self._listener = tf2_ros.TransformListener(self._buffer)
 
     def optical_in_world(self, frame, stamp):
         """(4, 4) pose of a camera's optical frame in world, when a picture was taken."""
         pose = self._robot.true_pose()
         torso = matrix(pose.position, pose.orientation)
-        found = self._buffer.lookup_transform("torso", frame, stamp, rospy.Duration(5.0)).transform
+        found = self._buffer.lookup_transform("torso", frame, stamp, rospy.Duration(120.0)).transform
         return torso @ matrix(found.translation, found.rotation)
 
 

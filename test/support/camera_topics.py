@@ -17,7 +17,7 @@ from naoqi.errors import NaoError
 
 CAMERA, OUT = "/camera/image_raw", "/out/image_raw"
 TOP, BOTTOM = "/nao_robot/camera/top/image_raw", "/nao_robot/camera/bottom/image_raw"
-LIMIT = 10.0
+LIMIT = 60.0
 
 
 def header(stamp, frame="CameraTop_optical_frame"):

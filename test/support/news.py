@@ -10,7 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 
 from nao_sim_bridge.testing import StackNotReady, wait_until
 
-LIMIT = 30.0
+LIMIT = 60.0
 
 
 class News:

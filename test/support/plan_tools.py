@@ -21,7 +21,7 @@ from nao_library_modules.process_modules import (
 )
 from nao_library_modules.process_modules.language.failures import GripperGoalNotReached, NavigationGoalNotReached
 
-LIMIT = 10.0
+LIMIT = 60.0
 SHORT = 0.02
 """s in which something would happen that must not."""
 

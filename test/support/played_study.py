@@ -12,7 +12,7 @@ from nao_library_modules.console.study.files import StudyFiles
 from nao_library_modules.console.study.reader import read_protocol
 from nao_library_modules.console.study.studies import Studies
 
-LIMIT = 10.0
+LIMIT = 60.0
 """s of this computer that anything may take."""
 
 PROTOCOL = """\

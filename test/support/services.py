@@ -5,7 +5,7 @@ import rospy
 from nao_library_modules.ros.simple_action_client import SimpleActionClient
 from nao_sim_bridge.testing import wait_until
 
-LIMIT = 30.0
+LIMIT = 60.0
 
 
 def service(name, kind, limit=LIMIT):
@@ -32,7 +32,7 @@ def measured_now(topic, kind):
     """A message of a topic that was measured after now."""
     began = rospy.Time.now()
     while True:
-        message = rospy.wait_for_message(topic, kind, 10.0)
+        message = rospy.wait_for_message(topic, kind, 60.0)
         if message.header.stamp > began:
             return message
 
@@ -41,7 +41,7 @@ def publisher(test, name, kind, **options):
     """A publisher of a topic that somebody listens to; it ends with the test."""
     made = rospy.Publisher(name, kind, queue_size=10, **options)
     test.addCleanup(made.unregister)
-    wait_until(lambda: made.get_num_connections() > 0, 10.0, f"subscriber of {name}")
+    wait_until(lambda: made.get_num_connections() > 0, 60.0, f"subscriber of {name}")
     return made
 
 

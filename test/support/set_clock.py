@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections import Counter
 
-LIMIT = 10.0
+LIMIT = 60.0
 
 
 class CalledClock:

@@ -6,7 +6,6 @@ import queue
 import shutil
 import sys
 import threading
-import time
 
 import qi
 
@@ -18,7 +17,7 @@ from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 from naoqi.errors import NaoError
 
-PATIENCE = 15.0
+PATIENCE = 60.0
 """Longest wait for something that must happen, in s of wall time; passing tests do not come near it."""
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
 
@@ -166,8 +165,9 @@ class Lockstep:
     """
 
     ROUNDS = 4
-    STUCK = 1.0
-    """s of wall time after which a thread counts as waiting that is never seen to: it calls the robot unwatched."""
+    STUCK = 500
+    """Looks after which a thread counts as waiting that is never seen to: it calls the robot unwatched. No time: on a
+    computer that has much else to do, a thread that works may not be seen to wait for long."""
     PAUSE = 0.001
     """s until the next look at a thread that works."""
 
@@ -178,7 +178,7 @@ class Lockstep:
         self._calls = []
         self._waiters = []
         self._change = self._quiet = 0
-        self._busy_since = {}
+        self._looks = {}  # at threads that have not been seen waiting since
         self._ended = False
         threading.Thread(target=self._look, name="lockstep", daemon=True).start()
         self.attach()
@@ -289,9 +289,10 @@ class Lockstep:
         frame = thread and sys._current_frames().get(thread.ident)
         file = frame and frame.f_code.co_filename
         if not frame or file == threading.__file__ or (called and file == naoqi.calls.__file__):
-            self._busy_since.pop(thread, None)
+            self._looks.pop(thread, None)
             return True
-        return time.monotonic() > self._busy_since.setdefault(thread, time.monotonic()) + self.STUCK
+        self._looks[thread] = self._looks.get(thread, 0) + 1
+        return self._looks[thread] > self.STUCK
 
     def close(self):
         with self._news:

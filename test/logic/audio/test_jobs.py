@@ -10,7 +10,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.background import Background
 
-PATIENCE = 15.0
+PATIENCE = 60.0
 
 
 def test_jobs_are_done_in_turn_and_hold_until_the_last_is_done():

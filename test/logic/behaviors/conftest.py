@@ -21,7 +21,7 @@ from nao_library_modules.process_modules.language.failures import ActionlibActio
 from nao_library_modules.process_modules.robot.action_client import ActionEnd
 from nao_library_msgs.msg import FunctionResult
 
-LIMIT = 10.0
+LIMIT = 60.0
 HOLD, FAIL, FAIL_ONCE = "hold", "fail", "fail once"
 
 

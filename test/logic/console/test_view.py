@@ -259,11 +259,11 @@ def test_what_senses_tell_can_be_added_to_the_events():
 def test_what_waits_is_not_waited_for_and_ends_when_it_has_begun():
     goes_on, ended = threading.Event(), threading.Event()
     subscriptions = Subscriptions("test")
-    subscriptions.begin(lambda: goes_on.wait(10) and ended.set)
+    subscriptions.begin(lambda: goes_on.wait(60) and ended.set)
     subscriptions.end()
     assert not ended.is_set()
     goes_on.set()
-    assert ended.wait(10)
+    assert ended.wait(60)
 
 
 def test_a_task_in_the_background_returns_or_raises():
@@ -301,7 +301,7 @@ class SpeakingRobot:
 def test_what_was_said_before_anybody_listened_is_no_news():
     robot = SpeakingRobot()
     release = Senses(robot, robot).acquire()
-    assert robot.listening.wait(10.0)
+    assert robot.listening.wait(60.0)
     robot.tell("Hello")
     release()
     assert [(event.kind, event.text) for event in robot.events.last()] == [("said", "Hello")]

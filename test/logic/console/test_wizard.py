@@ -327,10 +327,10 @@ def test_a_button_for_once_that_could_not_be_sent_may_be_pressed_again(desk, rob
 def test_a_repetition_goes_on_until_it_is_pressed_again(desk, robot, layout):
     press(desk, robot, layout, "Again")
     for number in range(3):
-        assert robot.came.acquire(timeout=5.0)
+        assert robot.came.acquire(timeout=60.0)
         assert state(desk, layout, "Again") == "repeats"
         robot.runs[number].end("succeeded")
-    assert robot.came.acquire(timeout=5.0)
+    assert robot.came.acquire(timeout=60.0)
     press(desk, robot, layout, "Again")
     robot.runs[3].end("succeeded")
     assert state(desk, layout, "Again") == "" and len(robot.sent) == 4
@@ -352,7 +352,7 @@ def ended_repetition(robot, layout, desk):
     told, notes = threading.Event(), []
     robot.events.subscribe(lambda event: event.kind == "note" and (notes.append(event.text), told.set()))
     robot.runs[0].end("succeeded")
-    assert told.wait(5.0)
+    assert told.wait(60.0)
     assert state(desk, layout, "Again") == "" and len(robot.sent) == 1
     return notes[0]
 

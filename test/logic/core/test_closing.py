@@ -5,19 +5,18 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
-import time
 
 import pytest
 
 from nao_library_modules.processes.closing import close_all
 from nao_sim_bridge.base.closing import close_all as close_simulator
 
-LIMIT = 15.0
+LIMIT = 60.0
 
 
 @pytest.mark.parametrize("close_all", [close_all, close_simulator], ids=["node", "simulator"])
 def test_steps_are_made_in_order_after_one_that_fails_and_one_that_hangs(close_all, caplog):
-    made, hang = [], threading.Event()
+    made, hang, over = [], threading.Event(), threading.Event()
 
     def fails():
         made.append("fails")
@@ -26,11 +25,11 @@ def test_steps_are_made_in_order_after_one_that_fails_and_one_that_hangs(close_a
     def hangs():
         made.append("hangs")
         hang.wait(LIMIT)
+        over.set()
 
-    began = time.monotonic()
     close_all(fails, hangs, lambda: made.append("last"), limit=0.2)
     assert made == ["fails", "hangs", "last"]
-    assert time.monotonic() - began < LIMIT / 2
+    assert not over.is_set()
     assert "fails failed" in caplog.text and "hangs has not ended within 0.2 s" in caplog.text
     hang.set()
 

@@ -13,7 +13,7 @@ import pytest
 from nao_library_modules.processes.process_tree import descendants, identify
 from nao_library_modules.processes.supervisor import RestartTiming, Supervisor, SupervisorState
 
-LIMIT = 15.0
+LIMIT = 60.0
 QUICK = RestartTiming(first_delay=0.01, longest_delay=0.04, interrupt=LIMIT, terminate=0.2, kill=LIMIT)
 SAY = "import os, sys; pipe = open(sys.argv[1], 'w', buffering=1); say = lambda *a: print(*a, file=pipe); "
 FOREVER = "import signal, threading; threading.Event().wait()"

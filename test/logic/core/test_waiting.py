@@ -13,7 +13,7 @@ from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import Preempted, RobotLost
 from nao_library_modules.ros.ros_clock import RosClock
 
-LIMIT = 15.0
+LIMIT = 60.0
 LOST = "10.0.0.7:9559", "no answer"
 
 

@@ -19,7 +19,7 @@ from nao_library_modules.driver.joints.nao_joint_states import NaoJointStates
 from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, GoalOutcome
 from naoqi.errors import NaoError
 
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
 class Handle:

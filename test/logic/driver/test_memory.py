@@ -140,11 +140,11 @@ def watched(opened):
 
 def test_data_is_due_at_even_times_that_all_keys_of_a_rate_share(watched):
     key, other = watched(5.0), watched(5.0)
-    assert key.wait(10.07) == 0.0 and other.wait(10.13) == 0.0
+    assert key.due_in(10.07) == 0.0 and other.due_in(10.13) == 0.0
     key.was_read(10.07)
     other.was_read(10.13)
-    assert (10.07 + key.wait(10.07), 10.13 + other.wait(10.13)) == pytest.approx((10.2, 10.2))
-    assert key.wait(3.0) == 0.0  # a clock that is set back delays nothing
+    assert (10.07 + key.due_in(10.07), 10.13 + other.due_in(10.13)) == pytest.approx((10.2, 10.2))
+    assert key.due_in(3.0) == 0.0  # a clock that is set back delays nothing
 
 
 def test_of_events_that_come_too_fast_the_newest_follows(watched):

@@ -66,12 +66,12 @@ def test_a_part_that_cannot_be_started_is_tried_again_and_told_of_while_the_othe
 
     driver = parts(walker=broken, leds=Good)
     walker, leds = driver.parts
-    assert leds.started.wait(5.0) and all(tried.acquire(timeout=5.0) for _ in range(3))
+    assert leds.started.wait(60.0) and all(tried.acquire(timeout=60.0) for _ in range(3))
     report = walker.reports()["nao_walker: part"]()
     assert report.level == Level.ERROR and report.message == "~cmd_vel_timeout is 'soon': 0 to 3600 s"
     assert leds.reports()["nao_leds: well"]().message == "it runs"
     mended.set()
-    assert walker.started.wait(5.0) and list(walker.reports()) == ["nao_walker: part", "nao_walker: well"]
+    assert walker.started.wait(60.0) and list(walker.reports()) == ["nao_walker: part", "nao_walker: well"]
     assert walker.reports()["nao_walker: part"]() == Report(
         Level.OK, "runs", {"failed attempts": str(walker._attempts)}
     )
@@ -90,7 +90,7 @@ def test_a_part_has_names_of_its_own_and_what_a_failed_one_has_made_is_taken_bac
         raise NaoError("no")
 
     parts(microphone=half_way)
-    assert [given_back.get(timeout=5.0) for _ in range(4)] == ["last", "first"] * 2
+    assert [given_back.get(timeout=60.0) for _ in range(4)] == ["last", "first"] * 2
     node = nodes[0]
     assert node.name == "/nao_robot/microphone/naoqi_microphone"
     assert [node.resolve(name) for name in ("~audio_raw", "speech", "/other")] == [
@@ -101,7 +101,7 @@ def test_a_part_has_names_of_its_own_and_what_a_failed_one_has_made_is_taken_bac
 def test_a_part_that_runs_is_closed(parts):
     driver = parts(leds=Good)
     (part,) = driver.parts
-    assert part.started.wait(5.0)
+    assert part.started.wait(60.0)
     driver.close()
     assert part._made.closed
 

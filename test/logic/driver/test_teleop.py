@@ -24,7 +24,7 @@ from nao_library_modules.driver.walk.walk_commands import Velocity
 from naoqi.errors import NaoError
 
 ENABLE, INIT, CROUCH, HEAD = 8, 0, 9, 5
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
 def axes(**values):

@@ -391,7 +391,7 @@ def test_a_walker_whose_node_cannot_be_made_ends_and_stops_only_a_walk_of_its_ow
     robot = SimpleNamespace(connection=connection, proxy=lambda _: SimpleNamespace(call_async=call_async))
     walker = Walker(robot, WallClock(), 0.5)
     if ordered:
-        walker.order(FORWARD, "cmd_vel_srv").answer.result(5.0)
+        walker.order(FORWARD, "cmd_vel_srv").answer.result(60.0)
     walker.close(5.0, only_own=True)
     assert walker_threads() == before and connection.remove_listener.called
     assert ("stopMove" in calls) == ordered

@@ -8,7 +8,7 @@ from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.naoqi.binding import client_calls
 from nao_sim_bridge.naoqi.binding.client_calls import ClientWatch
 
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ from nao_sim_bridge.naoqi.users.book import News
 from nao_sim_bridge.naoqi.users.user_session import ALUserSession
 from nao_sim_bridge.naoqi.users.users import DATA_FILE, EVENTS, USERS_FILE, Users
 
-PATIENCE = 10.0
+PATIENCE = 60.0
 GAME = "com.example.game"
 
 

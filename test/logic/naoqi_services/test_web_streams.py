@@ -22,7 +22,7 @@ from nao_sim_bridge.naoqi.sound.web_stream import MODULE, WebStreams
 from nao_sim_bridge.sound.files import SoundReader
 
 SIZES = load_sizes().stream
-PATIENCE = 20.0
+PATIENCE = 60.0
 
 PRIVATE = [
     *("127.0.0.1", "127.8.9.1", "0.0.0.0", "10.1.2.3", "172.16.0.1", "192.168.1.1", "169.254.169.254", "100.64.0.1"),

@@ -116,7 +116,7 @@ def test_try_in_order_stops_at_the_first_success():
 
 def test_par_loop_does_all_at_once():
     barrier = threading.Barrier(3)
-    assert p.top_level(lambda: p.par_loop(lambda each: (barrier.wait(10.0), each * each)[1], [1, 2, 3])) == [1, 4, 9]
+    assert p.top_level(lambda: p.par_loop(lambda each: (barrier.wait(60.0), each * each)[1], [1, 2, 3])) == [1, 4, 9]
 
 
 def test_a_bug_in_a_branch_is_raised_as_it_is(stays):

@@ -157,11 +157,11 @@ def test_a_plan_that_is_started_runs_beside_and_is_waited_for_or_cancelled():
         return answer
 
     first, second = wait_for_it.start("done"), wait_for_it.start("never")
-    assert begun.wait(5.0) and not first.done()
+    assert begun.wait(60.0) and not first.done()
     with pytest.raises(NaoError, match="the plan wait_for_it is not over after 0.01 s; it goes on"):
         first.result(0.01)
     second.cancel()
     with pytest.raises(TaskEvaporatedFailure, match="cancelled"):
-        second.result(5.0)
+        second.result(60.0)
     go_on.value = True
-    assert first.result(5.0) == "done"
+    assert first.result(60.0) == "done"

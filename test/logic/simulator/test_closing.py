@@ -13,7 +13,7 @@ from nao_sim_bridge.ros import node as ros_node
 from nao_sim_bridge.ros import side as ros_side
 from nao_sim_bridge.server import own_sockets
 
-LIMIT = 15.0
+LIMIT = 60.0
 
 
 def test_a_node_that_was_stopped_does_not_hold_the_start_up(monkeypatch):

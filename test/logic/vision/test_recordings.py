@@ -11,7 +11,7 @@ from disks import room
 
 from nao_library_modules.base.errors import BadGoal
 
-LIMIT = 15.0
+LIMIT = 60.0
 
 
 def test_a_recording_is_a_file_with_what_came_until_it_was_stopped(recording, send, files):

@@ -27,7 +27,7 @@ def test_data_goes_in_and_out_with_its_type(robot, lights):
 def test_events_raised_through_a_goal_reach_the_robot(robot, lights):
     heard, micro = robot.heard("Test/FromGoal"), robot.heard("Test/Micro")
     ask(lights, ("raiseEvent", 'Test/FromGoal={"word": "yes"}'), ("raiseMicroEvent", "Test/Micro=true"))
-    assert (heard.get(timeout=15.0), micro.get(timeout=15.0)) == ({"word": "yes"}, True)
+    assert (heard.get(timeout=60.0), micro.get(timeout=60.0)) == ({"word": "yes"}, True)
     assert "Test/FromGoal" in ask(lights, ("getEventList",))
     assert "Test/Micro" in ask(lights, ("getMicroEventList",))
     (entry,) = ask(lights, ("getEventHistory", "Test/FromGoal"))
@@ -52,7 +52,7 @@ def test_a_signal_of_a_service_becomes_an_event(robot, lights):
         robot.server.press(sensors)
         robot.advance(0.2)
     robot.advance(1.0)
-    assert heard.get(timeout=15.0) == "SingleFront"
+    assert heard.get(timeout=60.0) == "SingleFront"
 
 
 def test_several_keys_are_written_at_once_and_one_is_waited_for(robot, lights):

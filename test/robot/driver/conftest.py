@@ -10,7 +10,7 @@ import pytest
 
 from nao_library_modules.robot.robot import Robot
 
-PATIENCE = 15.0
+PATIENCE = 60.0
 
 
 @pytest.fixture

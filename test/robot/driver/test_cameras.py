@@ -140,7 +140,7 @@ BRIGHTNESS, CONTRAST, GAIN, AUTO_EXPOSITION, EXPOSURE = 0, 1, 6, 11, 17
 @pytest.fixture
 def ask(driver_robot, video):
     """Calls a method of ALVideoDevice."""
-    return lambda *call: driver_robot.proxy("ALVideoDevice").call_async(*call).result(timeout=10.0)
+    return lambda *call: driver_robot.proxy("ALVideoDevice").call_async(*call).result(timeout=60.0)
 
 
 def test_values_are_set_the_automatic_ones_first_and_what_the_camera_chooses_itself_is_not(ask, video):

@@ -19,7 +19,7 @@ from nao_library_modules.driver.audio.speech_settings import SpeechSettings
 from nao_library_modules.driver.base import lazy_subscription
 from naoqi.errors import NaoError, RobotError
 
-LIMIT = 15.0
+LIMIT = 60.0
 BLOCK = 0.17
 
 

@@ -17,7 +17,7 @@ from nao_library_modules.driver.walk.walker import Walker
 from nao_library_modules.ros.health import Level
 from naoqi.errors import NaoError
 
-LIMIT = 15.0
+LIMIT = 60.0
 FORWARD, FASTER, STAND = Velocity(0.5, 0.0, 0.0), Velocity(1.0, 0.0, 0.0), Velocity(0.0, 0.0, 0.0)
 
 

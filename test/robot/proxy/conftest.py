@@ -14,7 +14,7 @@ from waits import hold
 import naoqi
 
 SERVER = Path(__file__).with_name("robot_server.py")
-PATIENCE = 20.0
+PATIENCE = 60.0
 """Longest wait for something that must happen, in s; passing tests do not come near it."""
 
 

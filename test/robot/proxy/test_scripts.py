@@ -71,7 +71,7 @@ test.add(1, 2)
 
 def run(script, robot, **options):
     command = [sys.executable, "-c", script, str(robot.port)]
-    return subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, timeout=20, check=False, **options)
+    return subprocess.run(command, env=ENVIRONMENT, capture_output=True, text=True, timeout=60, check=False, **options)
 
 
 def test_a_program_of_the_sdk_runs_with_python_3_syntax_only(robot):

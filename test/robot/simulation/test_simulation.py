@@ -15,7 +15,7 @@ from nao_sim_bridge.core import sequences
 from nao_sim_bridge.core.runner import FASTEST, SimulationRunner
 from nao_sim_bridge.core.simulation import Scene, Simulation
 
-PATIENCE = 30.0
+PATIENCE = 60.0
 BALL = "{name: ball, sphere: 0.04, position: [0.3, 0.02, 0.3], mass: 0.2}"
 
 
@@ -133,7 +133,8 @@ def test_time_stands_still_while_paused_and_passes_no_faster_than_asked(start):
     begin = time.monotonic()
     runner.resume()
     snapshot = runner.wait_for_tick(after=60, timeout=PATIENCE)
-    assert snapshot.time <= 4.0 * (time.monotonic() - begin) + simulation.settings.tick_s
+    took = time.monotonic() - begin
+    assert took >= (snapshot.time - simulation.settings.tick_s) / 4.0
     runner.pause()
     tick = runner.call(lambda: runner.snapshot.tick)
     assert runner.call(lambda: runner.snapshot.tick) == tick
@@ -142,9 +143,9 @@ def test_time_stands_still_while_paused_and_passes_no_faster_than_asked(start):
     runner.resume()
     assert runner.wait_for_tick(after=tick + 240, timeout=PATIENCE).tick > tick + 240
     runner.advance(8.0).result(PATIENCE)
-    runner.set_speed(4.0)
+    runner.set_speed(0.05)  # 8 s too many would be made up for in 160 s
     late = runner.call(lambda: runner.snapshot.tick)
-    assert runner.wait_for_tick(after=late + 10, timeout=1.0), "the pace counts from where it was set"
+    assert runner.wait_for_tick(after=late + 2, timeout=60.0), "the pace counts from where it was set"
 
 
 def test_a_speed_that_the_computer_cannot_keep_leaves_it_some_of_its_time(start):

@@ -8,7 +8,7 @@ from nao_sim_bridge.base.samples import sine
 from nao_sim_bridge.core.runner import FASTEST, SimulationRunner
 from nao_sim_bridge.sound.sources import SoundSource
 
-PATIENCE = 15.0
+PATIENCE = 60.0
 
 
 @pytest.fixture

@@ -315,7 +315,7 @@ def test_what_makes_no_sense_is_refused_before_anything_begins(tactile, idle):
 @pytest.fixture
 def started(runner):
     """Waits for the next start."""
-    return lambda: runner.started.acquire(timeout=15.0) or pytest.fail("nothing was started")
+    return lambda: runner.started.acquire(timeout=60.0) or pytest.fail("nothing was started")
 
 
 def test_a_touch_starts_its_behaviour_each_time(tactile, tap, runner, started):
@@ -345,7 +345,7 @@ def test_links_of_a_server_that_died_are_there_again_in_the_next(goals_to, tap, 
     (after,) = tactile.succeed(f("listOnTouch")).bindings
     assert after == before
     tap(FRONT)
-    assert second.started.acquire(timeout=15.0)
+    assert second.started.acquire(timeout=60.0)
     assert second.runs == [("hello", ["text=Hi"])]
 
 

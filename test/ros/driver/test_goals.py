@@ -59,7 +59,7 @@ class DriverGoals(unittest.TestCase):
         near = trajectory(["HeadYaw"], (0.1, [0.0]))
         crouch = BodyPoseWithSpeedGoal("Crouch", 1.0)
         for client, goal in ((cls.trajectories, near), (cls.postures, crouch)):
-            wait_until(lambda c=client, g=goal: send(c, g).wait().state == GoalStatus.SUCCEEDED, 30.0, client)
+            wait_until(lambda c=client, g=goal: send(c, g).wait().state == GoalStatus.SUCCEEDED, 60.0, client)
 
     def setUp(self):
         self.robot.reset()
@@ -113,7 +113,7 @@ class DriverGoals(unittest.TestCase):
         """Cancel when `value()` has begun to change; returns it at the end, and the run."""
         start = value()
         run = send(client, goal)
-        wait_until(lambda: abs(value() - start) > 0.05, 10.0, "the motion")
+        wait_until(lambda: abs(value() - start) > 0.01, 60.0, "the motion")
         run.cancel()
         run.wait()
         self.assertEqual(run.state, GoalStatus.PREEMPTED, run.text)
@@ -125,15 +125,15 @@ class DriverGoals(unittest.TestCase):
 
     def test_a_cancelled_goal_stops_the_joint_where_it_is(self):
         there = lambda: self.commanded("HeadYaw")  # noqa: E731
-        stopped, run = self.cancel_on_the_way(self.trajectories, trajectory(["HeadYaw"], (20.0, [1.5])), there)
+        stopped, run = self.cancel_on_the_way(self.trajectories, trajectory(["HeadYaw"], (200.0, [1.5])), there)
         self.assertLess(stopped, 1.4)
         self.assertAlmostEqual(run.result.goal_position.position[0], stopped, delta=0.05)
-        stopped, _ = self.cancel_on_the_way(self.angles, angles(["HeadYaw"], [-1.5], 0.01), there)
+        stopped, _ = self.cancel_on_the_way(self.angles, angles(["HeadYaw"], [-1.5], 0.002), there)
         self.assertGreater(stopped, -1.4)
 
     def test_a_newer_goal_for_the_same_joint_ends_the_older_one(self):
-        old = send(self.trajectories, trajectory(["Head"], (20.0, [1.0, 0.0])))
-        wait_until(lambda: self.commanded("HeadYaw") > 0.02, 10.0, "the motion")
+        old = send(self.trajectories, trajectory(["Head"], (200.0, [1.0, 0.0])))
+        wait_until(lambda: self.commanded("HeadYaw") > 0.01, 60.0, "the motion")
         new = send(self.trajectories, trajectory(["HeadYaw"], (0.5, [-0.5])))
         self.assertEqual(old.wait().state, GoalStatus.PREEMPTED)
         self.assertEqual(old.text, "a newer goal needs HeadYaw")
@@ -161,12 +161,12 @@ class DriverGoals(unittest.TestCase):
     def test_topics_set_angles_and_stiffness(self):
         topic = publisher(self, "joint_angles", JointAnglesWithSpeed)
         topic.publish(angles(["HeadYaw", "HeadPitch"], [0.6, 0.2], 0.5).joint_angles)
-        wait_until(lambda: abs(self.sensed("HeadYaw") - 0.6) < 0.03, 10.0, "HeadYaw at 0.6")
+        wait_until(lambda: abs(self.sensed("HeadYaw") - 0.6) < 0.03, 60.0, "HeadYaw at 0.6")
         topic.publish(angles(["HeadYaw"], [-0.2], 0.5, relative=1).joint_angles)
-        wait_until(lambda: abs(self.sensed("HeadYaw") - 0.4) < 0.03, 10.0, "HeadYaw at 0.4")
+        wait_until(lambda: abs(self.sensed("HeadYaw") - 0.4) < 0.03, 60.0, "HeadYaw at 0.4")
         publisher(self, "joint_stiffness", JointState).publish(JointState(name=["HeadYaw"], effort=[0.3]))
         stiffness = lambda: self.robot.module("ALMotion").getStiffnesses("HeadYaw")[0]  # noqa: E731
-        wait_until(lambda: abs(stiffness() - 0.3) < 0.001, 10.0, "stiffness 0.3")
+        wait_until(lambda: abs(stiffness() - 0.3) < 0.001, 60.0, "stiffness 0.3")
 
     def test_services_switch_the_motors(self):
         motion = self.robot.module("ALMotion")
@@ -201,8 +201,9 @@ class DriverGoals(unittest.TestCase):
         self.serve("body_stiffness/disable")  # the goal switches the motors on itself
         self.play(self.postures, BodyPoseWithSpeedGoal("StandInit", 0.8))
         self.assertEqual(self.robot.module("ALRobotPosture").getPosture(), "StandInit")
-        run = send(self.postures, BodyPoseWithSpeedGoal("Crouch", 0.1))
-        wait_until(lambda: self.commanded("LKneePitch") > 0.8, 10.0, "bent knees")
+        knees = self.commanded("LKneePitch")
+        run = send(self.postures, BodyPoseWithSpeedGoal("Crouch", 0.02))
+        wait_until(lambda: self.commanded("LKneePitch") > knees + 0.02, 60.0, "bent knees")
         run.cancel()
         self.assertEqual(run.wait().state, GoalStatus.PREEMPTED, run.text)
         self.assertLess(self.commanded("LKneePitch"), 2.0)

@@ -25,7 +25,7 @@ from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
 from nao_library_modules.ros.driver_types import PARAMETER, spoken
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
-LIMIT = 30.0
+LIMIT = 60.0
 SPACE = "/older/"
 NODE = ("rosrun", "nao_library_modules", "nao_driver")
 

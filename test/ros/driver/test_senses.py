@@ -147,14 +147,14 @@ class DriverSenses(unittest.TestCase):
         self.addCleanup(node.terminate)
         clock = publisher(self, "second/clock", Clock)
         with self.news.messages("second/joint_states", JointState) as found:
-            for begin, limit in ((1000.0, LIMIT), (5.0, LIMIT / 2)):  # the node has to start first
+            for begin, end in ((1e6, 2e6), (5.0, 1e6)):
                 steps = (rospy.Time.from_sec(begin + 0.1 * step) for step in itertools.count())
 
-                def there(begin=begin, steps=steps):
+                def there(begin=begin, end=end, steps=steps):
                     clock.publish(Clock(next(steps)))
-                    return found and begin <= found[-1].header.stamp.to_sec() < begin + 100.0
+                    return found and begin <= found[-1].header.stamp.to_sec() < end
 
-                wait_until(there, limit, f"joint states of a clock that began at {begin:g} s")
+                wait_until(there, LIMIT, f"joint states of a clock that began at {begin:g} s")
 
     # --- sonars ---------------------------------------------------------------------------------------------------
 
@@ -194,7 +194,7 @@ class DriverSenses(unittest.TestCase):
         values = {entry.key: entry.value for entry in report.values}
         self.assertEqual(len(values), 18)
         self.assertEqual(values["Discharging flag"], "True")
-        self.assertAlmostEqual(float(values["Percentage"]), 20.0, delta=0.5)
+        self.assertAlmostEqual(float(values["Percentage"]), 20.0, delta=5.0)  # it is used meanwhile
         self.simulation.plugCharger(True)
         self.addCleanup(self.simulation.plugCharger, False)
         self.reports.wait("nao_power: Battery", lambda status: status.message.startswith("Charging ("))

@@ -43,7 +43,7 @@ class AudioInExamples(unittest.TestCase):
 
     def wait_for_subscriber(self, module):
         service = self.robot.module(module)
-        wait_until(service.getSubscribersInfo, 40.0, f"a subscriber of {module}")
+        wait_until(service.getSubscribersInfo, 60.0, f"a subscriber of {module}")
         self.robot.advance(1.0)  # its bip is not heard, and it has to learn how loud the background is
 
     def test_a_recording(self):
@@ -64,12 +64,12 @@ class AudioInExamples(unittest.TestCase):
         recording("cut.wav").unlink(missing_ok=True)
         self.start("record_sound.py", "cut.wav", "--seconds", "600")
         # The file is there a few ticks before its first sample.
-        wait_until(lambda: holds_samples(recording("cut.wav")), 40.0, "the first samples")
+        wait_until(lambda: holds_samples(recording("cut.wav")), 60.0, "the first samples")
         self.robot.advance(1.0)
         self.example.send_signal(signal.SIGINT)
-        self.example.communicate(timeout=20)
+        self.example.communicate(timeout=60)
         recorder = self.robot.module("ALAudioRecorder")
-        wait_until(lambda: begins_to_record(recorder), 10.0, "the end of the recording")
+        wait_until(lambda: begins_to_record(recorder), 60.0, "the end of the recording")
         recorder.stopMicrophonesRecording()
         info = soundfile.info(str(recording("cut.wav")))
         self.assertGreaterEqual(info.frames, info.samplerate - 1)

@@ -35,7 +35,7 @@ from nao_library_msgs.srv import PlaceObject, PlaceSound, RemoveObject, RemoveSo
 from nao_sim_bridge.naoqi.binding.binding import DEFECT
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
-PATIENCE = 20.0
+PATIENCE = 60.0
 """s of the computer that an answer may take."""
 WALK = 3.0
 """s of the computer after which a service that still walks is stopped."""

@@ -47,8 +47,8 @@ class DriverPaths(WalkingTest):
         cls.frames = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.frames)
         for service in ("wakeup", "stop_walk_srv", "set_odometry_pose"):
-            rospy.wait_for_service(service, 30.0)
-        rospy.wait_for_message("odom", Odometry, 30.0)
+            rospy.wait_for_service(service, 60.0)
+        rospy.wait_for_message("odom", Odometry, 60.0)
 
     def here(self, frame="odom"):
         """The robot between its feet, by a transform of after now."""
@@ -88,7 +88,7 @@ class DriverPaths(WalkingTest):
         self.assertGreater(len(told), 20)
         self.assertLess(told[0].distance_to(start), 0.05)
         self.assertEqual(run.feedback[0][1].base_position.header.frame_id, "odom")
-        aim = rospy.wait_for_message("nao_path_follower/target_pose", PoseStamped, 5.0)
+        aim = rospy.wait_for_message("nao_path_follower/target_pose", PoseStamped, 60.0)
         self.there(of_pose(aim.pose), start.then(way))
 
     def test_a_target_in_the_frame_of_the_robot_is_where_it_was_at_the_beginning(self):
@@ -202,7 +202,7 @@ class DriverPaths(WalkingTest):
         self.assertEqual(run.text, "lost foot contact")
         self.assertIn("put the robot on its feet", self.play(self.targets, here, GoalStatus.ABORTED).text)
         feet.publish(Bool(True))
-        wait_until(lambda: send(self.targets, here).wait().state == GoalStatus.SUCCEEDED, 10.0, "foot contact")
+        wait_until(lambda: send(self.targets, here).wait().state == GoalStatus.SUCCEEDED, 60.0, "foot contact")
 
     # --- goals of RViz, odometry -----------------------------------------------------------------------------------
 

@@ -60,9 +60,9 @@ class DriverState(unittest.TestCase):
         cls.client = action_client("joint_trajectory", JointTrajectoryAction)
         cls.frames = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.frames)
-        rospy.wait_for_message("joint_states", JointState, 30.0)
+        rospy.wait_for_message("joint_states", JointState, 60.0)
         easy = trajectory("HeadYaw", (0.1, 0.0))  # succeeds as soon as nao_controller has reached the robot as well
-        wait_until(lambda: send(cls.client, easy).wait().state == GoalStatus.SUCCEEDED, 30.0, "nao_controller")
+        wait_until(lambda: send(cls.client, easy).wait().state == GoalStatus.SUCCEEDED, 60.0, "nao_controller")
         service("wakeup", Empty)()
         cls.robot.advance(1.0)
 

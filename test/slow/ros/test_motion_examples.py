@@ -36,10 +36,10 @@ class MotionExamples(ExampleTest):
         example = start("stand_walk_wave.py")
         try:
             motion = self.robot.module("ALMotion")
-            wait_until(lambda: motion.getRobotVelocity()[0] > 0.01, 40.0, "the robot on its way")
+            wait_until(lambda: motion.getRobotVelocity()[0] > 0.01, 60.0, "the robot on its way")
             example.send_signal(signal.SIGINT)
-            example.communicate(timeout=20.0)
-            wait_until(lambda: not motion.moveIsActive(), 20.0, "the robot on both feet")
+            example.communicate(timeout=60.0)
+            wait_until(lambda: not motion.moveIsActive(), 60.0, "the robot on both feet")
             self.robot.advance(1.0)
             self.assertLess(self.robot.true_pose().position.x, 0.28)
             self.assertGreater(self.robot.true_pose().position.z, 0.28)

@@ -74,7 +74,7 @@ class PlanExamples(PlanExampleTest):
             example.send_signal(signal.SIGINT)
             output, _ = example.communicate(timeout=60.0)
             self.assertNotEqual(example.returncode, 0, output)
-            wait_until(lambda: not motion.moveIsActive(), 20.0, "standstill")
+            wait_until(lambda: not motion.moveIsActive(), 60.0, "standstill")
             self.assert_stands()
         finally:
             example.kill()

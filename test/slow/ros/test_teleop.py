@@ -50,7 +50,7 @@ class Keyboard:
 
     def wait_for(self, text):
         with self._news:
-            assert self._news.wait_for(lambda: text in self._text, 30.0), f"{text!r} is not in {self._text!r}"
+            assert self._news.wait_for(lambda: text in self._text, 60.0), f"{text!r} is not in {self._text!r}"
 
     def type(self, keys):
         os.write(self.keys, keys.encode())
@@ -173,7 +173,7 @@ class DriverTeleop(unittest.TestCase):
 
     def test_without_a_terminal_it_says_so(self):
         ended = subprocess.run(
-            [sys.executable, NODE], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=30
+            [sys.executable, NODE], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=60
         )
         self.assertEqual(ended.returncode, 1)
         self.assertIn("keys need a terminal", ended.stderr)

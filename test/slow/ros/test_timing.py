@@ -61,7 +61,7 @@ class Samples:
     def taken(self):
         thread = threading.Thread(target=self._take, daemon=True)
         thread.start()
-        wait_until(lambda: self.values, 10.0, "the first sample")
+        wait_until(lambda: self.values, 60.0, "the first sample")
         try:
             yield self
         finally:
@@ -94,7 +94,7 @@ class Timing(RobotTestCase):
     def touched(self, sensor, **fields):
         """When a hand touched, and the FunctionResult of a function that waited for it."""
         run = self.send(TactileFunction(timeout=600.0, **fields))
-        wait_until(lambda: any(each.status == "waiting" for _, each in run.feedback), 30.0, "a goal that waits")
+        wait_until(lambda: any(each.status == "waiting" for _, each in run.feedback), 60.0, "a goal that waits")
         answer = self.hand(sensors=[sensor], time=rospy.Duration.from_sec(0.1), wait=True)
         self.assertTrue(answer.success, answer.message)
         (one,) = self.ends(run, GoalStatus.SUCCEEDED).result.results
@@ -124,7 +124,7 @@ class Timing(RobotTestCase):
             for number in range(ROUNDS // 2):
                 run = send(self.vision, NaoVisionGoal([looking]))
                 wait_until(
-                    lambda r=run: any(each.status == "looking" for _, each in r.feedback), 30.0, "a goal that looks"
+                    lambda r=run: any(each.status == "looking" for _, each in r.feedback), 60.0, "a goal that looks"
                 )
                 self.robot.advance(0.5)
                 self.robot.pause()  # it is there at a time that is known
@@ -201,5 +201,5 @@ class Timing(RobotTestCase):
             run = send(client, goal).wait(60.0)
             self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
             over = samples.now()
-            wait_until(lambda: samples.values[-1][0] > over, 10.0, "a sample after the end")
+            wait_until(lambda: samples.values[-1][0] > over, 60.0, "a sample after the end")
         return sent, samples.changes(sent), run.result.results[0]

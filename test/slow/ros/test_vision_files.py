@@ -28,7 +28,7 @@ NS = "webcam_only"
 TOP, BOTTOM = f"{NS}/webcam/image_raw", f"{NS}/other_camera/image_raw/compressed"
 SIZE = (320, 240)
 RATE = 15.0
-LIMIT = 20.0
+LIMIT = 60.0
 
 
 class Camera:
@@ -237,7 +237,7 @@ class Vision(unittest.TestCase):
     def end(self, process, number=signal.SIGINT):
         if process.poll() is None:
             os.kill(process.pid, number)
-            process.wait(30.0)
+            process.wait(60.0)
 
     def test_a_file_that_cannot_grow_ends_its_recording_alone(self):
         _, client, folder = self.start_server("small", largest_file=60_000)

@@ -46,7 +46,7 @@ class VisionRobot(unittest.TestCase):
             self.play(f("deleteThread", id=thread.id))
         self.play(*(f("setAllParametersToDefault", camera=camera) for camera in CAMERAS))
         # Nobody looks any more.
-        wait_until(lambda: not self.device.getSubscribers(), 20.0, "the end of the cameras' subscriptions")
+        wait_until(lambda: not self.device.getSubscribers(), 60.0, "the end of the cameras' subscriptions")
 
     def play(self, *functions, state=GoalStatus.SUCCEEDED):
         run = send(self.client, NaoVisionGoal(list(functions))).wait(LIMIT)
@@ -145,7 +145,7 @@ class VisionRobot(unittest.TestCase):
             server.send_signal(signal.SIGINT)
             server.wait(LIMIT)
         # The launch file has ended with the server.
-        wait_until(lambda: not rosnode.rosnode_ping("/own/nao_camera", max_count=1), 20.0, "the end of the cameras")
+        wait_until(lambda: not rosnode.rosnode_ping("/own/nao_camera", max_count=1), 60.0, "the end of the cameras")
 
     def test_what_is_recorded_moves_with_the_head(self):
         self.play(f("startRecording", id="look"))

@@ -9,7 +9,7 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from nao_sim_bridge.testing.waits import StackNotReady
+from nao_sim_bridge.testing.waits import LIMIT, StackNotReady
 
 
 class _End(NamedTuple):
@@ -66,12 +66,12 @@ class GoalRun:
         Raises:
             StackNotReady: The server says nothing of the goal.
         """
-        self._wait(lambda: self._known, 10.0, "word of the server that it has the goal")
+        self._wait(lambda: self._known, LIMIT, "word of the server that it has the goal")
         with self._handle.comm_state_machine.mutex:  # the end does not come in between
             if self._end is None:
                 self._handle.cancel()
 
-    def wait(self, limit: float = 30.0) -> GoalRun:
+    def wait(self, limit: float = LIMIT) -> GoalRun:
         """Wait for the end, at most `limit` s of wall time.
 
         Raises:
@@ -80,7 +80,7 @@ class GoalRun:
         self._wait(lambda: self._end is not None, limit, "result of the goal")
         return self
 
-    def wait_for_function(self, index: int, limit: float = 30.0) -> GoalRun:
+    def wait_for_function(self, index: int, limit: float = LIMIT) -> GoalRun:
         """Wait until function `index` (from 0) of the chain begins, at most `limit` s of wall time.
 
         The end of a goal and its feedback come on different topics: when the end is there first, its result tells.

@@ -10,9 +10,7 @@ from actionlib_msgs.msg import GoalStatus
 
 from nao_sim_bridge.testing.goal_run import GoalRun, send
 from nao_sim_bridge.testing.simulated_robot import SimulatedRobot
-from nao_sim_bridge.testing.waits import wait_until
-
-LIMIT = 60.0
+from nao_sim_bridge.testing.waits import LIMIT, wait_until
 
 
 class RobotTestCase(unittest.TestCase):

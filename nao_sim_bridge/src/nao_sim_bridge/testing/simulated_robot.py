@@ -17,7 +17,7 @@ from std_srvs.srv import Empty
 from nao_library_msgs.srv import AdvanceTime, GetTruepose, PressSensors, PushRobot, ResetWorld, TakePicture, VaryScene
 from nao_sim_bridge.server.broker import QUIET_LIBQI
 from nao_sim_bridge.testing.goal_run import send
-from nao_sim_bridge.testing.waits import wait_for_service, wait_until
+from nao_sim_bridge.testing.waits import LIMIT, wait_for_service, wait_until
 
 CLOCK_DELAY = 0.2
 """Simulated s that a server which is ready may be behind."""
@@ -37,7 +37,7 @@ class SimulatedRobot:
         StackNotReady: The simulator is not there in time.
     """
 
-    def __init__(self, namespace: str = "", limit: float = 30.0, world: str | None = None) -> None:
+    def __init__(self, namespace: str = "", limit: float = LIMIT, world: str | None = None) -> None:
         self.namespace = namespace.rstrip("/")
         self._world = self.namespace if world is None else world.rstrip("/")
         self._advance = self._world_service("nao_sim/advance", AdvanceTime, limit)
@@ -55,7 +55,7 @@ class SimulatedRobot:
 
     # --- the stack ------------------------------------------------------------------------------------------------
 
-    def action_client(self, name: str, action: type, limit: float = 30.0) -> actionlib.SimpleActionClient:
+    def action_client(self, name: str, action: type, limit: float = LIMIT) -> actionlib.SimpleActionClient:
         """A client of a module of this robot that is connected to it and ready for goals.
 
         A server that has just started may know the time of some seconds ago only: that is waited for as well.
@@ -156,7 +156,7 @@ class SimulatedRobot:
         simulation.setSpeed(speed)
         try:
             now = self.advance(0.0)
-            wait_until(lambda: rospy.get_time() >= now, 10.0, f"{now} s on /clock")
+            wait_until(lambda: rospy.get_time() >= now, LIMIT, f"{now} s on /clock")
             yield
         finally:
             simulation.setSpeed(before)
@@ -193,7 +193,7 @@ class SimulatedRobot:
         values = self.module("ALMemory").getListData([DEVICE.format(device) for device in devices])
         return dict(zip(devices, values))
 
-    def wait_for_leds(self, wanted: Mapping[str, float], limit: float = 10.0) -> None:
+    def wait_for_leds(self, wanted: Mapping[str, float], limit: float = LIMIT) -> None:
         """Wait until LED devices have these intensities.
 
         Raises:

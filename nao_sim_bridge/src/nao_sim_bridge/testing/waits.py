@@ -7,6 +7,8 @@ from typing import Callable
 
 import rospy
 
+LIMIT = 60.0
+"""s of wall time after which what a test waits for hangs; also a busy computer does not come near it."""
 PAUSE = 0.002
 """s of wall time between two looks: who only looks must not take a processor from what it waits for."""
 

@@ -122,7 +122,7 @@ class WatchedKey:
         """Least time between two messages, s; 0 for no limit."""
         return 1.0 / self.rate if self.rate else 0.0
 
-    def wait(self, now: float) -> float:
+    def due_in(self, now: float) -> float:
         """Time until data is to be read, s, 0 if it is due now; keys of one rate are due together."""
         if self._due is None or self._due - now > 1.5 * self.period:
             self._due = now  # the first time, or the clock was set back

@@ -243,7 +243,7 @@ class MemoryWatch:
                 elif wait is not None:
                     waits.append(wait)
             elif key.wanted:
-                wait = key.wait(now)
+                wait = key.due_in(now)
                 if wait > 0.0:
                     waits.append(wait)
                 else:
@@ -254,7 +254,7 @@ class MemoryWatch:
         self._measure(now, due)
         for key, value in zip(due, self._memory.values([key.name for key in due])):
             key.was_read(now)
-            waits.append(key.wait(now))
+            waits.append(key.due_in(now))
             if value is not None:
                 self._hand_over(key, value)
         return min(waits)

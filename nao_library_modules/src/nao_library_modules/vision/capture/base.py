@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 CAMERAS_LAUNCH = ("nao_library", "cameras.launch")
 """Launch file of the robot's cameras."""
-IMAGES_LIMIT, IMAGES_PERIOD = 15.0, 0.1
+IMAGES_LIMIT, IMAGES_PERIOD = 60.0, 0.1
 """s of wall time: how long to wait for the cameras of another launch file, and between two checks."""
 CAMERA_TOPICS = {"top": "nao_robot/camera/top/image_raw", "bottom": "nao_robot/camera/bottom/image_raw"}
 """Camera -> default topic of its pictures."""
