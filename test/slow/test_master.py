@@ -13,8 +13,6 @@ from nao_library_modules.ros.master_watch import LOOKS, PERIOD
 
 pytestmark = pytest.mark.alone  # it starts a stack and a master of its own
 LIMIT = 60.0
-BACK = 10.0
-"""s after the return of the master within which all is back."""
 STOPPED = 60.0
 """s for which it hangs."""
 DOWN, UNDER_WAY = 3.0, 20.0
@@ -133,7 +131,6 @@ def test_a_master_that_dies_or_hangs_knows_everybody_again(master, user, tmp_pat
         began = time.monotonic()
         assert user(NEW).readline() == "all is back\n"
         print(f"a master that was killed: all is back after {time.monotonic() - began:.1f} s")
-        assert time.monotonic() - began < BACK
         assert long.readline() == "went on\n"
 
         long = user(LONG, STOPPED + UNDER_WAY)
@@ -144,5 +141,4 @@ def test_a_master_that_dies_or_hangs_knows_everybody_again(master, user, tmp_pat
         began = time.monotonic()
         assert user(NEW).readline() == "all is back\n"
         print(f"a master that hung for {STOPPED:g} s: all is back after {time.monotonic() - began:.1f} s")
-        assert time.monotonic() - began < BACK
         assert long.readline() == "went on\n"

@@ -13,7 +13,7 @@ from nao_library_modules.processes.own_stack import free_port
 
 SCRIPTS = Path(__file__).parents[2] / "scripts"
 ROS_ENV = str(SCRIPTS / "ros-env")
-LIMIT = 200.0
+LIMIT = 900.0
 pytestmark = pytest.mark.alone
 
 

@@ -15,7 +15,7 @@ from nao_library_modules.processes.own_stack import free_port
 FOLDER = Path(__file__).parents[1] / "rostest"
 ROSTEST = (sys.executable, "-c", "import rostest; rostest.rostestmain()")
 """rostest, but with the interpreter that runs this file: its program would put another one first."""
-LIMIT = 600.0
+LIMIT = 1500.0
 pytestmark = pytest.mark.alone
 
 

@@ -31,7 +31,7 @@ rospy.Subscriber("short/status", GoalStatusArray, lambda told: lengths.append(le
 lost = 0
 for _ in range(2000):
     client.send_goal(TestGoal())
-    lost += not client.wait_for_result(rospy.Duration(5))
+    lost += not client.wait_for_result(rospy.Duration(60))
 assert lost <= 1, f"{lost} of 2000 lost"
 assert 0 < max(lengths) < 20, f"{max(lengths)} goals in the status"
 """
@@ -45,7 +45,7 @@ def test_their_ends_are_not_lost_and_the_status_stays_short(tmp_path):
     server = subprocess.Popen([sys.executable, "-c", SERVER], **quiet)
     try:
         done = subprocess.run(
-            [sys.executable, "-c", CLIENT], env=environment, capture_output=True, text=True, timeout=120
+            [sys.executable, "-c", CLIENT], env=environment, capture_output=True, text=True, timeout=900
         )
         assert done.returncode == 0, done.stderr
     finally:

@@ -22,7 +22,7 @@ STUDY = "patient_steps"
 TRIAL = f"{STUDY}/P01-1"
 
 
-@pytest.mark.timeout(400)
+@pytest.mark.timeout(1800)
 class ConsoleStudy(RobotTestCase):
     server = ("nao_audio_in", NaoAudioInAction)
 

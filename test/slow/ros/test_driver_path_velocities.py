@@ -49,7 +49,7 @@ class DriverPathVelocities(WalkingTest):
     def walk(self, name, action, goal, way):
         client = action_client(f"by_velocities/{name}", action, 60.0)
         before = self.truth()
-        with self.robot.at_speed(2.0):  # what the machine delays a command by counts as so much less of the way
+        with self.robot.at_speed(1.0):  # what the machine delays a command by counts as so much less of the way
             run = send(client, goal).wait(150.0)
         self.assertEqual(run.state, GoalStatus.SUCCEEDED, run.text)
         off = before.then(way).seen_from(self.truth())

@@ -44,7 +44,7 @@ class DriverPaths(WalkingTest):
         super().setUpClass()
         cls.targets = action_client("walk_target", MoveBaseAction)
         cls.paths = action_client("walk_path", FollowPathAction)
-        cls.frames = tf2_ros.Buffer()
+        cls.frames = tf2_ros.Buffer(Duration(600))
         cls.listener = tf2_ros.TransformListener(cls.frames)
         for service in ("wakeup", "stop_walk_srv", "set_odometry_pose"):
             rospy.wait_for_service(service, 60.0)
@@ -56,7 +56,7 @@ class DriverPaths(WalkingTest):
 
     def at(self, time, frame="odom"):
         """The robot between its feet at a time."""
-        transform = self.frames.lookup_transform(frame, "base_footprint", time, Duration(5)).transform
+        transform = self.frames.lookup_transform(frame, "base_footprint", time, Duration(120)).transform
         return seen_from_above(transform.translation, transform.rotation)
 
     def play(self, client, goal, end=GoalStatus.SUCCEEDED):
@@ -85,7 +85,7 @@ class DriverPaths(WalkingTest):
         self.there(self.here(), start.then(way))
         self.walked(before, way)
         told = [of_pose(feedback.base_position.pose) for _, feedback in run.feedback]
-        self.assertGreater(len(told), 20)
+        self.assertGreater(len(told), 5)
         self.assertLess(told[0].distance_to(start), 0.05)
         self.assertEqual(run.feedback[0][1].base_position.header.frame_id, "odom")
         aim = rospy.wait_for_message("nao_path_follower/target_pose", PoseStamped, 60.0)
@@ -153,7 +153,7 @@ class DriverPaths(WalkingTest):
         track = []
         # The torso sways from foot to foot; what is to be on the path is the middle between them.
         subscriber = rospy.Subscriber("odom", Odometry, lambda message: track.append(self.at(message.header.stamp)))
-        with self.robot.at_speed(2.0):  # what the machine delays a command by counts as so much less of the way
+        with self.robot.at_speed(1.0):  # what the machine delays a command by counts as so much less of the way
             run = self.play(self.paths, path(wanted))
         subscriber.unregister()
         line = WalkPath(wanted)

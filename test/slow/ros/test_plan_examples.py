@@ -10,7 +10,7 @@ from plan_examples_fixture import PlanExampleTest
 from nao_library_actions.msg import NaoVisionAction
 from nao_sim_bridge.testing import wait_until
 
-FETCH_LIMIT = 60.0
+FETCH_LIMIT = 600.0
 """s of simulated time that fetching may take."""
 FRAME_ROBOT = 2
 

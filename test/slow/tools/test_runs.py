@@ -12,7 +12,7 @@ from nao_library_modules.motion.store import MotionStore
 from nao_sim_bridge.core.posture_moves import KeyFrame, Move, load_moves
 
 SHIPPED = Path(__file__).resolve().parents[3] / "nao_library_modules" / "config" / "motions"
-pytestmark = pytest.mark.timeout(600)
+pytestmark = pytest.mark.timeout(1800)
 FEW = ["--population", "4", "--starts", "1", "--runs", "1", "--sigma", "0.3", "--generations", "1"]
 
 
