@@ -16,6 +16,7 @@ from .proxy_call import ProxyCall
 from .real_time_factor import RealTimeFactor, WalkingRealTimeFactor
 from .sound import PhysicsWithSound, RecognitionSpeed
 from .speech import SPEECH
+from .startup import Startup
 from .ticks import TICKS
 from .touch import TouchEvent
 
@@ -31,6 +32,7 @@ ROWS: tuple[Row, ...] = (
     PhysicsWithSound(),
     CameraRate(),
     PhysicsWithCameras(),
+    Startup(),
     ProxyCall(),
     GoalRoundTrip(),
     ChainedFunctions(),
