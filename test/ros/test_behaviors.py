@@ -60,7 +60,7 @@ do:
   - parallel:
       - NaoLights.fadeRGB: {lights: [FaceLeds], str_param: red, duration: 600.0}
       - NaoMotion.angleInterpolation: {names: [HeadYaw], angles: [1.0], times: [600.0], stiffness: 1.0}
-      - nao_audio_out.playSine: {frequency: 400, volume: 0.1, duration: 600.0}
+      - nao_audio_out.playSine: {frequency: 400, volume: 0.1, duration: 240.0}
   - wait: 1.0
 """
 FAILING = """
@@ -234,7 +234,7 @@ class Behaviors(unittest.TestCase):
     def test_a_recording_plays_the_same_again(self):
         blue = LedFunction(function="setColor", lights=[EYES], str_param="blue")
         turn = MotionFunction(function="angleInterpolation", names=[HEAD], angles=[0.5], times=[0.6], stiffness=1.0)
-        tone = AudioOutFunction(function="playSine", frequency=300, volume=0.1, duration=600.0)
+        tone = AudioOutFunction(function="playSine", frequency=300, volume=0.1, duration=120.0)
         self.robot.pause()  # but for what passes between two goals
         self.addCleanup(self.robot.resume)
         self.do(b("recordBehavior", "taken", overwrite=True))

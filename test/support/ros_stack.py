@@ -15,7 +15,7 @@ from nao_sim_bridge.testing import SimulatedRobot, StackNotReady, wait_until
 
 SPEED = 2
 PR_SET_PDEATHSIG = 1
-LIMIT = 90.0
+LIMIT = 300.0
 ATTEMPTS = 2
 LINES = 20
 """Of what a stack has printed that does not start."""

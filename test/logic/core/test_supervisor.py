@@ -118,4 +118,4 @@ def test_it_ends_when_the_process_that_supervises_it_is_killed(pipe):
     pid = int(pipe.line())
     supervising.kill()
     supervising.wait(LIMIT)
-    assert any(identify(pid) is None or threading.Event().wait(0.05) for _ in range(300)), f"process {pid} goes on"
+    assert any(identify(pid) is None or threading.Event().wait(0.05) for _ in range(1200)), f"process {pid} goes on"
