@@ -8,7 +8,6 @@ import pytest
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.sweep import sweep
-from nao_sim_bridge.sweep.run import _places
 
 OPTIONS = {"workers": 0, "progress": False}
 
@@ -111,11 +110,3 @@ def test_what_a_function_keeps_is_closed_after_the_last_run():
     kept = Kept()
     sweep(kept, 3, **OPTIONS)
     assert (kept.made, kept.closed) == (1, 1)
-
-
-@pytest.mark.parametrize("memory, places", [(0, 6), (700, 3), (5000, 1)])
-def test_as_many_workers_as_have_a_processor_and_memory(memory, places):
-    computer = {"Alive": True, "Resources": {"CPU": 4.0, "memory": 1500 * 2**20}}
-    small = {"Alive": True, "Resources": {"CPU": 2.0, "memory": 1000 * 2**20}}
-    gone = {"Alive": False, "Resources": {"CPU": 8.0}}
-    assert _places([computer, small, gone], memory) == places

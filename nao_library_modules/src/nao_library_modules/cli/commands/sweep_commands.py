@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import sys
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -65,11 +64,10 @@ def sweep_command(
 
     from ...sweeps import sweep_stack
 
-    shown = not settings.json and sys.stderr.isatty()
     launch = {key: str(options.pop(key)) for key in ("world", "speed")}
     options = {key: value or () if key in VARIED else value for key, value in options.items()}
     try:
-        table = sweep_stack(subject, parameters=parameters, launch=launch, progress=shown, **options)
+        table = sweep_stack(subject, parameters=parameters, launch=launch, progress=not settings.json, **options)
         if picture is not None and _rates(table):
             table.plot(picture, "fell")
     except ImportError as error:

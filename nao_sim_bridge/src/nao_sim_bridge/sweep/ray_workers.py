@@ -1,0 +1,244 @@
+"""The runs of a sweep on workers of Ray: a run that loses its worker goes to another one."""
+
+from __future__ import annotations
+
+import io
+import socket
+import sys
+import threading
+import time
+from collections import deque
+from contextlib import contextmanager, redirect_stdout
+from dataclasses import dataclass
+from typing import Any, Iterable, Iterator, Mapping, Sequence
+
+from nao_sim_bridge.base.errors import SimulationError
+from nao_sim_bridge.sweep.job import Job
+from nao_sim_bridge.sweep.progress import Progress, counted
+from nao_sim_bridge.sweep.table import ERROR, SECONDS
+
+RETRIES = 3
+"""How often a run is started again after it lost its worker, and how often a start fails while there is no worker."""
+CLOSE_LIMIT = 60.0
+"""s that workers may take to close what they have."""
+LOOK_PERIOD = 1.0
+"""s between two looks at the progress while no run ends."""
+WAITING = 30.0
+"""s without any worker after which the sweep reports that it waits."""
+MIB = 2**20
+REASON_LENGTH = 300
+ENVIRONMENT = {"RAY_kill_child_processes_on_worker_exit": "0"}
+"""Of workers. Programs of a worker that dies end on their own, with theirs; killed by Ray, they would leave these."""
+RAYS_REPORTER = "ray_listen_error_messages"
+"""Ray's thread that prints what becomes of its processes, dozens of lines for each."""
+
+
+class NoWorkers(SimulationError):
+    """No worker of a sweep starts."""
+
+
+@dataclass
+class _Run:
+    inputs: Mapping[str, Any]
+    lost: int = 0
+
+
+@dataclass
+class _Worker:
+    """An actor. `host`: where it is; None until it has a place."""
+
+    actor: Any
+    host: str | None = None
+
+
+def run_on_ray(
+    job: Job,
+    runs: Sequence[Mapping[str, Any]],
+    workers: int | None,
+    address: str | None,
+    memory: float,
+    progress: Progress,
+) -> Iterator[dict[str, Any]]:
+    """The rows of runs as they end, in any order. Arguments as of `sweep`."""
+    if not runs:
+        return
+    import ray  # only who sweeps in parallel needs it
+
+    with _connected(ray, workers, address):
+        crew = _Crew(ray, job, workers or len(runs), 0.0 if workers else memory, progress)
+        try:
+            yield from crew.run_all(runs)
+            crew.close()
+        finally:
+            crew.kill()
+
+
+class _Crew:
+    """The workers of a sweep.
+
+    More are asked for than have a place, as long as there are runs for them: Ray starts them when a computer joins.
+    """
+
+    def __init__(self, ray: Any, job: Job, limit: int, memory: float, progress: Progress) -> None:
+        class Worker:
+            """A process with a copy of the function; one run at a time, so that a death takes no other run with it."""
+
+            def host(self) -> str:
+                return socket.gethostname()
+
+            def run(self, inputs: Mapping[str, Any]) -> dict[str, Any]:
+                return job.run(inputs)
+
+            def close(self) -> None:
+                job.close()
+
+        largest = max((node["Resources"].get("memory", 0.0) for node in ray.nodes() if node["Alive"]), default=0.0)
+        self._memory = min(memory * MIB, largest)  # a single worker on a small computer is better than none
+        options = {"num_cpus": 1, "runtime_env": {"env_vars": ENVIRONMENT}}
+        self._actor = ray.remote(**options, **({"memory": int(self._memory)} if self._memory else {}))(Worker)
+        self._ray, self._limit, self._progress = ray, limit, progress
+        self._workers: list[_Worker] = []
+        self._idle: list[_Worker] = []
+        self._busy: dict[Any, tuple[_Worker, _Run | None]] = {}  # by future; without a run: until it is there
+        self._failed_starts = 0
+        self._ask_at = 0.0  # time.monotonic()
+
+    def run_all(self, runs: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+        left = deque(map(_Run, runs))
+        last_seen, reported = time.monotonic(), False
+        while True:
+            running = sum(run is not None for _, run in self._busy.values())
+            if not left and not running:
+                return
+            self._ask_for_workers(len(left) + running)
+            while left and self._idle:  # those who wait may be dead by now: ask them first
+                worker = self._idle.pop()
+                self._busy[worker.actor.host.remote()] = worker, None
+            ended, _ = self._ray.wait(list(self._busy), num_returns=1, timeout=LOOK_PERIOD) if self._busy else ([], [])
+            self._progress.workers = len(self._there())
+            self._progress.refresh()
+            if self._progress.workers:
+                last_seen, reported = time.monotonic(), False
+            elif not reported and time.monotonic() > last_seen + WAITING:
+                reported = True
+                self._report_waiting(len(left) + running)
+            for future in ended:
+                worker, run = self._busy.pop(future)
+                try:
+                    answer = self._ray.get(future)
+                except self._ray.exceptions.RayError as error:
+                    row = self._lose(worker, run, error, left)
+                    if row is not None:
+                        yield row
+                    continue
+                if run is None:
+                    worker.host, self._failed_starts = answer, 0
+                if left:
+                    following = left.popleft()
+                    self._busy[worker.actor.run.remote(following.inputs)] = worker, following
+                else:
+                    self._idle.append(worker)
+                if run is not None:
+                    yield answer
+
+    def close(self) -> None:
+        """Let the workers close what they have, for a limited time."""
+        there = self._there()
+        futures = {worker.actor.close.remote(): worker for worker in there}
+        if futures:
+            closed, _ = self._ray.wait(list(futures), num_returns=len(futures), timeout=CLOSE_LIMIT)
+            for future in closed:
+                self._workers.remove(futures[future])  # Ray ends those that nobody refers to, in order
+
+    def kill(self) -> None:
+        """End those that have not closed: of a sweep that was interrupted, or without a place."""
+        for worker in self._workers:
+            self._ray.kill(worker.actor)
+
+    def _there(self) -> list[_Worker]:
+        return [worker for worker in self._workers if worker.host is not None]
+
+    def _ask_for_workers(self, open_runs: int) -> None:
+        """Ask for more, up to twice as many as there are; one by one and slowly where they fail to start."""
+        if time.monotonic() < self._ask_at:
+            return
+        there = len(self._there())
+        most = there + (1 if self._failed_starts else max(1, there))
+        for _ in range(len(self._workers), min(most, self._limit, open_runs)):
+            worker = _Worker(self._actor.remote())
+            self._workers.append(worker)
+            self._busy[worker.actor.host.remote()] = worker, None
+
+    def _lose(self, worker: _Worker, run: _Run | None, error: Exception, left: deque[_Run]) -> dict[str, Any] | None:
+        """Give the run of a lost worker back; its row if it has lost too many.
+
+        Raises:
+            NoWorkers: There is none, and none starts.
+        """
+        self._ray.kill(worker.actor)  # one that only cannot be reached must not continue
+        self._workers.remove(worker)
+        reason = _reason(error)
+        if worker.host is None:
+            self._failed_starts += 1
+            self._ask_at = time.monotonic() + min(2.0 ** (self._failed_starts - 1), WAITING)
+            if self._failed_starts > RETRIES and not self._there():
+                raise NoWorkers(f"no worker starts ({self._failed_starts} attempts): {reason}")
+            return None
+        remaining = f"{counted(len(self._there()), 'worker')} left"
+        if run is None:
+            self._progress.report(f"lost an idle worker on {worker.host}, {remaining}: {reason}")
+            return None
+        run.lost += 1
+        again = run.lost <= RETRIES
+        named = ", ".join(f"{name} {value}" for name, value in run.inputs.items())
+        becomes = f"starts again ({run.lost} of {RETRIES})" if again else "is a failed row"
+        self._progress.report(f"lost a worker on {worker.host}, {remaining}; its run ({named}) {becomes}: {reason}")
+        if again:
+            left.appendleft(run)
+            return None
+        return {**run.inputs, SECONDS: 0.0, ERROR: f"lost {run.lost} workers, the last one with {reason}"}
+
+    def _report_waiting(self, count: int) -> None:
+        needed = f"1 processor{f' and {self._memory / MIB:.0f} MiB' if self._memory else ''}"
+        computers = sum(node["Alive"] for node in self._ray.nodes())
+        where = f"on {counted(computers, 'computer')} of the cluster or on one that joins it"
+        self._progress.report(f"{counted(count, 'run')} left, no worker has a place: each needs {needed}, {where}")
+
+
+def _reason(error: Exception) -> str:
+    """The error in one line: its last one says most."""
+    lines = [line for line in str(error).splitlines() if line.strip()]
+    text = f"{type(error).__name__}: {lines[-1].strip() if lines else ''}"
+    return text if len(text) <= REASON_LENGTH else f"{text[:REASON_LENGTH]}..."
+
+
+@contextmanager
+def _connected(ray: Any, workers: int | None, address: str | None) -> Iterator[None]:
+    """A Ray on this computer, that of an address, or that which is there; who has begun it ends it."""
+    if ray.is_initialized():
+        yield
+        return
+    with redirect_stdout(_WithoutRay(sys.stdout)):
+        quiet = {"log_to_driver": False, "configure_logging": False}
+        if address is not None:
+            ray.init(address=address, **quiet)
+        else:
+            ray.init(num_cpus=workers, include_dashboard=False, **quiet)
+        try:
+            yield
+        finally:
+            with redirect_stdout(io.StringIO()):  # what Ray has not printed yet
+                ray.shutdown()
+
+
+class _WithoutRay:
+    """Standard output of this process without Ray's reports: the sweep has its own, on stderr."""
+
+    def __init__(self, output: Any) -> None:
+        self._output = output
+
+    def write(self, text: str) -> int:
+        return len(text) if threading.current_thread().name == RAYS_REPORTER else self._output.write(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._output, name)
