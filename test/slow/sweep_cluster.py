@@ -12,10 +12,13 @@ import argparse
 import faulthandler
 import os
 import random
+import shutil
 import sys
+import tempfile
 import threading
 import time
 import uuid
+from collections import Counter
 from pathlib import Path
 from typing import Any, Callable
 
@@ -33,36 +36,37 @@ HANG_LIMIT = 600.0
 """s for one sweep."""
 
 
-def small_run(seed: int, length: float) -> dict[str, float]:
-    """A run of about a second: the same numbers for the same seed, wherever it runs."""
+def small_run(seed: int, length: float) -> dict[str, Any]:
+    """A run of about `length` s: the same value for the same seed, on whatever node."""
     chance = random.Random(seed)
     time.sleep(length * chance.uniform(0.5, 1.5))
-    return {"value": chance.random()}
+    return {"value": chance.random(), "node": ray.get_runtime_context().get_node_id()}
 
 
-def run_small(address: str) -> list[str]:
-    """What is wrong with a sweep of small runs."""
-    lengths = [0.8, 1.2]
-    table = sweep(small_run, SEEDS, address=address, progress=True, length=lengths)
-    expected = [{"seed": seed, "length": length, "value": 0.0} for length in lengths for seed in range(SEEDS)]
-    for row in expected:
-        chance = random.Random(row["seed"])
-        chance.uniform(0.5, 1.5)
-        row["value"] = chance.random()
-    found = [{name: row.get(name) for name in ("seed", "length", "value")} for row in table.rows]
+def run_small(address: str, rows: Path, lengths: list[float]) -> tuple[list[str], str]:
+    """What is wrong with a sweep of small runs, and how many rows each node has made."""
+    table = sweep(small_run, SEEDS, rows, address=address, length=lengths)
     errors = [row["error"] for row in table.rows if row["error"]]
-    return [*errors, *(["rows differ from those of one process"] if found != expected else [])]
+    found = [(row["seed"], row["length"], row.get("value")) for row in table.rows]
+    values = []
+    for seed in range(SEEDS):
+        chance = random.Random(seed)
+        chance.uniform(0.5, 1.5)
+        values.append(chance.random())
+    right = found == [(seed, length, values[seed]) for length in lengths for seed in range(SEEDS)]
+    makers = Counter(row.get("node") for row in table.rows).values()
+    return [*errors, *([] if right else ["rows differ from those of one process"])], "+".join(map(str, makers))
 
 
-def run_stacks(address: str, behavior: str) -> list[str]:
-    """What is wrong with a sweep of whole stacks."""
+def run_stacks(address: str, behavior: str, rows: Path) -> tuple[list[str], str]:
+    """What is wrong with a sweep of whole stacks, and how many rows it has."""
     from nao_library_modules.sweeps import BehaviorGoal, sweep_stack
 
-    table = sweep_stack(BehaviorGoal(behavior), SEEDS, noise=[1.0], address=address)
+    table = sweep_stack(BehaviorGoal(behavior), SEEDS, noise=[1.0], output=rows, address=address)
     errors = [row["error"] for row in table.rows if row["error"]]
     wrong = [f"seed {row['seed']}: {row.get('outcome')}" for row in table.rows if row.get("outcome") != "succeeded"]
     order = [row["seed"] for row in table.rows] == list(range(SEEDS))
-    return [*errors, *wrong, *([] if order else ["rows are not in order"])]
+    return [*errors, *wrong, *([] if order else ["rows are not in order"])], str(len(table.rows))
 
 
 def left_programs(mark: str) -> list[str]:
@@ -99,6 +103,50 @@ def insist(start: Callable[[], Any]) -> Any:
     return start()
 
 
+class Meddler(threading.Thread):
+    """Kills the second node, or adds it, once in a sweep.
+
+    Args:
+        cluster: What it meddles with.
+        kind: "kill" or "join".
+        rows: The file of the sweep.
+        at_once: The moment counts from the begin of the sweep; else from its first row on.
+        moment: s.
+    """
+
+    def __init__(self, cluster: Cluster, kind: str, rows: Path, at_once: bool, moment: float) -> None:
+        super().__init__()
+        self.done = "not before the end"
+        self._cluster, self._kind, self._rows = cluster, kind, rows
+        self._at_once, self._moment = at_once, moment
+        self._over = threading.Event()
+        self._second = self._add() if kind == "kill" else None
+
+    def _add(self) -> Any:
+        return insist(lambda: self._cluster.add_node(num_cpus=1))
+
+    def run(self) -> None:
+        while not self._at_once and not self._rows.exists():
+            if self._over.wait(0.05):
+                return
+        if self._over.wait(self._moment):
+            return
+        if self._kind == "kill":
+            self._cluster.remove_node(self._second, allow_graceful=False)
+            self._second = None
+        else:
+            self._second = self._add()
+        rows = self._rows.read_text().count("\n") - 1 if self._rows.exists() else 0
+        self.done = "after the end" if self._over.is_set() else f"with {rows} rows"
+
+    def end(self) -> None:
+        """The sweep is over: take the second node away."""
+        self._over.set()
+        self.join()
+        if self._second is not None:
+            self._cluster.remove_node(self._second)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kills", type=int, default=1, help="sweeps in which a node is killed")
@@ -108,40 +156,37 @@ def main() -> int:
     options = parser.parse_args()
     mark = os.environ[MARK] = uuid.uuid4().hex
     os.environ.setdefault("RAY_AUTH_MODE", "disabled")
+    os.environ.setdefault("RAY_worker_niceness", "0")  # on a busy computer nothing gets ahead with Ray's 15
     chance, failed = random.Random(options.seed), 0
-    longest = 60.0 if options.stacks else 15.0  # s of a sweep; then as long as the last one
+    lasted = 60.0 if options.stacks else 8.0  # s from the first row to the last one, about
+    folder = tempfile.mkdtemp(prefix="sweep_cluster_")
     cluster = insist(lambda: Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False}))
     try:
-        for kind in ["kill"] * options.kills + ["join"] * options.joins:
+        for number, kind in enumerate(["kill"] * options.kills + ["join"] * options.joins):
             faulthandler.dump_traceback_later(HANG_LIMIT, exit=True)
-            second = [insist(lambda: cluster.add_node(num_cpus=1))] if kind == "kill" else []
-            moment = chance.uniform(0.0, longest)
-
-            def act(kind: str = kind, second: list = second) -> None:
-                if kind == "kill":
-                    cluster.remove_node(second.pop(), allow_graceful=False)
-                else:
-                    second.append(insist(lambda: cluster.add_node(num_cpus=1)))
-
-            timer = threading.Timer(moment, act)
-            timer.start()
+            at_once = chance.random() < (0.2 if kind == "kill" else 0.5)
+            rows = Path(folder) / f"{number}.csv"
+            meddler = Meddler(cluster, kind, rows, at_once, chance.uniform(0.0, 0.6) * lasted)
             began = time.monotonic()
-            if options.stacks:
-                problems = run_stacks(cluster.address, options.stacks)
-            else:
-                problems = run_small(cluster.address)
-            took = longest = time.monotonic() - began
-            timer.join()
-            for node in second:
-                cluster.remove_node(node)
+            meddler.start()
+            try:
+                if options.stacks:
+                    problems, made = run_stacks(cluster.address, options.stacks, rows)
+                else:
+                    lengths = [0.8, 1.2] if kind == "kill" else [1.8, 2.2]  # a node takes a while to join
+                    problems, made = run_small(cluster.address, rows, lengths)
+            finally:
+                meddler.end()
+            took = time.monotonic() - began
             problems += [f"still running: {program}" for program in wait_until_gone(mark)]
             failed += bool(problems)
-            inside = "in the sweep" if moment < took else "after it"
-            print(f"{kind} at {moment:.1f} s, {inside}, {took:.0f} s: {'; '.join(problems) or 'ok'}", flush=True)
+            told = f"{number} {kind} {meddler.done}, rows by node: {made}, {took:.0f} s"
+            print(f"{told}: {'; '.join(problems) or 'ok'}", flush=True)
     finally:
         faulthandler.cancel_dump_traceback_later()
         ray.shutdown()
         cluster.shutdown()
+        shutil.rmtree(folder)
     print(f"{options.kills + options.joins - failed} of {options.kills + options.joins} sweeps ended well")
     return min(failed, 1)
 

@@ -57,3 +57,9 @@ def test_environments_are_what_their_page_says(library, tmp_path):
     file = tmp_path / "test_environments.py"  # away from the conftest.py of this project
     file.write_text((Path(__file__).parent / "environments.py").read_text(encoding="utf-8"), encoding="utf-8")
     library[1]("-m", "pytest", "-q", file, cwd=tmp_path)
+
+
+@pytest.mark.timeout(900)
+def test_sweeps_outlive_a_lost_node_and_use_one_that_joins(library, tmp_path):
+    told = library[1](Path(__file__).parent / "sweep_cluster.py", "--kills", 1, "--joins", 1, cwd=tmp_path)
+    assert "2 of 2 sweeps ended well" in told

@@ -114,7 +114,7 @@ def test_runs_without_a_place_are_reported_once_and_made_when_there_is_one(run, 
     assert [row["result"] for row in run(ray, seeds=3)] == [0, 2, 4]
     (told,) = capsys.readouterr().err.splitlines()
     assert told.startswith(
-        "sweep: 3 runs left, no worker has a place: each needs 1 processor, on 1 computer of the cluster"
+        "sweep: 3 runs left and no worker yet: each waits for 1 processor, on 1 computer of the cluster"
     )
 
 

@@ -202,7 +202,7 @@ class _Crew:
         needed = f"1 processor{f' and {self._memory / MIB:.0f} MiB' if self._memory else ''}"
         computers = sum(node["Alive"] for node in self._ray.nodes())
         where = f"on {counted(computers, 'computer')} of the cluster or on one that joins it"
-        self._progress.report(f"{counted(count, 'run')} left, no worker has a place: each needs {needed}, {where}")
+        self._progress.report(f"{counted(count, 'run')} left and no worker yet: each waits for {needed}, {where}")
 
 
 def _reason(error: Exception) -> str:
