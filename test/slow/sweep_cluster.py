@@ -27,6 +27,8 @@ from ray.cluster_utils import Cluster
 
 from nao_sim_bridge.sweep import sweep
 
+RAY = {"RAY_AUTH_MODE": "disabled", "RAY_worker_niceness": "0", "RAY_worker_register_timeout_seconds": "300"}
+"""For a busy computer: with Ray's niceness of 15 a worker hardly starts there, and Ray ends it after 60 s."""
 MARK = "SWEEP_CLUSTER_CHECK"
 SEEDS = 8
 GONE_LIMIT = 60.0
@@ -155,8 +157,8 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0, help="of the moments")
     options = parser.parse_args()
     mark = os.environ[MARK] = uuid.uuid4().hex
-    os.environ.setdefault("RAY_AUTH_MODE", "disabled")
-    os.environ.setdefault("RAY_worker_niceness", "0")  # on a busy computer nothing gets ahead with Ray's 15
+    for name, value in RAY.items():
+        os.environ.setdefault(name, value)
     chance, failed = random.Random(options.seed), 0
     lasted = 60.0 if options.stacks else 8.0  # s from the first row to the last one, about
     folder = tempfile.mkdtemp(prefix="sweep_cluster_")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import sys
+import threading
+from contextlib import redirect_stdout
 
 import pytest
 from fake_ray import FakeRay
@@ -25,6 +27,7 @@ def clock(monkeypatch):
         now[0] += 3.0
         return now[0]
 
+    monkeypatch.setattr(ray_workers, "LOOK_PERIOD", 0.0)
     for module in (ray_workers, progress):
         monkeypatch.setattr(module.time, "monotonic", monotonic)
 
@@ -152,3 +155,12 @@ def test_where_there_is_no_terminal_the_progress_is_lines(monkeypatch, clock, ca
         re.fullmatch(r"sweep: \d+ of 20 runs, (0 workers|1 worker)(, about \d+ min left)?", line) for line in lines
     )
     assert 3 < len(lines) < 20 and last == "sweep: 20 of 20 runs"
+
+
+def test_rays_own_reports_stay_out_of_standard_output(capsys):
+    with redirect_stdout(ray_workers._WithoutRay(sys.stdout)):
+        for name in (ray_workers.RAYS_REPORTER, "another"):
+            thread = threading.Thread(target=print, args=(f"printed by {name}",), name=name)
+            thread.start()
+            thread.join()
+    assert capsys.readouterr().out == "printed by another\n"

@@ -28,9 +28,9 @@ WAITING = 30.0
 MIB = 2**20
 REASON_LENGTH = 300
 ENVIRONMENT = {"RAY_kill_child_processes_on_worker_exit": "0"}
-"""Of workers. Programs of a worker that dies end on their own, with theirs; killed by Ray, they would leave these."""
+"""Of workers. Children of a dead worker end by themselves and stop their own; killed by Ray, they would leave these."""
 RAYS_REPORTER = "ray_listen_error_messages"
-"""Ray's thread that prints what becomes of its processes, dozens of lines for each."""
+"""Ray's thread that prints errors of its processes on stdout, dozens of lines each."""
 
 
 class NoWorkers(SimulationError):
@@ -45,7 +45,7 @@ class _Run:
 
 @dataclass
 class _Worker:
-    """An actor. `host`: where it is; None until it has a place."""
+    """An actor. `host`: of its computer; None until it has started."""
 
     actor: Any
     host: str | None = None
@@ -76,7 +76,8 @@ def run_on_ray(
 class _Crew:
     """The workers of a sweep.
 
-    More are asked for than have a place, as long as there are runs for them: Ray starts them when a computer joins.
+    As long as there are runs for them, more workers are requested than have a place: Ray starts them when a computer
+    joins.
     """
 
     def __init__(self, ray: Any, job: Job, limit: int, memory: float, progress: Progress) -> None:
@@ -99,7 +100,7 @@ class _Crew:
         self._ray, self._limit, self._progress = ray, limit, progress
         self._workers: list[_Worker] = []
         self._idle: list[_Worker] = []
-        self._busy: dict[Any, tuple[_Worker, _Run | None]] = {}  # by future; without a run: until it is there
+        self._busy: dict[Any, tuple[_Worker, _Run | None]] = {}  # by future; no run: asked for its host
         self._failed_starts = 0
         self._ask_at = 0.0  # time.monotonic()
 
@@ -111,10 +112,14 @@ class _Crew:
             if not left and not running:
                 return
             self._ask_for_workers(len(left) + running)
-            while left and self._idle:  # those who wait may be dead by now: ask them first
+            while left and self._idle:  # idle workers may be lost by now: their answer tells
                 worker = self._idle.pop()
                 self._busy[worker.actor.host.remote()] = worker, None
-            ended, _ = self._ray.wait(list(self._busy), num_returns=1, timeout=LOOK_PERIOD) if self._busy else ([], [])
+            ended = []
+            if self._busy:
+                ended, _ = self._ray.wait(list(self._busy), num_returns=1, timeout=LOOK_PERIOD)
+            else:
+                time.sleep(LOOK_PERIOD)  # until more workers may be asked for
             self._progress.workers = len(self._there())
             self._progress.refresh()
             if self._progress.workers:
@@ -151,7 +156,7 @@ class _Crew:
                 self._workers.remove(futures[future])  # Ray ends those that nobody refers to, in order
 
     def kill(self) -> None:
-        """End those that have not closed: of a sweep that was interrupted, or without a place."""
+        """Kill those that have not closed: of an interrupted sweep, or not started yet."""
         for worker in self._workers:
             self._ray.kill(worker.actor)
 
@@ -159,7 +164,7 @@ class _Crew:
         return [worker for worker in self._workers if worker.host is not None]
 
     def _ask_for_workers(self, open_runs: int) -> None:
-        """Ask for more, up to twice as many as there are; one by one and slowly where they fail to start."""
+        """Request more, up to twice as many as have started; one by one and slowly where they fail to start."""
         if time.monotonic() < self._ask_at:
             return
         there = len(self._there())
@@ -170,7 +175,7 @@ class _Crew:
             self._busy[worker.actor.host.remote()] = worker, None
 
     def _lose(self, worker: _Worker, run: _Run | None, error: Exception, left: deque[_Run]) -> dict[str, Any] | None:
-        """Give the run of a lost worker back; its row if it has lost too many.
+        """Put the run of a lost worker back into `left`; its row instead if it has lost too many.
 
         Raises:
             NoWorkers: There is none, and none starts.
