@@ -19,6 +19,8 @@ from nao_sim_bridge.sweep.table import ERROR, SECONDS
 
 RETRIES = 3
 """How often a run is started again after it lost its worker, and how often a start fails while there is no worker."""
+AHEAD = 16
+"""How many workers are requested at least that have no place yet; as many as have one, if these are more."""
 CLOSE_LIMIT = 60.0
 """s that workers may take to close what they have."""
 LOOK_PERIOD = 1.0
@@ -164,11 +166,11 @@ class _Crew:
         return [worker for worker in self._workers if worker.host is not None]
 
     def _ask_for_workers(self, open_runs: int) -> None:
-        """Request more, up to twice as many as have started; one by one and slowly where they fail to start."""
+        """Request more than have started, which wait for a place; one by one and slowly where they fail to start."""
         if time.monotonic() < self._ask_at:
             return
         there = len(self._there())
-        most = there + (1 if self._failed_starts else max(1, there))
+        most = there + (1 if self._failed_starts else max(AHEAD, there))
         for _ in range(len(self._workers), min(most, self._limit, open_runs)):
             worker = _Worker(self._actor.remote())
             self._workers.append(worker)
