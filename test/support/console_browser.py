@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import signal
+import sys
 from pathlib import Path
 from urllib.parse import urlencode
 
@@ -20,13 +21,13 @@ from nao_sim_bridge.testing import StackNotReady, wait_until
 
 DRIVER = "/usr/bin/chromedriver"
 OPTIONS = ("--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader", "--window-size=1400,1000", "--mute-audio")
-PROGRAM = Path(__file__).resolve().parents[2] / "nao_library_modules" / "nodes" / "nao"
+PROGRAM = Path(__file__).with_name("watched_console.py")
 LIMIT = 60.0
 """s of this computer for whatever is waited for."""
 
 
 class ConsoleProgram:
-    """`nao console`, started for a test. `master`: URI of its ROS master; that of the tests by default.
+    """`nao console`, started for a test, and watched. `master`: URI of its ROS master; that of the tests by default.
 
     Attributes:
         url: Address with the token of an operator. observer: with that of an observer. base: without, no slash.
@@ -34,6 +35,7 @@ class ConsoleProgram:
 
     def __init__(self, folder, *options, master=""):
         self.folder = folder
+        self.watched = folder / "watched.txt"
         self._options = options
         self._environment = {**os.environ, **({"ROS_MASTER_URI": master} if master else {})}
         self.port = free_port()
@@ -46,7 +48,7 @@ class ConsoleProgram:
         self.log = self.folder / f"console_{self._starts}.txt"
         with self.log.open("wb") as output:
             self.process = start_program(
-                PROGRAM, "console", "--port", str(self.port), "--studies", str(self.folder / "studies"),
+                sys.executable, PROGRAM, self.watched, "console", "--port", str(self.port), "--studies", str(self.folder / "studies"),
                 *self._options, stdout=output, stderr=output, env=self._environment,
             )  # fmt: skip
         wait_until(self._answers, LIMIT, "the console's pages")
@@ -61,6 +63,8 @@ class ConsoleProgram:
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGINT)
             self.process.wait(LIMIT)
+        found = self.watched.read_text() if self.watched.exists() else ""
+        assert not found, f"in an event loop of the console:\n{found}"
 
     def _answers(self):
         assert self.process.poll() is None, self.log.read_text()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import ipaddress
 import signal
 import socket
@@ -15,15 +16,23 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ..base.paths import config_file
+from .access.connections import Connections, CountedListener
 from .access.controls import Controls
 from .access.guard import COOKIE, Guard
 from .access.sessions import Sessions
-from .access.users import OBSERVER, OPERATOR, read_users
+from .access.users import OBSERVER, OPERATOR, ROLES, read_users
+from .page_loop import PageLoop
 from .robots.robots import Robots
+from .stop_line import PATH, StopLine
+from .view.background import Lane
 from .view.views import Views
 
 PORT = 8080
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
+BACKLOG = 512
+"""Connections that wait to be taken."""
+SWITCH_INTERVAL = 0.001
+"""s for which a thread that takes the processor keeps others waiting, a stop among them."""
 STUDIES = "~/.ros/nao_studies"
 WHEELS = "scripts/setup installs it, where Python is 3.10 or newer"
 
@@ -71,6 +80,7 @@ class Console:
     Attributes:
         app: FastAPI application, for routes and WebSockets beside the pages; all of them are behind the guard.
         views: What pages and trials share of each robot: its senses, its body, its pictures.
+        lanes: Role -> where what takes the processor is done for pages.
     """
 
     def __init__(self, settings: ConsoleSettings) -> None:
@@ -85,6 +95,7 @@ class Console:
         self.robots = Robots()
         self.views = Views()
         self.controls = Controls()
+        self.lanes = {role: Lane() for role in ROLES}  # observers never hold up the work of operators
         self.sessions = Sessions(None if settings.users is None else read_users(settings.users))
         self.sessions.on_end = self.controls.forget
         self.app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
@@ -108,19 +119,23 @@ class Console:
         import uvicorn
 
         settings = self.settings
+        pages, connections = PageLoop(self.app), Connections()
         guard = Guard(
-            self.app,
+            pages,
             self.sessions,
             (*LOOPBACK, settings.listen) if settings.local else (),
             secure=settings.certificate is not None,
             cookie=f"{COOKIE}_{settings.port}",
+            own={PATH: StopLine(self.robots, self.sessions)},
+            connections=connections,
         )
         family = socket.AF_INET6 if ":" in settings.listen else socket.AF_INET
-        listener = socket.socket(family)
+        listener = CountedListener(family)
+        listener.connections = connections
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind((settings.listen, settings.port))
-            listener.listen(128)  # who opens the address at once waits
+            listener.listen(BACKLOG)  # who opens the address at once waits
         except OSError as error:
             listener.close()
             raise NaoError(
@@ -134,11 +149,18 @@ class Console:
             ssl_keyfile=settings.key,
             timeout_graceful_shutdown=2,
             server_header=False,
+            loop="asyncio",  # which asks the listener itself for each connection
+            backlog=BACKLOG,
+            proxy_headers=False,  # the address is that of the connection, whatever a header says
             ws_max_size=2**20,
             ws_per_message_deflate=False,  # pictures are compressed, and poses too short for it
         )
+        gc.collect()
+        gc.freeze()  # what is there by now stays: a look through all of it holds up every thread
+        sys.setswitchinterval(SWITCH_INTERVAL)
         for line in self.addresses():
             print(line, flush=True)
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))  # uvicorn raises it again when it has ended
         with suppress(KeyboardInterrupt):
             uvicorn.Server(config).run(sockets=[listener])
+        pages.close()

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
 import html
-from collections.abc import Collection
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Collection, Mapping
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import parse_qs, quote, urlencode, urlsplit
 
+from .connections import Connections
+from .logins import Logins
 from .sessions import Session, Sessions
 
 COOKIE = "nao_console"
@@ -18,6 +18,9 @@ SESSION = "nao_session"
 LARGEST = 8 * 2**20
 """Bytes of a request."""
 LOGIN, LOGOUT = "/login", "/logout"
+CROWDED = "too many connections are open: close some pages"
+DEVICE_AGE = 365 * 86400
+"""s for which a browser remembers that somebody has logged in with it."""
 HEADERS = [
     (b"x-content-type-options", b"nosniff"),
     (b"x-frame-options", b"DENY"),
@@ -50,17 +53,28 @@ class Guard:
         hosts: Names by which browsers may call the console, without ports; empty: any.
         secure: Whether it is reached by https, so that cookies never go without.
         cookie: Its name: browsers send those of a host to all of its ports.
+        own: Path -> application that is asked in place of `app`, for who has a session.
+        connections: Of the listener: told whose each is.
     """
 
     def __init__(
-        self, app: Any, sessions: Sessions, hosts: Collection[str] = (), secure: bool = False, cookie: str = COOKIE
+        self,
+        app: Any,
+        sessions: Sessions,
+        hosts: Collection[str] = (),
+        secure: bool = False,
+        cookie: str = COOKIE,
+        own: Mapping[str, Any] | None = None,
+        connections: Connections | None = None,
     ) -> None:
         self.app = app
+        self._own = own or {}
+        self._connections = Connections() if connections is None else connections
         self._sessions = sessions
         self._hosts = frozenset(hosts)
         self._secure = secure
-        self._cookie = cookie
-        self._logins = ThreadPoolExecutor(1, "login")  # strangers wait for each other, and nobody else for them
+        self._cookie, self._device = cookie, f"{cookie}_device"
+        self._logins = Logins(sessions)
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Answer one connection."""
@@ -70,20 +84,30 @@ class Guard:
         headers = {name.decode("latin-1").lower(): value.decode("latin-1") for name, value in scope["headers"]}
         problem = self._foreign(headers, needs_origin=scope["type"] == "websocket")
         session = None if problem else self._sessions.get(_cookie(headers.get("cookie", ""), self._cookie))
+        peer = tuple(scope.get("client") or ("", 0))
+        crowded = session is not None and not self._connections.admit(peer, session.key)
+        if session is None:
+            self._connections.heard(peer)
         if scope["type"] == "websocket":
-            if session is None:
-                await send({"type": "websocket.close", "code": 4403, "reason": problem or "not logged in"})
+            if session is None or crowded:
+                reason = CROWDED if crowded else problem or "not logged in"
+                await send({"type": "websocket.close", "code": 4403, "reason": reason})
                 return
-            await self.app({**scope, SESSION: session}, receive, send)
+            await self._behind(scope)({**scope, SESSION: session}, receive, send)
             return
         if problem:
             await _answer(send, 403, problem)
         elif session is None or scope["path"] in (LOGIN, LOGOUT) or b"token=" in scope["query_string"]:
             await self._let_in(scope, receive, send, session)
+        elif crowded:
+            await _answer(send, 503, CROWDED)
         elif int(headers.get("content-length") or 0) > LARGEST:
             await _answer(send, 413, f"more than {LARGEST} bytes")
         else:
             await self._pass(scope, receive, send, session)
+
+    def _behind(self, scope: Any) -> Any:
+        return self._own.get(scope["path"], self.app)
 
     def _foreign(self, headers: dict[str, str], needs_origin: bool) -> str:
         """Why a connection is another page's doing; empty: it is not."""
@@ -102,14 +126,15 @@ class Guard:
             await self._enter(send, None, "/")
         elif scope["path"] == LOGIN and scope["method"] == "POST" and self._sessions.users is not None:
             fields = parse_qs((await _body(receive)).decode("utf-8", "replace"))
-            made = await asyncio.get_running_loop().run_in_executor(
-                self._logins, self._sessions.by_password, _first(fields, "name"), _first(fields, "password")
+            device = _cookie(_header(scope, b"cookie"), self._device)
+            made = await self._logins.by_password(
+                _first(fields, "name"), _first(fields, "password"), _address(scope), device
             )
             if made is None:
                 text = "This name and password are not known, or were wrong too often: wait a minute."
                 await _answer(send, 403, text, _FORM)
             else:
-                await self._enter(send, made, "/")
+                await self._enter(send, made, "/", self._sessions.device_of(made))
         elif "token" in query and (made := self._sessions.by_token(_first(query, "token"))) is not None:
             rest = urlencode({name: values for name, values in query.items() if name != "token"}, doseq=True)
             await self._enter(send, made, scope["path"] + (f"?{rest}" if rest else ""))
@@ -118,13 +143,15 @@ class Guard:
         else:
             await _answer(send, 401, "Open the address that the console has printed: it has a token in it.")
 
-    async def _enter(self, send: Any, session: Session | None, target: str) -> None:
-        key = "" if session is None else session.key
-        cookie = f"{self._cookie}={key}; Path=/; HttpOnly; SameSite=Strict"
-        cookie += ("; Secure" if self._secure else "") + ("; Max-Age=0" if session is None else "")
+    async def _enter(self, send: Any, session: Session | None, target: str, device: str = "") -> None:
+        end = "; HttpOnly; SameSite=Strict" + ("; Secure" if self._secure else "")
+        key, age = ("", "; Max-Age=0") if session is None else (session.key, "")
+        cookies = [f"{self._device}={device}; Path={LOGIN}{end}; Max-Age={DEVICE_AGE}"] if device else []
+        cookies.append(f"{self._cookie}={key}; Path=/{end}{age}")
         path, question, rest = target.partition("?")
         location = "/" + quote(path.lstrip("/")) + question + rest
-        await _respond(send, 303, [(b"location", location.encode()), (b"set-cookie", cookie.encode())], b"")
+        headers = [(b"location", location.encode()), *((b"set-cookie", each.encode()) for each in cookies)]
+        await _respond(send, 303, headers, b"")
 
     async def _pass(self, scope: Any, receive: Any, send: Any, session: Session) -> None:
         left, gone, answered = LARGEST, False, False
@@ -144,13 +171,21 @@ class Guard:
             await send(message)
 
         try:
-            await self.app({**scope, SESSION: session}, limited, headed)
+            await self._behind(scope)({**scope, SESSION: session}, limited, headed)
         except RuntimeError as error:
             # What is behind has no answer for a browser that has left meanwhile, and says so as an error.
             if not (gone or left < 0) or "No response returned" not in str(error):
                 raise
         if left < 0 and not answered:
             await _answer(send, 413, f"more than {LARGEST} bytes")
+
+
+def _address(scope: Any) -> str:
+    return (scope.get("client") or ("",))[0]
+
+
+def _header(scope: Any, name: bytes) -> str:
+    return b"; ".join(value for each, value in scope["headers"] if each.lower() == name).decode("latin-1")
 
 
 def _cookie(text: str, name: str) -> str:

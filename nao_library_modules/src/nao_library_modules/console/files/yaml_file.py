@@ -13,6 +13,9 @@ from ...behaviors.language.errors import BehaviorError, Problem
 from ...behaviors.language.expressions import text_of
 from ...behaviors.language.yaml_text import Mapping, line_in, line_of, load
 
+LONGEST = 400_000
+"""Characters of a text that pages and files of the console take: some 8 s of reading."""
+
 
 class ConsoleFileError(NaoError):
     """A file of the console will not do. `problems`: what is wrong, in the order of the file."""
@@ -32,6 +35,8 @@ class FileReader:
     def __init__(self, text: str, name: str) -> None:
         self.name = name
         self.problems: list[Problem] = []
+        if len(text) > LONGEST:
+            raise ConsoleFileError(name, [Problem("", f"the text has {len(text)} characters: at most {LONGEST}", 1)])
         try:
             self.content = load(text, name)
         except BehaviorError as error:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import threading
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
-from nicegui import run, ui
+from nicegui import ui
 from starlette.requests import Request
 
 from naoqi.errors import NaoError
@@ -21,8 +22,9 @@ from ..timeline.run_view import RunView, StepLine
 from ..timeline.stored import StoredBehaviors, problems_in
 from ..timeline.tracks import Tracks, tracks_of
 from ..timeline.yaml_places import EditRefused
+from ..view.background import Subscriptions
 from .field_inputs import FieldInputs
-from .frame import PageContext, framed, sure
+from .frame import PageContext, framed, page_at, sure
 from .insert_dialog import BEHIND, INSIDE, LAST, InsertDialog
 from .step_form import StepForm
 from .timeline_canvas import KEYS, TimelineCanvas
@@ -32,8 +34,10 @@ LOOK_PERIOD = 0.2
 """s between two looks at what runs."""
 STORE_LIMIT = 10.0
 """s that the server may take to store a behaviour."""
-TREE_LINES = 200
-"""Steps of a run that are shown, the newest."""
+MOST_SHOWN = 40
+"""Behaviours in the list: who sees more looks for one."""
+TREE_LINES, MOST_PROBLEMS = 200, 100
+"""Steps of a run that are shown, the newest; mistakes that are shown."""
 SIGNS = {
     "began": ("play_arrow", "runs"),
     "late": ("schedule", "late"),
@@ -51,7 +55,7 @@ def build(console: Any) -> None:
     """Register the page."""
     projecting = threading.Lock()  # a projection takes a stack of its own: one at a time
 
-    @ui.page("/behaviors")
+    @page_at(console, "/behaviors")
     def behaviors(request: Request) -> None:
         with framed(console, "Behaviours", request) as page:
             BehaviorsView(page, projecting, request.query_params.get("behavior", "")).build()
@@ -65,6 +69,7 @@ class BehaviorsView:
         self._wanted = wanted
         self._projecting = projecting
         self._cancelled = threading.Event()
+        self._editing = asyncio.Lock()  # one change of the document at a time
         self._infos: dict[str, Any] = {}
         self._described: dict[str, Any] = {}
         self._document: BehaviorDocument | None = None
@@ -85,7 +90,7 @@ class BehaviorsView:
     # --- the page -----------------------------------------------------------------------------------------------------
 
     def build(self) -> None:
-        robot = self._page.robot
+        page, robot = self._page, self._page.robot
         self._stored = StoredBehaviors(partial(_ask, robot), robot.describe)
         with ui.row().classes("w-full items-start gap-4"):
             with ui.card().classes("w-full lg:w-72 gap-2"):
@@ -93,7 +98,7 @@ class BehaviorsView:
             with ui.column().classes("grow gap-3 min-w-80").style("flex-basis: 30rem"):
                 self._build_editor()
             with ui.column().classes("w-full lg:w-96 gap-3"):
-                self._form = StepForm(robot.describe, self._edit, lambda: self._infos)
+                self._form = StepForm(lambda: self._described, page.work, self._edit, lambda: self._infos)
                 self._form.show(None, "")
         self._listen()
         self._page.on_leave(self._cancelled.set)
@@ -170,13 +175,12 @@ class BehaviorsView:
     async def _load_list(self) -> None:
         robot = self._page.robot
         try:
-            infos = await run.io_bound(self._stored.infos) or []
+            infos = await self._page.work(self._stored.infos)
         except NaoError as error:
             self._list_state.text = str(error)
             return
         self._infos = {info.name: info for info in infos}
-        found = await run.io_bound(robot.describe_all) or {}
-        self._described = {server: told for server, told in found.items() if server != SERVER}
+        self._described = await self._page.ask(robot.describe_all)
         self._show_list()
         if self._document is None and self._wanted in self._infos:
             await self._open(self._wanted)
@@ -188,10 +192,11 @@ class BehaviorsView:
             for info in self._infos.values()
             if all(word in f"{info.name} {info.help} {' '.join(info.tags)}".lower() for word in words)
         ]
-        self._list_state.text = f"{len(shown)} of {len(self._infos)} behaviours"
+        more = f", the first {MOST_SHOWN} of them here" if len(shown) > MOST_SHOWN else ""
+        self._list_state.text = f"{len(shown)} of {len(self._infos)} behaviours{more}"
         self._names.clear()
         with self._names:
-            for info in shown:
+            for info in shown[:MOST_SHOWN]:
                 item = ui.item(on_click=lambda name=info.name: self._open(name)).classes("rounded")
                 item.props["aria-label"] = f"Open {info.name}: {info.help}"
                 with item:
@@ -205,16 +210,17 @@ class BehaviorsView:
         if self._document is not None and self._document.changed and not await sure("Leave the changes unsaved?"):
             return
         try:
-            text, shipped = await run.io_bound(self._stored.text, name)
+            text, shipped = await self._page.ask(self._stored.text, name)
+            document = await self._page.work(BehaviorDocument, name, text, shipped)
         except NaoError as error:
             ui.notify(str(error), type="negative", multi_line=True)
             return
-        await self._take(BehaviorDocument(name, text, shipped))
+        await self._take(document)
 
     async def _new(self) -> None:
         if self._document is not None and self._document.changed and not await sure("Leave the changes unsaved?"):
             return
-        await self._take(BehaviorDocument.new())
+        await self._take(await self._page.work(BehaviorDocument.new))
 
     async def _take(self, document: BehaviorDocument) -> None:
         """Show another behaviour."""
@@ -296,16 +302,18 @@ class BehaviorsView:
             begin = (box.end - group.begin) if box is not None and group is not None else 0.0
             await self._edit(lambda: self._select(document.insert(step, path, place == INSIDE, begin)))
 
-        InsertDialog(self._described, sorted(self._infos), places, put)
+        described = {server: told for server, told in self._described.items() if server != SERVER}
+        InsertDialog(described, sorted(self._infos), places, put, self._page.work)
 
-    async def _edit(self, edit: Callable[[], Any]) -> None:
+    async def _edit(self, edit: Callable[[], Any], text_too: bool = True) -> None:
         """Carry out an edit of the document, or tell why it is refused."""
-        try:
-            edit()
-        except (EditRefused, NaoError) as error:
-            ui.notify(str(error), type="warning", multi_line=True)
+        async with self._editing:
+            try:
+                await self._page.work(edit)
+            except (EditRefused, NaoError) as error:
+                ui.notify(str(error), type="warning", multi_line=True)
         self._problems = []
-        await self._refresh()
+        await self._refresh(text_too)
 
     def _typing(self, event: Any) -> None:
         self._typed = event.value
@@ -314,8 +322,8 @@ class BehaviorsView:
         """Make what was typed as text the text of the behaviour."""
         typed, self._typed = self._typed, None
         if self._document is not None and typed is not None and typed != self._document.text:
-            self._document.set_text(typed)
-            await self._refresh(text_too=False)
+            document = self._document
+            await self._edit(lambda: document.set_text(typed), text_too=False)
             await self._show_parameters()
 
     async def _refresh(self, text_too: bool = True, whole: bool = False) -> None:
@@ -325,10 +333,14 @@ class BehaviorsView:
             return
         if not document.has(self._selected or "0"):
             self._selected = ""
-        tracks = await run.io_bound(
-            tracks_of, document, self._stored.load, self._stored.tables, self._texts(), self._measured, self._problems
-        )
-        self._tracks = tracks or Tracks()
+        try:
+            self._tracks = await self._page.work(
+                tracks_of, document, self._stored.load, self._stored.tables, self._texts(), self._measured,
+                self._problems,
+            )  # fmt: skip
+        except NaoError as error:
+            self._tracks = Tracks()
+            ui.notify(str(error), type="negative", multi_line=True)
         self._title.text = document.name or "A new behaviour"
         self._state.text = ", ".join(
             filter(None, ("of the library" if document.shipped else "", "changed" if document.changed else ""))
@@ -354,7 +366,7 @@ class BehaviorsView:
         self._parameters.clear()
         self._parameters.set_visibility(bool(fields))
         with self._parameters:
-            FieldInputs(fields, self._given, self._give, "parameter")
+            FieldInputs(fields, self._page.work, self._given, self._give, "parameter")
 
     async def _give(self, name: str, value: Any) -> None:
         if value is None:
@@ -376,11 +388,9 @@ class BehaviorsView:
             ui.notify("open a behaviour first")
             return False
         try:
-            info = await run.io_bound(self._stored.check, document.text, document.file, self._texts())
+            info = await self._page.work(self._stored.check, document.text, document.file, self._texts())
         except NaoError as error:
             ui.notify(f"not checked: {error}", type="negative", multi_line=True)
-            return False
-        if info is None:
             return False
         self._problems = problems_in(info)
         await self._refresh()
@@ -393,7 +403,7 @@ class BehaviorsView:
     def _show_problems(self, problems: list[Any]) -> None:
         self._problem_list.clear()
         with self._problem_list:
-            for problem in dict.fromkeys(map(str, problems)):
+            for problem in list(dict.fromkeys(map(str, problems)))[:MOST_PROBLEMS]:
                 with ui.row().classes("items-start no-wrap gap-2").props("role=alert"):
                     ui.icon("error", color="negative")
                     ui.label(problem).classes("break-words")
@@ -434,15 +444,13 @@ class BehaviorsView:
         dialog.open()
         given = self._texts()
         try:
-            done = await run.io_bound(self._projected, document.text, document.file, given)
+            done = await self._page.ask(self._projected, document.text, document.file, given)
         except NotProjected as error:
             ui.notify(f"No projection: {error}", type="negative", multi_line=True)
             return
         finally:
             dialog.close()
             dialog.delete()
-        if done is None:
-            return
         self._measured = {**self._measured, **done.lengths}
         await self._refresh()
         kind = "positive" if done.state == "succeeded" else "negative"
@@ -461,9 +469,10 @@ class BehaviorsView:
     def _listen(self) -> None:
         from nao_library_actions.msg import NaoBehaviorActionFeedback
 
-        self._page.on_leave(
-            self._page.robot.topic(f"{SERVER}/feedback", NaoBehaviorActionFeedback, self._told, queue_size=100)
-        )
+        topic = partial(self._page.robot.topic, f"{SERVER}/feedback", NaoBehaviorActionFeedback, self._told, 100)
+        feedback = Subscriptions(f"behaviours of {self._page.robot.name}")
+        feedback.begin(topic)
+        self._page.on_leave(feedback.end)
 
     def _told(self, message: Any) -> None:
         """Feedback of a behaviour, whoever runs it. Called from a thread of the subscriber."""
@@ -495,7 +504,7 @@ class BehaviorsView:
         robot = self._page.robot
         stops = robot.stops if stops is None else stops
         try:
-            return await run.io_bound(robot.send, command, self._page.visitor.name, label, stops)
+            return await self._page.ask(robot.send, command, self._page.visitor.name, label, stops)
         except NaoError as error:
             ui.notify(str(error), type="negative", multi_line=True)
             return None
@@ -594,7 +603,7 @@ class BehaviorsView:
         goal = await self._send(call(SERVER, "storeBehavior", **fields), f"store {name}")
         if goal is None:
             return
-        await run.io_bound(goal.wait, STORE_LIMIT)
+        await self._page.ask(goal.wait, STORE_LIMIT)
         if goal.state != "succeeded":
             ui.notify(f"not stored: {goal.text or goal.state}", type="negative", multi_line=True, timeout=8000)
             return
@@ -620,7 +629,7 @@ class BehaviorsView:
         goal = await self._send(call(SERVER, "recordBehavior", str_param=name), f"record {name}")
         if goal is None:
             return
-        await run.io_bound(goal.wait, STORE_LIMIT)
+        await self._page.ask(goal.wait, STORE_LIMIT)
         if goal.state != "succeeded":
             ui.notify(goal.text or goal.state, type="negative", multi_line=True)
             return
@@ -632,7 +641,7 @@ class BehaviorsView:
         goal = await self._send(call(SERVER, "stopRecording"), f"end the recording {self._recording}")
         if goal is None:
             return
-        await run.io_bound(goal.wait, STORE_LIMIT)
+        await self._page.ask(goal.wait, STORE_LIMIT)
         name, self._recording = self._recording, ""
         self._record_button.text = "Record"
         self._record_button.props(remove="color=negative")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from typing import Any
 
 from nicegui import ui
@@ -11,6 +11,12 @@ from ...behaviors.language.yaml_text import dump_line
 from ..robots.forms import EXPRESSION, FormField, text_of_value, typed_value, value_of
 
 UNITLESS = ("", "no unit")
+LONGEST = 20_000
+"""Characters of one input; longer values belong into a behaviour's text."""
+SHORT = 200
+"""Characters that are read in the event loop; longer ones, which may be YAML, are read beside it."""
+Work = Callable[..., Awaitable[Any]]
+"""Calls a function beside the event loop."""
 
 
 class FieldInputs:
@@ -18,6 +24,7 @@ class FieldInputs:
 
     Args:
         fields: What is asked for.
+        work: Reads what takes a while, as `PageContext.work` does.
         given: Values of some of them.
         changed: Called with name and value, None for the default, when somebody has entered another one.
         prefix: What accessible names begin with.
@@ -26,11 +33,13 @@ class FieldInputs:
     def __init__(
         self,
         fields: Sequence[FormField],
+        work: Work,
         given: Mapping[str, Any] | None = None,
         changed: Callable[[str, Any], Any] | None = None,
         prefix: str = "",
     ) -> None:
         self._fields = {field.name: field for field in fields}
+        self._work = work
         self._given = dict(given or {})
         self._changed = changed
         self._prefix = prefix
@@ -42,11 +51,11 @@ class FieldInputs:
             if not fields:
                 ui.label("It takes nothing.").classes("text-sm opacity-80")
 
-    def values(self) -> dict[str, Any]:
+    async def values(self) -> dict[str, Any]:
         """Name -> value of all that is filled in. Raises ValueError with what is wrong with one."""
         values = {}
         for name, field in self._fields.items():
-            value = self._value(field)
+            value = await self._value(field)
             if value is not None:
                 values[name] = value
         return values
@@ -91,9 +100,9 @@ class FieldInputs:
         return select
 
     def _text(self, field: FormField, given: Any) -> Any:
-        def wrong(text: str | None) -> str | None:
+        async def wrong(text: str | None) -> str | None:
             try:
-                typed_value(field, text or "") if (text or "").strip() else None
+                await self._typed(field, text or "")
             except ValueError as error:
                 return str(error)
             return None
@@ -114,29 +123,38 @@ class FieldInputs:
     def _name(self, element: Any, field: FormField) -> None:
         element.props["aria-label"] = f"{self._prefix} {field.name}: {field.hint}".strip()
 
-    def _value(self, field: FormField) -> Any:
+    async def _value(self, field: FormField) -> Any:
         shown = self._inputs[field.name].value
         if isinstance(shown, bool):
             return shown if shown != bool(field.default) or field.name in self._given else None
         if isinstance(shown, list):
             return [value_of(_single(field), str(each)) for each in shown] or None
-        text = str(shown or "")
-        return typed_value(field, text) if text.strip() else None
+        return await self._typed(field, str(shown or ""))
 
-    def _enter(self, field: FormField) -> Any:
-        """Tell of a value that is another one than before, if it will do; what is told may be awaited."""
-        if self._changed is None:
+    async def _typed(self, field: FormField, text: str) -> Any:
+        """The value of a text; None if it is empty. Raises ValueError."""
+        if len(text) > LONGEST:
+            raise ValueError(f"{field.name}: {len(text)} characters; at most {LONGEST} are read here")
+        if not text.strip():
             return None
+        return typed_value(field, text) if len(text) <= SHORT else await self._work(typed_value, field, text)
+
+    async def _enter(self, field: FormField) -> None:
+        """Tell of a value that is another one than before, if it will do."""
+        if self._changed is None:
+            return
         shown = self._inputs[field.name].value
         kept = list(shown) if isinstance(shown, list) else shown
         if self._entered.get(field.name, self._given.get(field.name)) == kept:
-            return None
+            return
         try:
-            value = self._value(field)
+            value = await self._value(field)
         except ValueError:
-            return None  # the input tells it
+            return  # the input tells it
         self._entered[field.name] = kept
-        return self._changed(field.name, value)
+        told = self._changed(field.name, value)
+        if isinstance(told, Awaitable):
+            await told
 
 
 def _single(field: FormField) -> FormField:

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Awaitable, Callable, Union
 
-from fastapi import HTTPException, Request
-from fastapi.responses import JSONResponse
+from fastapi import Depends, HTTPException, Request
 from fastapi.staticfiles import StaticFiles
 from nicegui import context, ui
 
@@ -30,21 +29,8 @@ Callback = Callable[[], Union[None, Awaitable[None]]]
 
 
 def build(console: Any) -> None:
-    """Register what all pages need: static files and the stop."""
+    """Register what all pages need: static files."""
     console.app.mount(STATIC, StaticFiles(directory=config_file("console/static")), name="console_static")
-
-    @console.app.post("/console/stop")
-    async def stop(request: Request, robot: str = "") -> JSONResponse:
-        """Stop a robot, whoever holds its controls: for a key, also when the page's own connection is gone."""
-        session = session_of(request)
-        if not session.operator:
-            return JSONResponse({"error": "observers look on"}, status_code=403)
-        try:
-            client = console.robots.robot(robot)
-        except NaoError as error:
-            return JSONResponse({"error": str(error)}, status_code=404)
-        await in_background(client.stop, session.name)
-        return JSONResponse({"stopped": client.name})
 
 
 class PageContext:
@@ -57,6 +43,14 @@ class PageContext:
         self._leave: list[Callable[[], None]] = []
         self._client = context.client
         self._client.on_delete(self._left)
+
+    async def ask(self, task: Callable[..., Any], *arguments: Any) -> Any:
+        """What a function gives that waits for ROS, the disk or a lock. It is never called in the event loop."""
+        return await in_background(task, *arguments)
+
+    async def work(self, task: Callable[..., Any], *arguments: Any) -> Any:
+        """What a function gives that may take the processor for a while, as reading YAML does; see `Lane`."""
+        return await self.console.lanes[self.visitor.role].do(task, *arguments)
 
     def operate(self) -> bool:
         """Whether this visitor may move the robot now; says why not."""
@@ -96,18 +90,31 @@ class PageContext:
         self._leave.clear()
 
 
+def page_at(console: Any, path: str) -> Callable[[Any], Any]:
+    """Decorator of a page, as `ui.page`: the robot of its address is looked for before, beside the event loop."""
+
+    def look(name: str) -> tuple[RobotClient, list[str]]:
+        return console.robots.robot(name), console.robots.names()
+
+    async def find(request: Request) -> None:
+        try:
+            found = await in_background(look, request.query_params.get("robot", ""))
+        except NaoError as error:  # never another robot in its place
+            raise HTTPException(404, str(error)) from None
+        request.state.robot, request.state.robots = found
+
+    return ui.page(path, dependencies=[Depends(find)])
+
+
 @contextmanager
 def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
     """A page with its frame; in the block is its content.
 
     The address says which robot: `?robot=nao1`, the first without. While it is open, goals of all programs are
-    followed.
+    followed. `request`: of a page that is made by `page_at`.
     """
     session = session_of(request)
-    try:
-        robot = console.robots.robot(request.query_params.get("robot", ""))
-    except NaoError as error:  # never another robot in its place
-        raise HTTPException(404, str(error)) from None
+    robot = request.state.robot
     page = PageContext(console, session, robot)
     ui.page_title(f"{title}, {robot.name}: NAO console")
     ui.add_head_html(f'<link rel="stylesheet" href="{STATIC}/console.css">')
@@ -118,7 +125,7 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
     page.on_leave(console.controls.enter(session, robot.namespace))
     dark = ui.dark_mode(session.dark)
     with ui.header().classes("nao-header items-center").props(f'data-robot="{robot.name}"'):
-        _navigation(console, request.url.path, robot)
+        _navigation(request.url.path, robot, request.state.robots)
         ui.space()
         _people(console, page)
         if console.sessions.users is not None:
@@ -136,13 +143,12 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
         yield page
 
 
-def _navigation(console: Any, here: str, robot: RobotClient) -> None:
+def _navigation(here: str, robot: RobotClient, names: list[str]) -> None:
     with ui.element("nav").props('aria-label="Pages"').classes("row items-center"):
         for path, name in PATHS.items():
             link = ui.link(name, f"{path}?robot={robot.name}").classes("nao-link")
             if path == here or (path != "/" and here.startswith(path)):
                 link.props('aria-current="page"')
-    names = console.robots.names()
     if len(names) > 1 or robot.name not in names:
         choices = sorted({*names, robot.name})
         ui.select(choices, value=robot.name, on_change=lambda e: ui.navigate.to(f"{here}?robot={e.value}")).props(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from nicegui import run, ui
+from nicegui import ui
 from starlette.requests import Request
 
 from naoqi.errors import NaoError
@@ -16,9 +16,9 @@ from ..robots.commands import RobotCommand
 from ..robots.copies import as_command, as_python, as_yaml
 from ..robots.forms import form_of
 from .field_inputs import FieldInputs
-from .frame import PageContext, framed
+from .frame import PageContext, framed, page_at
 
-MOST_SHOWN = 80
+MOST_SHOWN = 40
 """Functions in the list: who sees more looks for none."""
 LOOK_PERIOD = 0.2
 """s between two looks at a goal that runs."""
@@ -30,7 +30,7 @@ LONGEST_ANSWER = 20_000
 def build(console: Any) -> None:
     """Register the page."""
 
-    @ui.page("/functions")
+    @page_at(console, "/functions")
     def functions(request: Request) -> None:
         with framed(console, "Functions", request) as page:
             FunctionsView(page).build()
@@ -71,7 +71,7 @@ class FunctionsView:
     # --- the list -----------------------------------------------------------------------------------------------------
 
     async def _ask(self) -> None:
-        self._described = await run.io_bound(self._page.robot.describe_all) or {}
+        self._described = await self._page.ask(self._page.robot.describe_all)
         self._servers.set_options([ALL, *self._described], value=ALL)
         self._list()
 
@@ -122,9 +122,9 @@ class FunctionsView:
             ui.label(f"{server}.{function.name}").classes("text-lg font-medium").props("role=heading aria-level=2")
             ui.label(function.help)
             ui.label(f"Answers {function.answers}.").classes("text-sm opacity-80")
-            self._inputs = FieldInputs(form_of(function))
+            self._inputs = FieldInputs(form_of(function), self._page.work)
             with ui.expansion("Wait afterwards, failures").classes("w-full"):
-                self._common = FieldInputs(_common(told))
+                self._common = FieldInputs(_common(told), self._page.work)
             with ui.row().classes("gap-2 items-center"):
                 ui.button("Send", icon="send", on_click=self._send).props("no-caps")
                 self._cancel = ui.button("Cancel", icon="cancel", on_click=self._cancel_run).props("outline no-caps")
@@ -135,29 +135,29 @@ class FunctionsView:
                 ui.button("Command", on_click=lambda: self._copy("a command")).props("flat dense no-caps")
                 ui.button("YAML", on_click=lambda: self._copy("YAML")).props("flat dense no-caps")
 
-    def _command(self) -> RobotCommand | None:
+    async def _command(self) -> RobotCommand | None:
         """What the form says; None if something in it will not do, which is told."""
         if self._inputs is None or self._common is None:
             return None
         try:
-            fields = {**self._inputs.values(), **self._common.values()}
+            fields = {**await self._inputs.values(), **await self._common.values()}
         except ValueError as error:
             ui.notify(str(error), type="negative")
             return None
         return RobotCommand(self._server, ((self._function.name, fields),))
 
     async def _send(self) -> None:
-        command = self._command()
+        robot = self._page.robot
+        stops, command = robot.stops, await self._command()
         if command is None or not self._page.operate():
             return
         try:
-            robot = self._page.robot
-            self._run = await run.io_bound(robot.send, command, self._page.visitor.name, stops=robot.stops)
+            self._run = await self._page.ask(robot.send, command, self._page.visitor.name, "", stops)
         except NaoError as error:
             ui.notify(str(error), type="negative", multi_line=True)
             return
         self._cancel.set_enabled(True)
-        self._show()
+        await self._show()
 
     def _cancel_run(self) -> None:
         if self._run is not None and self._page.operate():
@@ -165,19 +165,23 @@ class FunctionsView:
 
     # --- the answer ---------------------------------------------------------------------------------------------------
 
-    def _look(self) -> None:
-        if self._run is None:
+    async def _look(self) -> None:
+        goal = self._run
+        if goal is None:
             return
-        told = (self._run.state, self._run.progress, self._run.done)
+        done = goal.done
+        told = (goal.state, goal.progress, done)
         if told != self._told:
             self._told = told
-            self._show()
-        if self._run.done:
+            await self._show()
+        if done and self._run is goal:
             self._cancel.set_enabled(False)
             self._run = None
 
-    def _show(self) -> None:
+    async def _show(self) -> None:
         goal = self._run
+        answer = {name: value for name, value in goal.result.items() if value not in ("", [], {}, 0, 0.0, False)}
+        text = await self._page.work(_answer_text, answer) if answer else ""
         self._answer.set_visibility(True)
         self._answer.clear()
         with self._answer:
@@ -185,27 +189,31 @@ class FunctionsView:
             ui.label(f"{goal.server}: {goal.label} – {goal.state}").props("role=status")
             for text in dict.fromkeys(filter(None, (goal.progress if not goal.done else "", goal.text))):
                 ui.label(text).classes("whitespace-pre-wrap break-words")
-            answer = {name: value for name, value in goal.result.items() if value not in ("", [], {}, 0, 0.0, False)}
-            if answer:
-                text = dump(answer)
-                if len(text) > LONGEST_ANSWER:
-                    text = f"{text[:LONGEST_ANSWER]}\n... and {len(text) - LONGEST_ANSWER} characters more"
+            if text:
                 ui.label(text).classes("whitespace-pre-wrap break-all font-mono text-sm")
             elif goal.done and goal.state == "succeeded":
                 ui.label("It answers nothing.").classes("opacity-80")
 
     # --- copies -------------------------------------------------------------------------------------------------------
 
-    def _copy(self, kind: str) -> None:
-        command = self._command()
+    async def _copy(self, kind: str) -> None:
+        command = await self._command()
         if command is None:
             return
         namespace = self._page.robot.namespace
         if kind == "Python":
-            text = as_python(command, namespace, self._described[self._server])
+            text = await self._page.work(as_python, command, namespace, self._described[self._server])
+        elif kind == "a command":
+            text = await self._page.work(as_command, command, namespace)
         else:
-            text = as_command(command, namespace) if kind == "a command" else as_yaml(command)
+            text = await self._page.work(as_yaml, command)
         show_copy(kind, text)
+
+
+def _answer_text(answer: Any) -> str:
+    text = dump(answer)
+    more = len(text) - LONGEST_ANSWER
+    return text if more <= 0 else f"{text[:LONGEST_ANSWER]}\n... and {more} characters more"
 
 
 def show_copy(kind: str, text: str) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 from nicegui import ui
 
 from ..robots.forms import form_of
-from .field_inputs import FieldInputs
+from .field_inputs import FieldInputs, Work
 
 FUNCTION, BOX = "a function of a server", "another behaviour"
 KINDS: Mapping[str, Any] = {
@@ -30,6 +30,7 @@ class InsertDialog:
         behaviors: Names of behaviours.
         places: Those of BEHIND, INSIDE and LAST that there are.
         put: Called with the step and the place.
+        work: As `FieldInputs` takes it.
     """
 
     def __init__(
@@ -38,10 +39,12 @@ class InsertDialog:
         behaviors: list[str],
         places: list[str],
         put: Callable[[Any, str], Awaitable[None]],
+        work: Work,
     ) -> None:
         self._described = described
         self._behaviors = behaviors
         self._put = put
+        self._work = work
         self._inputs: FieldInputs | None = None
         with ui.dialog() as self._dialog, ui.card().classes("w-full max-w-xl gap-3"):
             ui.label("Put in a step").classes("text-lg font-medium").props("role=heading aria-level=2")
@@ -80,22 +83,22 @@ class InsertDialog:
         found = [each for each in self._described[server].functions if each.name == name] if name else []
         with self._fields:
             for function in found:
-                self._inputs = FieldInputs(form_of(function))
+                self._inputs = FieldInputs(form_of(function), self._work)
 
     async def _done(self) -> None:
         try:
-            step = self._step()
+            step = await self._step()
         except ValueError as error:
             ui.notify(str(error), type="negative")
             return
         self._dialog.close()
         await self._put(step, self._place.value)
 
-    def _step(self) -> Any:
+    async def _step(self) -> Any:
         if self._kind.value in KINDS:
             return KINDS[self._kind.value]
         if not self._which.value:
             raise ValueError(f"{self._kind.value} is not chosen yet")
         if self._kind.value == BOX:
             return {"behavior": self._which.value}
-        return {self._which.value: self._inputs.values() if self._inputs is not None else {}}
+        return {self._which.value: await self._inputs.values() if self._inputs is not None else {}}

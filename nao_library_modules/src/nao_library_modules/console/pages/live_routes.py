@@ -8,7 +8,7 @@ from collections.abc import Awaitable
 from typing import Any, Callable
 
 from fastapi import HTTPException, WebSocket, WebSocketDisconnect
-from fastapi.responses import FileResponse, JSONResponse
+from fastapi.responses import FileResponse, Response
 
 from naoqi.errors import NaoError
 
@@ -38,21 +38,25 @@ def build(console: Any) -> None:
     """
     meshes: set[str] = set()
 
+    def described(robot: str) -> tuple[RobotModel, str]:
+        found = model_of(console, robot)
+        return found, json.dumps(found.to_json())
+
     @console.app.get("/console/model")
-    async def model(robot: str = "") -> JSONResponse:
+    async def model(robot: str = "") -> Response:
         try:
-            found = await in_background(model_of, console, robot)
+            found, text = await in_background(described, robot)
         except NaoError as error:
             raise HTTPException(404, str(error)) from None
         meshes.update(found.meshes)
-        return JSONResponse(found.to_json())
+        return Response(text, media_type="application/json")
 
     @console.app.get("/console/meshes/{name:path}")
     async def mesh(name: str) -> FileResponse:
         import rospkg
 
         try:
-            path = mesh_path(name, frozenset(meshes), rospkg.RosPack().get_path)
+            path = await in_background(lambda: mesh_path(name, frozenset(meshes), rospkg.RosPack().get_path))
         except (FileNotFoundError, rospkg.ResourceNotFound) as error:
             raise HTTPException(404, f"no mesh {name}") from error
         return FileResponse(path, media_type="model/stl", headers=CACHED)

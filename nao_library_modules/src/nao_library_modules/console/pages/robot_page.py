@@ -21,7 +21,7 @@ from ..view.traces import MOST
 from ..view.traces import NAMES as TRACE_NAMES
 from ..view.views import RobotViews
 from . import live_routes
-from .frame import STATIC, PageContext, framed
+from .frame import STATIC, PageContext, framed, page_at
 from .simulator_panel import SimulatorPanel
 
 PERIOD, SLOW_PERIOD = 0.4, 1.0
@@ -51,7 +51,7 @@ def build(console: Any) -> None:
     """Register the page, at the root, and the routes behind it."""
     live_routes.build(console)
 
-    @ui.page("/")
+    @page_at(console, "/")
     def robot_page(request: Request) -> None:
         with framed(console, "Robot", request) as page:
             RobotPage(page, console.views.of(page.robot))
@@ -154,7 +154,7 @@ class RunPanel:
             row["state"].set_text(run.state)
             row["progress"].set_text(run.progress)
         busy = {run.server for run in runs.values()}
-        idle = [server for server in self._page.robot.servers() if server not in busy]
+        idle = [server for server in self._page.robot.seen_servers if server not in busy]
         self._idle.set_text(f"At rest: {', '.join(idle)}" if idle else "No server runs" if not busy else "")
 
     def _add(self, run: Run) -> dict[str, Any]:

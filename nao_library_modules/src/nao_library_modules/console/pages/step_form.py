@@ -8,12 +8,10 @@ from typing import Any
 
 from nicegui import ui
 
-from naoqi.errors import NaoError
-
 from ..robots.forms import FormField, form_of, form_of_parameters
 from ..timeline.document import BehaviorDocument
 from ..timeline.steps import functions_in, kind_of_step
-from .field_inputs import FieldInputs
+from .field_inputs import FieldInputs, Work
 
 LABEL = FormField("label", "string", "a name, for times and for the result: letters, digits, '_' and '-'")
 ON_ERROR = FormField("on_error", "string", "what a failure does", choices=("stop", "skip", "retry 2", "retry 2 skip"))
@@ -30,18 +28,21 @@ class StepForm:
     """Inputs for the chosen step, in a container of its own.
 
     Args:
-        describe: Gives the DescribeFunctionsResponse of a server; raises NaoError.
+        described: Gives the DescribeFunctionsResponse of the servers, by name, as far as they are known.
+        work: As `FieldInputs` takes it.
         edit: Carries out an edit of the document and tells what is refused.
         infos: BehaviorInfo by name, for boxes.
     """
 
     def __init__(
         self,
-        describe: Callable[[str], Any],
+        described: Callable[[], Mapping[str, Any]],
+        work: Work,
         edit: Callable[[Callable[[], Any]], Any],
         infos: Callable[[], Mapping[str, Any]],
     ) -> None:
-        self._describe = describe
+        self._described_servers = described
+        self._work = work
         self._edit = edit
         self._infos = infos
         self._shown: tuple[str, Any] = ("", None)
@@ -93,15 +94,15 @@ class StepForm:
             ui.label(described.help).classes("text-sm opacity-80")
             FieldInputs(
                 fields,
+                self._work,
                 given,
                 lambda name, value, n=number: self._edit(lambda: document.set_field(path, n, name, value)),
                 f"step {path}",
             )
 
     def _described(self, server: str, function: str) -> tuple[Any, list[FormField]] | None:
-        try:
-            told = self._describe(server)
-        except NaoError:
+        told = self._described_servers().get(server)
+        if told is None:
             return None
         found = [each for each in told.functions if each.name == function]
         return (found[0], form_of(SimpleNamespace(arguments=told.common))) if found else None
@@ -117,6 +118,7 @@ class StepForm:
             ui.label("Parameters").classes("font-medium")
             FieldInputs(
                 parameters,
+                self._work,
                 step.get("parameters") or {},
                 lambda name, value: self._edit(lambda: document.set_parameter(path, name, value)),
                 f"step {path}",
@@ -134,6 +136,7 @@ class StepForm:
     def _keys(self, document: BehaviorDocument, path: str, step: Any, fields: list[FormField]) -> None:
         FieldInputs(
             fields,
+            self._work,
             {field.name: step[field.name] for field in fields if field.name in step},
             lambda name, value: self._edit(lambda: document.set_key(path, name, _time(name, value))),
             f"step {path}",

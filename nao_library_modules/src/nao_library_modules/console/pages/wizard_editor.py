@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from nicegui import run, ui
+from nicegui import ui
 
 from naoqi.errors import NaoError
 
@@ -13,9 +13,12 @@ from ...behaviors.language.errors import Problem
 from ..files.yaml_file import ConsoleFileError
 from ..wizard.check import doubts, stored_behaviors
 from ..wizard.errors import EditConflict
-from ..wizard.layout_file import LONGEST, CurrentLayout, LayoutFile
+from ..wizard.layout_file import CurrentLayout, LayoutFile
 from ..wizard.reader import read_layout
 from .frame import PageContext
+
+MOST_PROBLEMS = 100
+"""Mistakes that are shown."""
 
 
 class WizardEditor:
@@ -52,7 +55,7 @@ class WizardEditor:
 
     async def _load(self) -> None:
         try:
-            saved = await run.io_bound(self._file.text)
+            saved = await self._page.ask(self._file.text)
         except ConsoleFileError as error:
             self._show(error.problems, "The file cannot be read")
             return
@@ -74,14 +77,15 @@ class WizardEditor:
             return False
         text = self._code.value
         try:
-            if len(text) > LONGEST:
-                raise ConsoleFileError(self._file.path.name, [Problem("", f"more than {LONGEST} characters", 1)])
-            layout = await run.io_bound(read_layout, text, self._file.path.name)
+            layout = await self._page.work(read_layout, text, self._file.path.name)
         except ConsoleFileError as error:
             self._show(error.problems, f"{_count(error.problems)}: it cannot be saved so")
             return False
+        except NaoError as error:
+            self._told.text = str(error)
+            return False
         robot = self._page.robot
-        found = await run.io_bound(lambda: doubts(layout, robot, stored_behaviors(robot)))
+        found = await self._page.work(lambda: doubts(layout, robot, stored_behaviors(robot)))
         right = f"It can be saved: {sum(1 for _ in layout.buttons())} buttons"
         self._show(found, f"{right}; the robot that runs would refuse some" if found else right)
         return True
@@ -96,7 +100,7 @@ class WizardEditor:
         if not self._page.operate() or not await self._check():
             return
         try:
-            saved = await run.io_bound(self._file.save, self._code.value, revision)
+            saved = await self._page.work(self._file.save, self._code.value, revision)
         except EditConflict as error:
             self._told.text = str(error)
             self._over.set_visibility(True)
@@ -106,14 +110,14 @@ class WizardEditor:
             return
         self._revision = saved.revision
         self._over.set_visibility(False)
-        await run.io_bound(self._current.look)
+        await self._page.work(self._current.look)
         self._page.notify(f"Saved: {self._file.path}", "positive")
 
     def _show(self, problems: Sequence[Problem], told: str) -> None:
         self._told.text = told
         self._list.clear()
         with self._list:
-            for problem in problems:
+            for problem in problems[:MOST_PROBLEMS]:
                 ui.button(str(problem), on_click=lambda _, line=problem.line: self._go_to(line)).props(
                     "flat dense no-caps align=left color=negative"
                 )

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from fastapi import Request, WebSocket, WebSocketDisconnect
-from nicegui import context, run, ui
+from nicegui import context, ui
 
 from naoqi.errors import NaoError
 
@@ -23,9 +23,9 @@ from ..view.background import in_background
 from ..wizard.desk import PLANS, WizardDesk
 from ..wizard.layout_file import CurrentLayout, LayoutFile
 from ..wizard.model import WizardLayout
-from ..wizard.session import HEAD, PRESS, PageRights, WizardSession, read_message
+from ..wizard.session import HEAD, STOP, WALK, PageRights, WizardSession, read_message
 from ..wizard.wire import layout_message
-from .frame import PageContext, framed
+from .frame import PageContext, framed, page_at
 from .wizard_editor import WizardEditor
 
 OWN_FILE = "~/.ros/nao_console.yaml"
@@ -33,6 +33,8 @@ OWN_FILE = "~/.ros/nao_console.yaml"
 LOOK_PERIOD = 2.0
 """s between two looks whether the file has changed on the disk."""
 HISTORY_SHOWN = 6
+DRIVE = "drive"
+"""Lane of walks and stops."""
 
 
 class WizardParts:
@@ -63,7 +65,7 @@ def build(console: Any) -> None:
     """Register the page and its WebSocket."""
     parts = WizardParts(console)
 
-    @ui.page("/wizard")
+    @page_at(console, "/wizard")
     def wizard(request: Request) -> None:
         with framed(console, "Wizard", request) as page:
             _WizardPage(parts, page).draw()
@@ -118,7 +120,7 @@ class _WizardPage:
         self._show_problems()
 
     async def _look(self) -> None:
-        await run.io_bound(self._parts.current.look)
+        await self._page.work(self._parts.current.look)
 
     # --- free text ----------------------------------------------------------------------------------------------------
 
@@ -145,7 +147,7 @@ class _WizardPage:
         self._desk.take_names(self._parts.current.layout, self._space)
         try:
             robot, by = self._page.robot, self._page.visitor.name
-            await run.io_bound(self._desk.say, robot, text, self._animated.value, by, robot.stops)
+            await self._page.ask(self._desk.say, robot, text, self._animated.value, by, robot.stops)
         except NaoError as error:
             self._page.notify(str(error), "negative")
             return
@@ -263,7 +265,7 @@ class _WizardPage:
 
 
 class _DriveSocket:
-    """One WebSocket of a page. Walks and stops are carried out in the event loop, presses and the head beside it."""
+    """One WebSocket of a page. Walks and stops, presses, and the head each have a thread, which keeps their order."""
 
     def __init__(self, parts: WizardParts, socket: WebSocket) -> None:
         self._parts = parts
@@ -305,7 +307,7 @@ class _DriveSocket:
             teller.cancel()
             for end in ends:
                 end()
-            wizard.leave()
+            self._lane(DRIVE).submit(wizard.leave)
             if HEAD in self._lanes:
                 self._lanes[HEAD].submit(wizard.close_pointer)
             for lane in self._lanes.values():
@@ -317,17 +319,19 @@ class _DriveSocket:
         except ValueError as error:
             self._notice(str(error))
             return
-        if kind not in (PRESS, HEAD):
-            self._notice(wizard.take(kind, message), wizard.must_let_go)
-            return
-        if kind not in self._lanes:
-            self._lanes[kind] = ThreadPoolExecutor(1, f"wizard {kind}")
-        done = asyncio.get_running_loop().run_in_executor(self._lanes[kind], wizard.take, kind, message, wizard.stops())
-        done.add_done_callback(self._taken)
+        drives = kind in (WALK, STOP)
+        lane = self._lane(DRIVE if drives else kind)
+        done = asyncio.get_running_loop().run_in_executor(lane, wizard.take, kind, message, wizard.stops())
+        done.add_done_callback(lambda done: self._taken(done, drives and wizard.must_let_go))
 
-    def _taken(self, done: Any) -> None:
+    def _lane(self, name: str) -> ThreadPoolExecutor:
+        if name not in self._lanes:
+            self._lanes[name] = ThreadPoolExecutor(1, f"wizard {name}")
+        return self._lanes[name]
+
+    def _taken(self, done: Any, let_go: bool) -> None:
         if not done.cancelled():
-            self._notice(done.result())
+            self._notice(done.result(), let_go)
 
     def _notice(self, text: str, let_go: bool = False) -> None:
         """Tell the page something; `let_go`: what it holds does not count any more."""

@@ -52,6 +52,9 @@ class RobotClient:
     ROS API:
         Client of the actions that describe themselves. Publishes `cmd_vel` (geometry_msgs/Twist) while somebody walks
         it, and `*/cancel` of all actions at a stop. Calls `NAME/describe`, `stop_walk_srv`.
+
+    Attributes:
+        seen_servers: Relative names of the servers that ran at the last look, while somebody watches.
     """
 
     def __init__(self, namespace: str, master: MasterLook) -> None:
@@ -70,6 +73,7 @@ class RobotClient:
         self._stops = 0
         self._foreign = ForeignGoals(namespace, self._is_own)
         self._watchers = 0
+        self.seen_servers: list[str] = []
         self._owners: OwnerLine | None = None
         self._walk_lock = threading.Condition()
         self._walk: tuple[float, float, float] | None = None
@@ -194,7 +198,8 @@ class RobotClient:
         with self._following:
             if not self._watchers:
                 return
-            self._foreign.follow(self._master.servers(self.namespace))
+            self.seen_servers = self._master.servers(self.namespace)
+            self._foreign.follow(self.seen_servers)
             for topic in self._master.cancel_topics(self.namespace):
                 if topic not in self._cancels:
                     publisher = rospy.Publisher(topic, GoalID, queue_size=2, tcp_nodelay=True)
@@ -231,9 +236,9 @@ class RobotClient:
                 publisher.publish(GoalID())
         for run in own:
             run.cancel()  # a goal that is on its way may come behind the cancel of all
-        self.events.add("stopped", "everything is told to stop", by)
         _in_thread(self._stop_walk)
         _in_thread(self._stop_others, set(ready))
+        self.events.add("stopped", "everything is told to stop", by)  # last: whoever listens may take a while
 
     def walk(self, x: float, y: float, theta: float, by: str = "") -> None:
         """Walk at shares -1..1 of the top speed, ahead, to the left and turning left, for WALK_HOLD s."""

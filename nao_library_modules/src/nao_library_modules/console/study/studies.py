@@ -7,7 +7,8 @@ import logging
 import os
 import platform
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, replace
 from typing import Any
 from xml.etree import ElementTree
@@ -43,8 +44,9 @@ class Studies:
     def __init__(self, files: StudyFiles, senses: Callable[[Any], Callable[[], None]] = lambda _: lambda: None) -> None:
         self.files = files
         self._senses = senses
-        self._lock = threading.Lock()
+        self._lock = threading.Lock()  # pages take it ten times a second: never held while anything is waited for
         self._runners: dict[str, TrialRunner] = {}
+        self._beginning: set[str] = set()  # namespaces of robots
         self._listeners: list[Callable[[], None]] = []
 
     def running(self, namespace: str) -> TrialRunner | None:
@@ -116,8 +118,7 @@ class Studies:
         for name in own:
             if name not in protocol.values:
                 raise StudyError(f"{protocol.name} has no value {name!r}{of_those(name, protocol.values)}")
-        with self._lock:
-            self._require_free(robot)
+        with self._turn_of(robot):
             number = self.files.number_of(protocol.name, pseudonym)
             order = order_of(protocol, number)
             position = position or self.position_of(protocol, pseudonym)
@@ -171,8 +172,7 @@ class Studies:
         `stops`: as for `begin`. Raises StudyError if it is over, runs elsewhere, or a trial runs on the robot.
         """
         stops = robot.stops if stops is None else stops
-        with self._lock:
-            self._require_free(robot)
+        with self._turn_of(robot):
             trial = self.files.trial(trial_id)
             state = trial.state()
             if state.over or not state.status:
@@ -235,17 +235,29 @@ class Studies:
         runner = TrialRunner(
             protocol, robot, trial_log, state, about, ros_after, TrialRecordings(trial.path, wanted), end, stops
         )
-        self._runners[robot.namespace] = runner
+        with self._lock:
+            self._runners[robot.namespace] = runner
         if listener is not None:
             runner.on_change(listener)
         runner.start(by)
         self._tell()
         return runner
 
-    def _require_free(self, robot: Any) -> None:
-        runner = self._runners.get(robot.namespace)
-        if runner is not None and not runner.wait(0):
-            raise StudyError(f"trial {runner.id} runs on this robot: it has to be over before")
+    @contextmanager
+    def _turn_of(self, robot: Any) -> Iterator[None]:
+        """Keep a robot for a trial that begins. Raises StudyError if another one begins, or runs."""
+        with self._lock:
+            runner = self._runners.get(robot.namespace)
+            if runner is not None and not runner.wait(0):
+                raise StudyError(f"trial {runner.id} runs on this robot: it has to be over before")
+            if robot.namespace in self._beginning:
+                raise StudyError("a trial is about to begin on this robot: wait until it runs, or has failed to")
+            self._beginning.add(robot.namespace)
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._beginning.discard(robot.namespace)
 
     def _tell(self) -> None:
         for listener in list(self._listeners):

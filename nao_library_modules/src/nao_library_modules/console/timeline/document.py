@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from ...behaviors.language.errors import BehaviorError, Problem
 from ...behaviors.language.model import Behavior
 from ...behaviors.language.reader import read
 from ...behaviors.language.yaml_text import load
+from ..files.yaml_file import LONGEST
 from .steps import functions_in, group_of, kind_of_step, place_of, shifted, step_path, stretches
 from .yaml_places import (
     EditRefused,
@@ -33,7 +34,9 @@ SHORTEST = 0.05
 
 
 class BehaviorDocument:
-    """The text of a behaviour and its history; every edit is an edit of the text. For one thread.
+    """The text of a behaviour and its history; every edit is an edit of the text.
+
+    One thread changes it, others may look.
 
     Args:
         name: That it is stored under; empty for a new one.
@@ -206,15 +209,19 @@ class BehaviorDocument:
     # --- helpers ------------------------------------------------------------------------------------------------------
 
     def _take(self, text: str) -> None:
-        self.text = text
-        self.problems: tuple[Problem, ...] = ()
-        self.behavior: Behavior | None = None
-        self.content: Any = None
+        content: Any = None
+        behavior: Behavior | None = None
+        problems: Sequence[Problem] = ()
         try:
-            self.content = load(text, self.name or "new")
-            self.behavior = read(text, self.name or "new", self.file)
+            if len(text) > LONGEST:
+                told = f"the text has {len(text)} characters: pages show {LONGEST} at most"
+                raise BehaviorError(self.file, [Problem("", told)])
+            content = load(text, self.name or "new")
+            behavior = read(text, self.name or "new", self.file)
         except BehaviorError as error:
-            self.behavior, self.problems = error.readable, error.problems
+            behavior, problems = error.readable, error.problems
+        # All at once: who draws the document looks at it from another thread.
+        self.text, self.content, self.behavior, self.problems = text, content, behavior, tuple(problems)
 
     def _place(self, path: str) -> Place:
         return place_of(self.content, step_path(path))

@@ -15,6 +15,8 @@ from naoqi.errors import NaoError
 log = logging.getLogger(__name__)
 
 End = Callable[[], None]
+LONGEST_WORK = 30.0
+"""s for which others wait for a piece of work, and a page for what comes of it."""
 RETRY = 2.0
 """s of this computer until what could not begin is tried again."""
 
@@ -45,6 +47,24 @@ async def in_background(task: Callable[..., Any], *arguments: Any) -> Any:
 
     threading.Thread(target=run, name=getattr(task, "__name__", "task"), daemon=True).start()
     return await future
+
+
+class Lane:
+    """Work that takes the processor, in threads, one piece at a time: many pages keep one thread busy. Event loop."""
+
+    def __init__(self) -> None:
+        self._turn = asyncio.Lock()
+
+    async def do(self, task: Callable[..., Any], *arguments: Any) -> Any:
+        """What a function returns, or raises, when its turn has come. Raises NaoError where it takes LONGEST_WORK."""
+        return await asyncio.shield(self._do(task, arguments))  # goes on, also where whoever waits has gone
+
+    async def _do(self, task: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+        async with self._turn:
+            try:
+                return await asyncio.wait_for(in_background(task, *arguments), LONGEST_WORK)
+            except asyncio.TimeoutError:
+                raise NaoError(f"it takes longer than {LONGEST_WORK:g} s, and was given up") from None
 
 
 class Takers:

@@ -14,9 +14,6 @@ from .errors import EditConflict
 from .model import WizardLayout
 from .reader import read_layout, revision_of
 
-LONGEST = 400_000
-"""Characters of a file that the page takes."""
-
 
 class SavedText(NamedTuple):
     """The text of a file, and what tells it from another one."""
@@ -71,8 +68,6 @@ class LayoutFile:
             EditConflict: The file is not the one that it was made from.
             FileTrouble: It cannot be written.
         """
-        if len(text) > LONGEST:
-            raise ConsoleFileError(self.path.name, [Problem("", f"{len(text)} characters: at most {LONGEST}")])
         read_layout(text, self.path.name)
         if revision is not None and self.text().revision != revision:
             raise EditConflict(self.path)

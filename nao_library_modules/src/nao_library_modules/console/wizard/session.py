@@ -38,6 +38,8 @@ class PageRights:
 class WizardSession:
     """One page of the wizard. Messages of one kind are taken one at a time; walk and stop do not wait for anything.
 
+    Walk and stop are one kind in this: they keep their order.
+
     Messages are JSON objects, each with one of these keys:
 
     - walk: [ahead, left, turn left], shares -1..1 of the top speed; holds 0.4 s;
@@ -151,7 +153,7 @@ class WizardSession:
         for other in self._others():
             other.stop(self._rights.name)
 
-    def _walk(self, value: Any, _message: Any, _stops: Any) -> None:
+    def _walk(self, value: Any, _message: Any, stops: Mapping[str, int]) -> None:
         velocity = _velocity(value)
         if not any(velocity):
             self._end_walk()
@@ -160,7 +162,9 @@ class WizardSession:
             raise ValueError("the robot was stopped: let go, and then walk again")
         self._require(self.robot)
         if self._walk_stops is None:
-            self._walk_stops = self.robot.stops
+            self._walk_stops = stops.get(self.robot.namespace, self.robot.stops)
+            if self.must_let_go:
+                raise ValueError("the robot was stopped: let go, and then walk again")
         self.robot.walk(*velocity, self._rights.name)
         if self.must_let_go:  # stopped between the look and the walk
             self.robot.walk(0.0, 0.0, 0.0, self._rights.name)

@@ -5,16 +5,17 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from nicegui import run, ui
+from nicegui import ui
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from starlette.responses import FileResponse, PlainTextResponse, Response
 
 from ...study.errors import StudyError
 from ...study.files import StudyFiles, TrialFolder
 from ...study.log import read_events
 from ...study.state import TAKEN_UP, TrialState
 from ...study.studies import Studies
-from ..frame import framed
+from ...view.background import in_background
+from ..frame import framed, page_at
 from .links import study_links
 
 LOGGED = ("n", "stamp", "kind", "by", "text")
@@ -79,27 +80,30 @@ def build(console: Any, studies: Studies) -> None:
     """Add the page, its data, and the media."""
     files: StudyFiles = studies.files
 
+    def replay(trial: str) -> str:
+        return json.dumps(replay_of(files.trial(trial)), ensure_ascii=False)
+
     @console.app.get("/console/study/replay/{study}/{name}")
     async def data(study: str, name: str) -> Response:
         try:
-            return JSONResponse(await run.io_bound(lambda: replay_of(files.trial(f"{study}/{name}"))))
+            return Response(await in_background(replay, f"{study}/{name}"), media_type="application/json")
         except StudyError as error:
             return PlainTextResponse(str(error), 404)
 
     @console.app.get("/console/study/media/{study}/{name}/{file}")
     async def media(study: str, name: str, file: str) -> Response:
         try:
-            path = await run.io_bound(lambda: files.media(f"{study}/{name}", file))
+            path = await in_background(files.media, f"{study}/{name}", file)
         except StudyError as error:
             return PlainTextResponse(str(error), 404)
         return FileResponse(path)  # answers parts, which a browser needs to go to a time
 
-    @ui.page("/study/replay")
+    @page_at(console, "/study/replay")
     async def show(request: Request, trial: str = "") -> None:
         with framed(console, "Study", request) as page:
             study_links(page)
             try:
-                folder = await run.io_bound(lambda: files.trial(trial))
+                folder = await page.ask(files.trial, trial)
             except StudyError as error:
                 ui.label(str(error)).classes("text-negative")
                 return

@@ -6,18 +6,21 @@ from collections.abc import Iterable
 from typing import Any
 from urllib.parse import quote
 
-from nicegui import run, ui
+from nicegui import ui
 from starlette.requests import Request
 
-from ...study.errors import StudyError
+from naoqi.errors import NaoError
+
 from ...study.protocol import NOTHING
 from ...study.studies import Studies
 from ...study.table import ConditionSummary, summaries_of, table_of
-from ..frame import framed
+from ..frame import framed, page_at
 from .links import study_links
 
 MOST_ROWS = 20
 """Rows of a table on the page at once."""
+MOST_TRIALS = 100
+"""Trials in the list, the newest; the table has all."""
 
 
 COLOURS = ("#1565c0", "#e65100", "#2e7d32", "#8e24aa", "#c62828", "#00838f", "#f9a825", "#6d4c41")
@@ -27,11 +30,11 @@ GREY = "#9e9e9e"
 def build(console: Any, studies: Studies) -> None:
     """Add the page."""
 
-    @ui.page("/study/results")
+    @page_at(console, "/study/results")
     async def show(request: Request, study: str = "") -> None:
         with framed(console, "Study", request) as page:
             study_links(page)
-            names = await run.io_bound(studies.files.studies)
+            names = await page.ask(studies.files.studies)
             if not names:
                 ui.label("There are no trials yet.")
                 return
@@ -45,24 +48,31 @@ def build(console: Any, studies: Studies) -> None:
                 ),
             ).classes("min-w-[16rem]")
             try:
-                trials = await run.io_bound(lambda: [(each, each.state()) for each in studies.files.trials(chosen)])
-                table = await run.io_bound(lambda: table_of(studies.files, chosen))
-            except StudyError as error:
+                trials, gaps, summaries = await page.work(_results_of, studies, chosen)
+            except NaoError as error:
                 ui.label(str(error)).classes("text-negative")
                 return
             _trials(page, trials)
-            for trial, gap in table.gaps:
+            for trial, gap in gaps:
                 ui.label(f"{trial}: {gap}").classes("text-negative")
-            _summaries(summaries_of(table))
-            ui.button(
-                "Table as CSV",
-                icon="download",
-                on_click=lambda: ui.download(table.csv().encode(), f"{chosen}.csv", "text/csv"),
-            ).props("no-caps")
+            _summaries(summaries)
+
+            async def download() -> None:
+                table = await page.work(lambda: table_of(studies.files, chosen).csv().encode())
+                ui.download(table, f"{chosen}.csv", "text/csv")
+
+            ui.button("Table as CSV", icon="download", on_click=download).props("no-caps")
+
+
+def _results_of(studies: Studies, study: str) -> tuple[list[Any], Any, list[ConditionSummary]]:
+    """The newest trials of a study with their states, gaps, and what was measured in all. Reads all its files."""
+    table = table_of(studies.files, study)
+    trials = sorted(studies.files.trials(study), key=lambda trial: trial.path.stat().st_mtime)[-MOST_TRIALS:]
+    return [(each, each.state()) for each in trials], table.gaps, summaries_of(table)
 
 
 def _trials(page: Any, trials: list[Any]) -> None:
-    ui.label("Trials").classes("text-h6")
+    ui.label("Trials" if len(trials) < MOST_TRIALS else f"The newest {MOST_TRIALS} trials").classes("text-h6")
     with ui.element("div").classes("w-full overflow-auto max-h-[40vh]"), ui.grid(columns=6).classes(
         "items-center gap-x-6"
     ):

@@ -5,12 +5,13 @@ The trial runs in the console; a page shows what there is of it, whenever it is 
 
 from __future__ import annotations
 
+import itertools
 from collections import deque
 from collections.abc import Iterable, Mapping
 from typing import Any
 from urllib.parse import quote
 
-from nicegui import run, ui
+from nicegui import ui
 from starlette.requests import Request
 
 from naoqi.errors import NaoError
@@ -27,12 +28,14 @@ from ...study.reader import read_protocol
 from ...study.runner import TrialRunner
 from ...study.state import DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, SKIPPED, STOPPED, TIMEOUT, TrialState
 from ...study.studies import Studies
-from ..frame import framed, sure
+from ..frame import framed, page_at, sure
 from .links import study_links
 
 PERIOD = 0.1
 """s between looks at whether the trial has changed, while the page is open."""
 SHOWN_EVENTS = 60
+MOST_STEPS, MOST_PROBLEMS, MOST_OPENED = 200, 100, 50
+"""Steps of a protocol, mistakes, and trials that have not ended, which the page shows."""
 NEW = "new_study"
 EXAMPLE = """\
 name: new_study
@@ -60,7 +63,7 @@ SHORTCUTS = {"p": "pause or go on", "n": "next", "r": "repeat", "m": "write a no
 def build(console: Any, studies: Studies) -> None:
     """Add the page."""
 
-    @ui.page("/study")
+    @page_at(console, "/study")
     async def show(request: Request) -> None:
         with framed(console, "Study", request) as page:
             study_links(page)
@@ -139,13 +142,13 @@ class _StudyPage:
             done = sum(each.outcome == DONE for each in state.outcomes)
             ui.label(f"Trial {last.id} is {state.status}: {done} steps were done.").props('role="status"')
             self._build_trouble()
-        opened = await run.io_bound(self.studies.open_trials)
+        opened = await self.page.work(self._opened)
         if opened:
             with ui.card().classes("w-full"):
                 ui.label("Trials that have not ended").classes("text-h6")
-                for folder, state in opened:
+                for folder, state, runs in opened[:MOST_OPENED]:
                     with ui.row().classes("items-center"):
-                        if folder.runs():
+                        if runs:
                             ui.label(f"{folder.id}: {state.status}, runs in another program")
                             continue
                         ui.label(f"{folder.id}: {state.status}, last step {state.path or 'none'}")
@@ -162,7 +165,7 @@ class _StudyPage:
                         ).props("no-caps outline")
         with ui.card().classes("w-full"):
             ui.label("New trial").classes("text-h6")
-            names = list(await run.io_bound(self.studies.files.protocols))
+            names = list(await self.page.ask(self.studies.files.protocols))
             with ui.row().classes("items-start w-full"):
                 self._choice = ui.select(names, label="Protocol", on_change=self._read).classes("min-w-[16rem]")
                 self._person = ui.input("Participant (pseudonym)", on_change=self._tell_order).classes("min-w-[12rem]")
@@ -185,17 +188,21 @@ class _StudyPage:
                 ui.button("Save", on_click=self._save).props("no-caps")
         self._person.value = self._wanted.get("participant", "")
         if names:
-            chosen = self._chosen or await run.io_bound(self.studies.files.newest_protocol)
+            chosen = self._chosen or await self.page.work(self.studies.files.newest_protocol)
             self._choice.value = chosen if chosen in names else names[0]
+
+    def _opened(self) -> list[tuple[Any, TrialState, bool]]:
+        """Trials that have not ended, their states, and whether another program runs them."""
+        return [(folder, state, folder.runs()) for folder, state in self.studies.open_trials()]
 
     async def _read(self) -> None:
         name = self._chosen = self._choice.value
         person = f"&participant={quote(self._person.value.strip())}" if self._person.value else ""
         ui.navigate.history.replace(f"/study?robot={quote(self.robot.name)}&protocol={quote(name)}{person}")
         try:
-            text = await run.io_bound(self.studies.files.protocol_text, name)
+            text = await self.page.ask(self.studies.files.protocol_text, name)
             self._name.value, self._text.value = name, text
-            self.protocol = read_protocol(text, name)
+            self.protocol = await self.page.work(read_protocol, text, name)
         except (NaoError, OSError) as error:
             self.protocol = None
             self._tell_problems(error.problems if isinstance(error, ConsoleFileError) else [error])
@@ -205,7 +212,7 @@ class _StudyPage:
             self._problems.clear()
         self._begin_button.set_enabled(self.protocol is not None)
         self._build_values()
-        self._tell_order()
+        await self._tell_order()
 
     def _build_values(self) -> None:
         """A field for each value of the protocol, with what the protocol has."""
@@ -216,13 +223,20 @@ class _StudyPage:
                 if not isinstance(value, (list, dict)):
                     self._fields[name] = ui.input(name, value=text_of(value)).props('autocomplete="off"')
 
-    def _tell_order(self) -> None:
-        protocol = self.protocol
+    async def _tell_order(self) -> None:
+        protocol, person = self.protocol, self._person.value.strip()
         if protocol is None:
             self._help.text = ""
             return
+        self._help.text = protocol.help
+        try:
+            number = (await self.page.work(self.studies.files.participants, protocol.name)).get(person, 0)
+        except (NaoError, OSError) as error:
+            self._tell_problems([error])
+            return
+        if (protocol, person) != (self.protocol, self._person.value.strip()):
+            return  # typed on meanwhile, which is told by itself
         lines = [protocol.help]
-        number = self.studies.files.participants(protocol.name).get(self._person.value.strip(), 0)
         if protocol.factors and number:
             order = order_of(protocol, number)
             lines += [f"Participant {number} has {len(order)} trials, in this order:"]
@@ -265,7 +279,7 @@ class _StudyPage:
 
     async def _try(self, begin: Any) -> None:
         try:
-            await run.io_bound(begin)
+            await self.page.ask(begin)
         except (NaoError, OSError) as error:
             ui.notify(str(error), type="negative", multi_line=True)
         await self._refresh()
@@ -273,8 +287,8 @@ class _StudyPage:
     async def _check(self) -> bool:
         """Whether the text can be run, also by the robot of the page."""
         try:
-            protocol = read_protocol(self._text.value, self._name.value)
-            problems = await run.io_bound(checked_for, self.robot, protocol)
+            protocol = await self.page.work(read_protocol, self._text.value or "", self._name.value or "")
+            problems = await self.page.work(checked_for, self.robot, protocol)
         except NaoError as error:
             problems = [*error.problems] if isinstance(error, ConsoleFileError) else [error]
         self._tell_problems(problems)
@@ -289,11 +303,11 @@ class _StudyPage:
             return
         try:
             name = self._name.value
-            await run.io_bound(self.studies.files.store_protocol, name, self._text.value)
+            await self.page.work(self.studies.files.store_protocol, name, self._text.value)
+            names = list(await self.page.ask(self.studies.files.protocols))
         except (NaoError, OSError) as error:
             ui.notify(str(error), type="negative")
             return
-        names = list(self.studies.files.protocols())
         self._choice.set_options(names)
         self._choice.value = name
         await self._read()
@@ -301,7 +315,7 @@ class _StudyPage:
     def _tell_problems(self, problems: Iterable[Any]) -> None:
         self._problems.clear()
         with self._problems:
-            for problem in problems:
+            for problem in itertools.islice(problems, MOST_PROBLEMS):
                 ui.label(str(problem))
 
     # A trial that runs
@@ -351,7 +365,8 @@ class _StudyPage:
         self._marks: dict[str, Any] = {}
         self._texts: dict[str, tuple[Any, str]] = {}  # path -> label, text that may have names in it
         phase = ""
-        for path, step in all_steps(runner.protocol):
+        steps = list(all_steps(runner.protocol))
+        for path, step in steps[:MOST_STEPS]:
             name = runner.protocol.phases[int(path.partition(".")[0]) - 1].name
             if name != phase:
                 phase = name
@@ -365,6 +380,8 @@ class _StudyPage:
                 else:
                     self._marks[_any_round(path)] = ui.icon(ICONS[""]).props('role="img" aria-label="to come"')
                     self._texts[_any_round(path)] = (ui.label(), f"{path} {step.text}")
+        if len(steps) > MOST_STEPS:
+            ui.label(f"and {len(steps) - MOST_STEPS} steps more").classes("italic")
 
     def _build_trouble(self) -> None:
         """What is wrong with the log of the trial, or was; it stays until somebody says that it was seen."""
@@ -379,9 +396,9 @@ class _StudyPage:
         self._trouble_row.set_visibility(bool(self._trouble.text))
         self._seen.set_enabled(runner is not None and bool(runner.state.trouble))
 
-    def _mark_seen(self) -> None:
+    async def _mark_seen(self) -> None:
         if self.runner is not None and self.page.operate():
-            self.runner.seen(self.page.visitor.name)
+            await self.page.ask(self.runner.seen, self.page.visitor.name)
             self._show_trouble()
 
     def _update_trial(self) -> None:
@@ -445,43 +462,43 @@ class _StudyPage:
             self._since.text = ""
 
     def _button(self, text: str, icon: str, act: Any) -> Any:
-        def press() -> None:
+        async def press() -> None:
             if self.page.operate():
-                act(self.page.visitor.name)
+                await self.page.ask(act, self.page.visitor.name)
 
         return ui.button(text, icon=icon, on_click=press).props("no-caps")
 
-    def _toggle(self) -> None:
+    async def _toggle(self) -> None:
         runner = self.runner
         if runner is not None and self.page.operate():
             act = runner.go_on if runner.state.status in (PAUSED, HELD) else runner.pause
-            act(self.page.visitor.name)
+            await self.page.ask(act, self.page.visitor.name)
 
     async def _abort(self) -> None:
         runner = self.runner
         if runner is None or not self.page.operate():
             return
         if await _sure_to_abort(runner.id):
-            runner.abort(self.page.visitor.name)
+            await self.page.ask(runner.abort, self.page.visitor.name)
 
-    def _choose(self, choice: str) -> None:
+    async def _choose(self, choice: str) -> None:
         if self.runner is not None and self.page.operate():
             try:
-                self.runner.choose(choice, self.page.visitor.name)
+                await self.page.ask(self.runner.choose, choice, self.page.visitor.name)
             except StudyError as error:
                 ui.notify(str(error), type="warning")
 
-    def _write(self, kind: str) -> None:
+    async def _write(self, kind: str) -> None:
         text = self._note.value.strip()
         if self.runner is None or not self.page.operate():
             return
         if not text:
             ui.notify("Write what is to be noted", type="warning")
             return
-        (self.runner.note if kind == "note" else self.runner.deviation)(text, self.page.visitor.name)
         self._note.value = ""
+        await self.page.ask(self.runner.note if kind == "note" else self.runner.deviation, text, self.page.visitor.name)
 
-    def _key(self, event: Any) -> None:
+    async def _key(self, event: Any) -> None:
         runner = self.runner
         if runner is None or runner.state.over or not event.action.keydown or event.action.repeat:
             return
@@ -492,11 +509,11 @@ class _StudyPage:
         if key == "m":
             self._note.run_method("focus")
         elif key == "p":
-            self._toggle()
+            await self._toggle()
         elif key in ("n", "r") and self.page.operate():
-            (runner.next if key == "n" else runner.repeat)(by)
+            await self.page.ask(runner.next if key == "n" else runner.repeat, by)
         elif key.isdigit() and isinstance(step, ChoiceStep) and 0 < int(key) <= len(step.choices):
-            self._choose(step.choices[int(key) - 1])
+            await self._choose(step.choices[int(key) - 1])
 
 
 async def _sure_to_abort(trial: str) -> bool:
