@@ -48,8 +48,9 @@ class ConsoleProgram:
         self.log = self.folder / f"console_{self._starts}.txt"
         with self.log.open("wb") as output:
             self.process = start_program(
-                sys.executable, PROGRAM, self.watched, "console", "--port", str(self.port), "--studies", str(self.folder / "studies"),
-                *self._options, stdout=output, stderr=output, env=self._environment,
+                sys.executable, PROGRAM, self.watched, "console", "--port", str(self.port),
+                "--studies", str(self.folder / "studies"), *self._options,
+                stdout=output, stderr=output, env=self._environment,
             )  # fmt: skip
         wait_until(self._answers, LIMIT, "the console's pages")
         self.url, self.observer = re.findall(r"http://\S+token=\S+", self.log.read_text())[:2]

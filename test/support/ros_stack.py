@@ -104,6 +104,11 @@ class RosStack:
             self.stack.stop()
         self.broken = True
 
+    @property
+    def master_pid(self):
+        """Process id of the ROS master."""
+        return self._master.pid
+
     def deaths(self):
         """Names of the nodes that have ended since the stack was started."""
         self._nodes.update(_children(self.stack.pid))

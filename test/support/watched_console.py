@@ -3,12 +3,14 @@
 `watched_console.py REPORT WORDS...`: REPORT is the file; WORDS are those of `nao`.
 
 A callback of a loop may take LONGEST s of the processor, whatever else the computer does; and it neither opens files,
-connects sockets, starts programs or sleeps, nor waits for another thread or for ROS. Imports are let be: each happens once.
+connects sockets, starts programs or sleeps, nor waits for another thread or for ROS. Imports, each of which happens
+once, are let be, and the collections of garbage, which come where they like.
 """
 
 from __future__ import annotations
 
 import asyncio
+import gc
 import os
 import runpy
 import sys
@@ -39,13 +41,13 @@ class Watch:
         proxy, topic = rospy.ServiceProxy.call, rospy.topics.Topic.__init__
 
         def watched_run(handle):
-            self._inside.loop = True
+            self._inside.loop, self._inside.collected = True, 0.0
             began = time.thread_time()
             try:
                 run(handle)
             finally:
                 self._inside.loop = False
-                taken = time.thread_time() - began
+                taken = time.thread_time() - began - self._inside.collected
                 if taken > LONGEST:
                     task = getattr(handle._callback, "__self__", None)
                     what = task.get_coro().__qualname__ if isinstance(task, asyncio.Task) else repr(handle)
@@ -67,7 +69,15 @@ class Watch:
         threading.Condition.wait = watched_wait
         rospy.ServiceProxy.call = watched(proxy, "a service of ROS")
         rospy.topics.Topic.__init__ = watched(topic, "a topic of ROS")
+        gc.callbacks.append(self._collect)
         sys.addaudithook(lambda event, _: self._look(event) if event in EVENTS else None)
+
+    def _collect(self, phase, _):
+        now = time.thread_time()
+        if phase == "start":
+            self._inside.began = now
+        else:
+            self._inside.collected = getattr(self._inside, "collected", 0.0) + now - self._inside.began
 
     def _look(self, what):
         if not getattr(self._inside, "loop", False):

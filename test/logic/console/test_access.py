@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import stat
+import threading
 
 import pytest
 
+from nao_library_modules.console.access.connections import address_group
 from nao_library_modules.console.access.controls import Controls
 from nao_library_modules.console.access.guard import COOKIE, LARGEST, SESSION, Guard
+from nao_library_modules.console.access.logins import MOST_WAITING, Logins
 from nao_library_modules.console.access.sessions import TRIES, TRY_PERIOD, Session, Sessions
 from nao_library_modules.console.access.users import OBSERVER, OPERATOR, add_user, read_users
 from nao_library_modules.console.app import ConsoleSettings
@@ -17,6 +20,7 @@ from naoqi.errors import NaoError
 
 HERE = "127.0.0.1:8080"
 ORIGIN = f"http://{HERE}"
+LIMIT = 60.0
 
 
 async def behind(scope, receive, send):
@@ -190,6 +194,69 @@ def test_who_guesses_is_not_listened_to_for_a_while(people):
     assert sessions.by_password("ann", "long enough") is None
     now[0] += TRY_PERIOD + 1.0
     assert sessions.by_password("ann", "long enough").operator
+
+
+def tries(sessions, source, count=TRIES):
+    return [sessions.by_password("ann", "wrong", source) for _ in range(count)]
+
+
+def test_who_guesses_at_another_address_locks_nobody_out(people):
+    sessions = Sessions(read_users(people))
+    tries(sessions, sessions.source_of("ann", "10.0.0.9", ""))
+    assert sessions.by_password("ann", "long enough", sessions.source_of("ann", "10.0.0.7", "")).name == "ann"
+
+
+def test_a_browser_that_has_logged_in_has_tries_of_its_own(people):
+    first, other = Sessions(read_users(people)), Sessions(read_users(people))  # the console was started anew
+    device = first.device_of(first.by_password("ann", "long enough"))
+    tries(other, other.source_of("ann", "10.0.0.7", ""))
+    assert other.by_password("ann", "long enough", other.source_of("ann", "10.0.0.7", "")) is None
+    assert other.by_password("ann", "long enough", other.source_of("ann", "10.0.0.7", device)).name == "ann"
+
+
+@pytest.mark.parametrize("device", ["guess", "guess.", "12ab.cd34", "ä.ö"])
+def test_a_browser_cannot_say_of_itself_that_it_is_known(people, device):
+    sessions = Sessions(read_users(people))
+    assert sessions.source_of("ann", "10.0.0.7", device) == sessions.source_of("ann", "10.0.0.7", "")
+
+
+@pytest.mark.parametrize(
+    "address, group",
+    [
+        ("10.0.0.7", "10.0.0.7"),
+        ("::ffff:10.0.0.7", "10.0.0.7"),
+        ("2001:db8:1:2:3:4:5:6", "2001:db8:1:2::/64"),
+        ("fe80::1%eth0", "fe80::/64"),
+        ("", ""),
+    ],
+)
+def test_a_host_that_has_many_addresses_is_one(address, group):
+    assert address_group(address) == group
+
+
+def test_the_tries_of_a_source_wait_for_each_other_and_not_for_those_of_others():
+    asked, go = [], threading.Event()
+
+    class SlowSessions:
+        def source_of(self, name, address, device):
+            return address
+
+        def by_password(self, name, password, source):
+            asked.append(password)
+            assert source == "here" or go.wait(LIMIT)
+            return password
+
+    async def log_in():
+        logins = Logins(SlowSessions())
+        flood = [asyncio.ensure_future(logins.by_password("ann", i, "there", "")) for i in range(100)]
+        mine = await asyncio.wait_for(logins.by_password("ann", "mine", "here", ""), LIMIT)
+        during = list(asked)
+        go.set()
+        return mine, during, await asyncio.gather(*flood)
+
+    mine, during, flood = asyncio.run(log_in())
+    assert (mine, sorted(map(str, during))) == ("mine", ["0", "mine"])
+    assert flood == [*range(MOST_WAITING), *[None] * (100 - MOST_WAITING)]
 
 
 def test_beyond_this_computer_people_need_a_password():

@@ -92,6 +92,25 @@ def test_repeat_begins_a_step_anew(trial):
     assert [each.outcome for each in trial.end().outcomes[1:3]] == ["repeated", "done"]
 
 
+def test_pages_look_at_a_robot_whose_trial_begins_and_nobody_begins_another(trial):
+    asked, go, now, seen = threading.Event(), threading.Event(), trial.robot.now, []
+    trial.robot.now = lambda: asked.set() or go.wait(LIMIT) and now()
+    beginning = threading.Thread(target=trial.begin)
+    beginning.start()
+    assert asked.wait(LIMIT)
+    looking = threading.Thread(target=lambda: seen.append(trial.studies.running(trial.robot.namespace)))
+    looking.start()
+    looking.join(5.0)
+    looked = list(seen)
+    with pytest.raises(StudyError, match="about to begin"):
+        trial.studies.begin(trial.protocol, "P02", trial.robot)
+    go.set()
+    beginning.join(LIMIT)
+    assert looked == [None]
+    trial.runner.abort()
+    trial.end()
+
+
 def test_who_stops_the_robot_pauses_its_trial(trial):
     trial.begin().at("2.1").robot.events.add("stopped", "everything is told to stop", "ann")
     trial.until(lambda: trial.runner.state.status == "paused")

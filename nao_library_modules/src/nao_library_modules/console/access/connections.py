@@ -6,9 +6,9 @@ import asyncio
 import ipaddress
 import socket
 import time
-from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any, Tuple
 
 STRANGERS, OF_ADDRESS = 128, 32
@@ -37,6 +37,12 @@ def address_group(address: str) -> str:
     return str(mapped) if mapped else str(ipaddress.ip_network((int(found) >> 64 << 64, 64)))
 
 
+@dataclass
+class _Stranger:
+    connection: Any  # a socket
+    deadline: float
+
+
 class Connections:
     """The open connections of one listener. Event loop only.
 
@@ -49,70 +55,89 @@ class Connections:
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._strangers: dict[Peer, tuple[Any, float]] = {}  # socket and deadline; the oldest first
+        self._strangers: dict[str, dict[Peer, _Stranger]] = {}  # by address, the one that was heard last at the end
+        self._groups: dict[Peer, str] = {}
         self._visitors: dict[Peer, tuple[Any, str]] = {}  # socket and key of the session
         self._sweeping = False
 
     def add(self, peer: Any, connection: Any) -> None:
         """Somebody has connected. `connection`: the socket."""
-        key = (peer[0], peer[1])
+        key, group = (peer[0], peer[1]), address_group(peer[0])
         self._visitors.pop(key, None)
-        self._strangers.pop(key, None)
-        self._strangers[key] = (connection, self._clock() + PATIENCE)
-        if len(self._strangers) > OF_ADDRESS:
-            self._make_room()
+        self._take(key)
+        self._groups[key] = group
+        own = self._strangers.setdefault(group, {})
+        own[key] = _Stranger(connection, self._clock() + PATIENCE)
+        if len(own) > OF_ADDRESS:
+            self._make_room(group)
+        elif len(self._groups) > STRANGERS:
+            self._make_room(max(self._strangers, key=lambda each: len(self._strangers[each])))
         if not self._sweeping:
             self._sweeping = True
-            asyncio.get_running_loop().call_later(SWEEP_PERIOD, self._sweep)
+            asyncio.get_running_loop().call_later(SWEEP_PERIOD, self.sweep)
 
     def heard(self, peer: Peer) -> None:
         """A stranger has sent a whole request: more time for the next one."""
-        found = self._strangers.pop(peer, None)
+        group, found = self._groups.get(peer, ""), self._take(peer)
         if found is not None:
-            self._strangers[peer] = (found[0], self._clock() + PATIENCE)
+            found.deadline = self._clock() + PATIENCE
+            self._groups[peer] = group
+            self._strangers.setdefault(group, {})[peer] = found
 
     def admit(self, peer: Peer, session: str) -> bool:
         """A request has shown the key of a session; whether its connection may stay."""
-        if peer not in self._strangers:
+        if peer not in self._groups:
             return True
         self._visitors = {each: kept for each, kept in self._visitors.items() if _is_open(kept[0])}
         own = sum(key == session for _, key in self._visitors.values())
         if own >= OF_SESSION or len(self._visitors) >= VISITORS:
             return False
-        connection, _ = self._strangers.pop(peer)
-        self._visitors[peer] = (connection, session)
+        found = self._take(peer)
+        if found is not None:
+            self._visitors[peer] = (found.connection, session)
         return True
 
-    def __len__(self) -> int:
-        return sum(_is_open(each) for each, _ in (*self._strangers.values(), *self._visitors.values()))
+    @property
+    def strangers(self) -> int:
+        """How many connections without a session are open."""
+        return sum(_is_open(each.connection) for own in self._strangers.values() for each in own.values())
 
-    def _make_room(self) -> None:
-        """Close what is too much, the oldest of the address that has most first."""
-        self._forget_closed()
-        while self._strangers:
-            counts = Counter(address_group(address) for address, _ in self._strangers)
-            most, count = counts.most_common(1)[0]
-            if count <= OF_ADDRESS and len(self._strangers) <= STRANGERS:
-                return
-            own = [peer for peer in self._strangers if address_group(peer[0]) == most]
-            self._close(next((peer for peer in own if not _has_asked(self._strangers[peer][0])), own[0]))
+    def _take(self, peer: Peer) -> _Stranger | None:
+        """A stranger, who is none any more."""
+        group = self._groups.pop(peer, None)
+        if group is None:
+            return None
+        found = self._strangers[group].pop(peer)
+        if not self._strangers[group]:
+            del self._strangers[group]
+        return found
 
-    def _sweep(self) -> None:
-        self._forget_closed()
+    def _make_room(self, group: str) -> None:
+        """Close one connection of an address: the oldest that says nothing, if there is one."""
+        own = self._strangers[group]
+        silent = (peer for peer, each in own.items() if not _has_asked(each.connection))
+        self._close(next(silent, None) or next(iter(own)))
+
+    def sweep(self) -> None:
+        """Close the strangers that are over their time; comes again by itself as long as there are any."""
         now = self._clock()
-        for peer in [peer for peer, (_, deadline) in self._strangers.items() if deadline <= now]:
+        over = [
+            peer
+            for own in self._strangers.values()
+            for peer, each in own.items()
+            if each.deadline <= now or not _is_open(each.connection)
+        ]
+        for peer in over:
             self._close(peer)
-        self._sweeping = bool(self._strangers)
+        self._sweeping = bool(self._groups)
         if self._sweeping:
-            asyncio.get_running_loop().call_later(SWEEP_PERIOD, self._sweep)
-
-    def _forget_closed(self) -> None:
-        self._strangers = {peer: kept for peer, kept in self._strangers.items() if _is_open(kept[0])}
+            asyncio.get_running_loop().call_later(SWEEP_PERIOD, self.sweep)
 
     def _close(self, peer: Peer) -> None:
-        connection, _ = self._strangers.pop(peer)
-        with suppress(OSError):  # it has gone by itself
-            connection.shutdown(socket.SHUT_RDWR)  # the loop, whose socket it is, sees its end
+        found = self._take(peer)
+        if found is not None:
+            with suppress(OSError):  # it has gone by itself
+                found.connection.shutdown(socket.SHUT_RDWR)  # the loop, whose socket it is, sees its end
 
 
 class CountedListener(socket.socket):

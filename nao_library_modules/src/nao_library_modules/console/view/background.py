@@ -17,6 +17,8 @@ log = logging.getLogger(__name__)
 End = Callable[[], None]
 LONGEST_WORK = 30.0
 """s for which others wait for a piece of work, and a page for what comes of it."""
+MOST_WORK = 40
+"""Pieces of work that wait for their turn."""
 RETRY = 2.0
 """s of this computer until what could not begin is tried again."""
 
@@ -54,17 +56,26 @@ class Lane:
 
     def __init__(self) -> None:
         self._turn = asyncio.Lock()
+        self._waiting = 0
 
     async def do(self, task: Callable[..., Any], *arguments: Any) -> Any:
-        """What a function returns, or raises, when its turn has come. Raises NaoError where it takes LONGEST_WORK."""
+        """What a function returns, or raises, when its turn has come. Raises NaoError where it takes LONGEST_WORK.
+
+        Also where MOST_WORK wait already.
+        """
+        if self._waiting >= MOST_WORK:
+            raise NaoError("the console has too much to do for pages: try again in a while")
         return await asyncio.shield(self._do(task, arguments))  # goes on, also where whoever waits has gone
 
     async def _do(self, task: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-        async with self._turn:
-            try:
+        self._waiting += 1
+        try:
+            async with self._turn:
                 return await asyncio.wait_for(in_background(task, *arguments), LONGEST_WORK)
-            except asyncio.TimeoutError:
-                raise NaoError(f"it takes longer than {LONGEST_WORK:g} s, and was given up") from None
+        except asyncio.TimeoutError:
+            raise NaoError(f"it takes longer than {LONGEST_WORK:g} s, and was given up") from None
+        finally:
+            self._waiting -= 1
 
 
 class Takers:
