@@ -42,7 +42,8 @@ class Visitor:
         """A WebSocket of the console."""
         address = self.base.replace("http", "ws", 1) + path
         headers = {"Cookie": self.cookie}
-        return connect(address, origin=self.base, additional_headers=headers, proxy=None, open_timeout=LIMIT)
+        made = connect(address, origin=self.base, additional_headers=headers, proxy=None, open_timeout=LIMIT)
+        return made.__enter__()  # whoever has it closes it
 
 
 class Page:
@@ -242,6 +243,7 @@ class StopWatch:
         self._came = threading.Event()
         self._stamp = 0.0
         self._subscriber = rospy.Subscriber(topic, GoalID, self._take, tcp_nodelay=True)
+        wait_until(self._subscriber.get_num_connections, LIMIT, f"the console at {topic}")
 
     def _take(self, _):
         self._stamp = time.monotonic()

@@ -1,4 +1,4 @@
-"""The console's stop with twenty pages open, while somebody or something tries to hold it up. Order counts, not time."""
+"""The console's stop with twenty pages open, while something tries to hold it up. Order counts, not time."""
 
 from __future__ import annotations
 
