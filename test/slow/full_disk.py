@@ -45,7 +45,7 @@ from nao_library_modules.motion.server import NaoMotion
 from nao_library_modules.process_modules.language import trace_picture
 from nao_library_modules.process_modules.language.control import do, seq, top_level
 from nao_library_modules.process_modules.language.trace import trace_of
-from nao_library_modules.processes.own_stack import can_connect, free_port
+from nao_library_modules.processes.own_master import OwnMaster
 from nao_library_modules.vision import NaoVision
 from nao_sim_bridge.testing import wait_until
 from nao_sim_bridge.vision.face_memory import FaceMemory
@@ -318,11 +318,10 @@ class Node:
 
     def __init__(self, robot_port):
         self._robot_port = robot_port
-        port = free_port()
         self.log = DISK / "ros" / "NaoLights.log"
-        os.environ.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_LOG_DIR=str(DISK / "ros"))
-        self._master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stderr=subprocess.DEVNULL)
-        wait_until(lambda: can_connect(port), LIMIT, "the ROS master")
+        os.environ["ROS_LOG_DIR"] = str(DISK / "ros")
+        self._master = OwnMaster(Path(os.devnull))
+        os.environ["ROS_MASTER_URI"] = self._master.uri
         rospy.init_node("full_disk", disable_signals=True)
         self.start()
         self._client = action_client("NaoLights", NaoLedAction)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import pytest
 import qi
+import rosgraph
 from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
 from selenium.webdriver.common.keys import Keys
 
-from nao_library_modules.processes.own_stack import OwnStack, can_connect
+from nao_library_modules.processes.own_stack import OwnStack
 from nao_sim_bridge.testing import wait_until
 
 pytestmark = pytest.mark.alone
@@ -18,10 +19,10 @@ TEXT = "ALTextToSpeech/CurrentSentence"
 def test_each_page_is_of_one_robot(tmp_path):
     with OwnStack(tmp_path / "stack.txt", {"robots": "2", "cameras": "false"}) as stack:
         stack.wait_for_robot(LIMIT)
-        wait_until(lambda: can_connect(stack.nao_port + 1), LIMIT, "the second robot")
+        master = rosgraph.Master("/test", stack.master_uri)
         sessions = [qi.Session(), qi.Session()]
-        for number, session in enumerate(sessions):
-            session.connect(f"tcp://127.0.0.1:{stack.nao_port + number}")
+        for name, session in zip(("nao1", "nao2"), sessions):
+            session.connect(f"tcp://127.0.0.1:{master.getParam(f'/{name}/nao_sim/bound_port')}")
         for session in sessions:
             session.waitForService("ALMemory")
         said = [session.service("ALMemory").subscriber(TEXT).signal for session in sessions]

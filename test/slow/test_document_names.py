@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from nao_library_modules.processes.own_stack import free_port
+from nao_library_modules.processes.own_master import OwnMaster
 
 pytestmark = pytest.mark.alone
 CLIENT = """
@@ -42,16 +42,16 @@ assert "/nao_audio_out/result" not in topics and rospy.wait_for_service("NaoAudi
 
 
 def test_the_stack_has_the_names_of_the_documents(tmp_path):
-    ros_port, nao_port = free_port(), free_port()
     folders = dict.fromkeys(("ROS_HOME", "ROS_LOG_DIR"), str(tmp_path))
-    environment = {**os.environ, **folders, "ROS_MASTER_URI": f"http://127.0.0.1:{ros_port}"}
-    names = ["document_names.launch", "file:=nao_sim.launch", f"nao_port:={nao_port}"]
-    launch = subprocess.Popen(["roslaunch", "-p", str(ros_port), "nao_library", *names], env=environment)
-    try:
-        done = subprocess.run(
-            [sys.executable, "-c", CLIENT], env=environment, timeout=120.0, capture_output=True, text=True
-        )
-    finally:
-        launch.send_signal(signal.SIGINT)
-        launch.wait(60.0)
+    names = ["document_names.launch", "file:=nao_sim.launch", "nao_port:=0"]
+    with OwnMaster(tmp_path / "master.txt") as master:
+        environment = {**os.environ, **folders, "ROS_MASTER_URI": master.uri}
+        launch = subprocess.Popen(["roslaunch", "nao_library", *names], env=environment)
+        try:
+            done = subprocess.run(
+                [sys.executable, "-c", CLIENT], env=environment, timeout=120.0, capture_output=True, text=True
+            )
+        finally:
+            launch.send_signal(signal.SIGINT)
+            launch.wait(60.0)
     assert done.returncode == 0, done.stderr

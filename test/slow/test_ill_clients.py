@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from nao_library_modules.processes.own_stack import can_connect, free_port
-from nao_sim_bridge.testing import wait_until
+from nao_library_modules.processes.own_master import OwnMaster
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "soak"))
 from nao_soak.ill_clients import IllClients
@@ -46,11 +45,10 @@ class Server:
     """
 
     def __init__(self, folder, robot_port):
-        port, self.log = free_port(), folder / "NaoLights.log"
-        uri, folders = f"http://127.0.0.1:{port}", dict.fromkeys(("ROS_HOME", "ROS_LOG_DIR"), str(folder / "ros"))
+        self.log = folder / "NaoLights.log"
+        self._master = OwnMaster(folder / "master.txt")
+        uri, folders = self._master.uri, dict.fromkeys(("ROS_HOME", "ROS_LOG_DIR"), str(folder / "ros"))
         self._options = {"env": {**os.environ, **folders, "ROS_MASTER_URI": uri}, "stderr": subprocess.DEVNULL}
-        self._master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], **self._options)
-        wait_until(lambda: can_connect(port), WARM, "the ROS master")
         node = [sys.executable, str(NODE), "--pport", str(robot_port), f"__log:={self.log}"]
         self.process = subprocess.Popen(node, stdout=subprocess.DEVNULL, **self._options)
         self.killed, self._user, self._until = 0, None, 0.0
@@ -66,20 +64,20 @@ class Server:
             self._user = subprocess.Popen([sys.executable, "-c", USER], stdout=subprocess.DEVNULL, **self._options)
 
     def close(self):
-        for process in filter(None, (self._user, self.process, self._master)):
+        for process in filter(None, (self._user, self.process)):
             process.kill()
             process.wait()
+        self._master.stop()
 
 
 def test_memory_threads_descriptors_and_log_are_level_with_ill_clients(tmp_path):
-    port, log = free_port(), tmp_path / "nao_sim.log"
-    command = [sys.executable, "-m", "nao_sim_bridge", "--port", str(port), "--speed", "2"]
+    log = tmp_path / "nao_sim.log"
+    command = [sys.executable, "-m", "nao_sim_bridge", "--port", "0", "--speed", "2", "--record-dir", str(tmp_path)]
     with log.open("wb") as said:
-        simulator = subprocess.Popen([*command, "--record-dir", str(tmp_path)], stdout=said, stderr=subprocess.STDOUT)
+        simulator = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, text=True)
     levels = Levels(SAMPLED_EVERY)
     try:
-        while b"listens on" not in log.read_bytes() and simulator.poll() is None:
-            time.sleep(SAMPLED_EVERY)
+        port = int(simulator.stdout.readline().rpartition(":")[2])
         with IllClients("127.0.0.1", port, KILLED_EVERY) as clients, closing(Server(tmp_path, port)) as server:
             began = time.monotonic()
             while (now := time.monotonic() - began) < WARM + SECONDS:
@@ -91,7 +89,7 @@ def test_memory_threads_descriptors_and_log_are_level_with_ill_clients(tmp_path)
             ended = simulator.poll(), server.process.poll()
     finally:
         simulator.send_signal(signal.SIGTERM)
-        simulator.wait(60.0)
+        simulator.communicate(timeout=60.0)
     print(f"\n{clients.killed} clients of the robot killed, {server.killed} of the server\n{levels.table()}")
     assert ended == (None, None) and clients.died == 0
     assert min(clients.killed, server.killed) >= 0.3 * SECONDS / KILLED_EVERY

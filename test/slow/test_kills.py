@@ -12,8 +12,10 @@ from xmlrpc.client import ServerProxy
 import pytest
 import qi
 import rosgraph
+from listening import listens
 
-from nao_library_modules.processes.own_stack import OwnStack, can_connect
+from nao_library_modules.processes.own_master import OwnMaster
+from nao_library_modules.processes.own_stack import OwnStack, StackFailed
 from nao_sim_bridge.testing import wait_until
 
 pytestmark = [pytest.mark.alone, pytest.mark.timeout(1800)]
@@ -48,28 +50,33 @@ def test_a_simulator_that_was_killed_comes_back_and_one_that_was_switched_off_do
         wait_until(lights_work, LIMIT, "lights")
         node = rosgraph.Master("/test", stack.master_uri).lookupNode("/nao_sim")
         os.kill(ServerProxy(node).getPid("/test")[2], signal.SIGKILL)
-        wait_until(lambda: not can_connect(stack.nao_port), LIMIT, "the end of the simulator")
+        wait_until(lambda: not listens(stack.nao_port), LIMIT, "the end of the simulator")
         wait_until(lights_work, LIMIT, "lights of the simulator that was started again")
 
-        second = OwnStack(tmp_path / "second.txt", {**arguments, "sim_time": "false"}, ros_port=stack.ros_port)
+        second = OwnStack(tmp_path / "second.txt", {**arguments, "sim_time": "false"}, master_uri=stack.master_uri)
         wait_until(lambda: not second.alive(), LIMIT, "the end of a second launch file")
         assert "runs on this ROS master already" in second.log.read_text()
         wait_until(lights_work, LIMIT, "lights of the first one")
-        assert rosgraph.Master("/test", stack.master_uri).getParam("/use_sim_time") is True
+        master = rosgraph.Master("/test", stack.master_uri)
+        assert master.getParam("/use_sim_time") is True
+        assert master.getParam("/nao_sim/bound_port") == stack.nao_port  # set to 0 by the second launch file
 
         session = qi.Session()
         session.connect(f"tcp://127.0.0.1:{stack.nao_port}")
         session.service("ALSystem").shutdown()
         wait_until(lambda: "nao_sim is off" in stack.log.read_text(), LIMIT, "the end of the simulator")
-        assert not can_connect(stack.nao_port) and stack.alive()
+        assert not listens(stack.nao_port) and stack.alive()
 
 
-def test_a_simulator_that_cannot_start_ends_its_launch_file(tmp_path):
-    with socket.create_server(("127.0.0.1", 0)) as taken:
+def test_a_simulator_that_cannot_start_ends_its_launch_file_at_once_with_the_reason(tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as taken, OwnMaster(tmp_path / "master.txt") as master:
         port = {"nao_port": str(taken.getsockname()[1])}
         cases = ({"world": "lob"}, "did you mean 'lab'"), ({"robots": "20"}, "1 to 8"), (port, "listens there")
         for arguments, told in cases:
-            stack = OwnStack(tmp_path / "stack.txt", {"driver": "false", "record_dir": str(tmp_path), **arguments})
+            given = {"driver": "false", "record_dir": str(tmp_path), **arguments}
+            stack = OwnStack(tmp_path / "stack.txt", given, master_uri=master.uri)
+            with pytest.raises(StackFailed, match=told):
+                stack.wait_for_robot()
+            assert stack.alive()  # its nodes have not ended yet
             wait_until(lambda stack=stack: not stack.alive(), LIMIT, "the end of the launch file")
-            log = stack.log.read_text()
-            assert told in log and "escalating to" not in log
+            assert "escalating to" not in stack.log.read_text()

@@ -7,8 +7,10 @@ import sys
 import time
 
 import pytest
+from listening import listens
+from named_port import named_port
 
-from nao_library_modules.processes.own_stack import OwnStack, can_connect, free_port
+from nao_library_modules.processes.own_stack import OwnStack
 from nao_library_modules.ros.master_watch import LOOKS, PERIOD
 
 pytestmark = pytest.mark.alone  # it starts a stack and a master of its own
@@ -74,7 +76,7 @@ print("all is back", flush=True)
 
 class Master:
     def __init__(self, folder):
-        self.port = free_port()
+        self.port = named_port()
         self._folder = folder
         self.start()
 
@@ -83,7 +85,7 @@ class Master:
             command = ["rosmaster", "--core", "-p", str(self.port)]
             self.process = subprocess.Popen(command, stdout=output, stderr=output, stdin=subprocess.DEVNULL)
         deadline = time.monotonic() + LIMIT
-        while not can_connect(self.port):
+        while not listens(self.port):
             assert time.monotonic() < deadline, "the ROS master does not come up"
 
     def kill(self):
@@ -120,7 +122,7 @@ def user():
 
 
 def test_a_master_that_dies_or_hangs_knows_everybody_again(master, user, tmp_path):
-    with OwnStack(tmp_path / "stack.txt", {}, ros_port=master.port) as stack:
+    with OwnStack(tmp_path / "stack.txt", {}, master_uri=os.environ["ROS_MASTER_URI"]) as stack:
         stack.wait_for_robot()
         long = user(LONG, DOWN + UNDER_WAY)
         assert long.readline() == "under way\n"

@@ -9,8 +9,6 @@ from launch_lines import launch_lines, missing, without_launch_lines
 from programs import Program, shell
 from samples import samples
 
-from nao_library_modules.processes.own_stack import free_port
-
 SCRIPTS = Path(__file__).parents[2] / "scripts"
 ROS_ENV = str(SCRIPTS / "ros-env")
 LIMIT = 900.0
@@ -22,7 +20,7 @@ def test_a_new_study_passes_its_own_test(tmp_path, monkeypatch):
     written, tested = (block.text for block in samples("docs/your_own.md") if "run by" in block.marks)
     folders = {name: str(tmp_path / name) for name in ("ROS_TEST_RESULTS_DIR", "ROS_LOG_DIR", "ROS_HOME", "HOME")}
     (tmp_path / "HOME").mkdir()
-    environment = {**os.environ, **folders, "NAO_PORT": str(free_port())}
+    environment = {**os.environ, **folders}
 
     def typed(text):
         return Program([ROS_ENV, *shell(f"set -e\n{text}")], tmp_path, environment).end(LIMIT)

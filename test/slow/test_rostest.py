@@ -9,8 +9,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-
-from nao_library_modules.processes.own_stack import free_port
+from named_port import named_port
 
 FOLDER = Path(__file__).parents[1] / "rostest"
 ROSTEST = (sys.executable, "-c", "import rostest; rostest.rostestmain()")
@@ -28,7 +27,7 @@ def test_a_suite_of_rostest_passes(suite, tmp_path):
         ROS_TEST_RESULTS_DIR=str(tmp_path),
         ROS_LOG_DIR=str(tmp_path / "log"),
         ROS_HOME=str(tmp_path / "home"),
-        NAO_PORT=str(free_port()),
+        NAO_PORT=str(named_port()),  # what the suites start themselves is killed and started again there
     )
     file = FOLDER / f"{suite}.test"
     output = tmp_path / "output.txt"

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from nao_library_modules.processes.own_stack import free_port
+from nao_library_modules.processes.own_master import OwnMaster
 
 pytestmark = pytest.mark.alone
 SERVER = """
@@ -38,17 +38,15 @@ assert 0 < max(lengths) < 20, f"{max(lengths)} goals in the status"
 
 
 def test_their_ends_are_not_lost_and_the_status_stays_short(tmp_path):
-    port = free_port()
-    environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_LOG_DIR": str(tmp_path)}
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
-    master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], **quiet)
-    server = subprocess.Popen([sys.executable, "-c", SERVER], **quiet)
-    try:
-        done = subprocess.run(
-            [sys.executable, "-c", CLIENT], env=environment, capture_output=True, text=True, timeout=900
-        )
-        assert done.returncode == 0, done.stderr
-    finally:
-        for process in (server, master):
-            process.send_signal(signal.SIGINT)
-            process.wait(60.0)
+    with OwnMaster(tmp_path / "master.txt") as master:
+        environment = {**os.environ, "ROS_MASTER_URI": master.uri, "ROS_LOG_DIR": str(tmp_path)}
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
+        server = subprocess.Popen([sys.executable, "-c", SERVER], **quiet)
+        try:
+            done = subprocess.run(
+                [sys.executable, "-c", CLIENT], env=environment, capture_output=True, text=True, timeout=900
+            )
+            assert done.returncode == 0, done.stderr
+        finally:
+            server.send_signal(signal.SIGINT)
+            server.wait(60.0)

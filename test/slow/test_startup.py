@@ -15,7 +15,7 @@ from waits import hold
 
 import nao_library_actions
 import nao_library_msgs
-from nao_library_modules.processes.own_stack import free_port
+from nao_library_modules.processes.own_master import OwnMaster
 
 pytestmark = pytest.mark.alone  # it starts a stack of its own
 CLIENT = """
@@ -36,27 +36,24 @@ run_module(module, "hanging", "", [])
 
 
 def test_all_servers_get_ready(tmp_path):
-    ros_port, nao_port = free_port(), free_port()
     folders = dict.fromkeys(("ROS_HOME", "ROS_LOG_DIR"), str(tmp_path))
-    environment = {**os.environ, **folders, "ROS_MASTER_URI": f"http://127.0.0.1:{ros_port}"}
-    launch = subprocess.Popen(
-        ["roslaunch", "-p", str(ros_port), "nao_library", "nao_sim.launch", f"nao_port:={nao_port}"],
-        env=environment,
-        stdout=subprocess.DEVNULL,
-    )
-    try:
-        # The client ends when every server has taken a goal that reached the robot.
-        client = subprocess.run([sys.executable, "-c", CLIENT], env=environment, timeout=300.0)
-    finally:
-        launch.send_signal(signal.SIGINT)
-        launch.wait(60.0)
+    with OwnMaster(tmp_path / "master.txt") as master:
+        environment = {**os.environ, **folders, "ROS_MASTER_URI": master.uri}
+        launch = subprocess.Popen(
+            ["roslaunch", "nao_library", "nao_sim.launch", "nao_port:=0"], env=environment, stdout=subprocess.DEVNULL
+        )
+        try:
+            # The client ends when every server has taken a goal that reached the robot.
+            client = subprocess.run([sys.executable, "-c", CLIENT], env=environment, timeout=300.0)
+        finally:
+            launch.send_signal(signal.SIGINT)
+            launch.wait(60.0)
     assert client.returncode == 0
 
 
 def test_a_node_whose_module_is_still_being_made_ends_when_it_is_told_to_also_where_the_master_hangs(tmp_path):
-    port = free_port()
-    environment = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_LOG_DIR": str(tmp_path)}
-    with subprocess.Popen(["rosmaster", "--core", "-p", str(port)], env=environment) as master:
+    with OwnMaster(tmp_path / "master.txt") as master:
+        environment = {**os.environ, "ROS_MASTER_URI": master.uri, "ROS_LOG_DIR": str(tmp_path)}
         node = subprocess.Popen([sys.executable, "-c", HANGING], env=environment, stdout=subprocess.PIPE, text=True)
         try:
             assert node.stdout.readline() == "being made\n"
@@ -65,7 +62,7 @@ def test_a_node_whose_module_is_still_being_made_ends_when_it_is_told_to_also_wh
             node.wait(60.0)
         finally:
             node.kill()
-            master.kill()
+            os.kill(master.pid, signal.SIGCONT)
             node.communicate()
 
 

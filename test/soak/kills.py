@@ -175,9 +175,8 @@ def main():
         os.environ[name] = str(folder / "ros")
     records = []
     with OwnStack(folder / "stack.txt", {"record_dir": str(folder / "records")}, launch=LAUNCH) as stack:
-        os.environ.update(ROS_MASTER_URI=stack.master_uri, NAO_PORT=str(stack.nao_port))
-        stack.wait_for_master()
         stack.wait_for_robot()
+        os.environ.update(ROS_MASTER_URI=stack.master_uri, NAO_PORT=str(stack.nao_port))
         rospy.init_node("kills", disable_signals=True)
         robot = Robot(stack.nao_port)
         wait_until(lambda: works(""), PATIENCE, "all servers")

@@ -6,8 +6,10 @@ See --help. It needs root, or the right to make network namespaces.
 
 import signal
 import sys
+from pathlib import Path
 
-from nao_soak.cli import main
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from nao_soak.cli import main  # noqa: E402
 
 
 def end(number: int, _: object) -> None:

@@ -7,7 +7,7 @@ import re
 import signal
 import sys
 from pathlib import Path
-from urllib.parse import urlencode
+from urllib.parse import urlencode, urlsplit
 
 from ros_stack import start_program
 from selenium import webdriver
@@ -16,7 +16,6 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
-from nao_library_modules.processes.own_stack import can_connect, free_port
 from nao_sim_bridge.testing import StackNotReady, wait_until
 
 DRIVER = "/usr/bin/chromedriver"
@@ -38,8 +37,7 @@ class ConsoleProgram:
         self.watched = folder / "watched.txt"
         self._options = options
         self._environment = {**os.environ, **({"ROS_MASTER_URI": master} if master else {})}
-        self.port = free_port()
-        self.base = f"http://127.0.0.1:{self.port}"
+        self.port = 0  # the first time the system gives it one, which it has again after it was killed
         self._starts = 0
         self.start()
 
@@ -54,6 +52,8 @@ class ConsoleProgram:
             )  # fmt: skip
         wait_until(self._answers, LIMIT, "the console's pages")
         self.url, self.observer = re.findall(r"http://\S+token=\S+", self.log.read_text())[:2]
+        self.port = urlsplit(self.url).port
+        self.base = f"http://127.0.0.1:{self.port}"
 
     def kill(self):
         """As if the computer took it away."""
@@ -69,7 +69,7 @@ class ConsoleProgram:
 
     def _answers(self):
         assert self.process.poll() is None, self.log.read_text()
-        return "to look on" in self.log.read_text() and can_connect(self.port)
+        return "to look on" in self.log.read_text()  # it is printed when the port is listened on
 
 
 class ConsoleBrowser:

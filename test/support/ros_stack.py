@@ -10,7 +10,8 @@ from pathlib import Path
 
 import rospy
 
-from nao_library_modules.processes.own_stack import OwnStack, can_connect, free_port
+from nao_library_modules.processes.own_master import OwnMaster
+from nao_library_modules.processes.own_stack import OwnStack, StackFailed
 from nao_sim_bridge.testing import SimulatedRobot, StackNotReady, wait_until
 
 SPEED = 2
@@ -49,16 +50,11 @@ class RosStack:
         self._failures = []
         self._starts = 0
         self._nodes = {}
-        port = free_port()
-        os.environ.update(
-            ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_HOME=str(folder / "home"), ROS_LOG_DIR=str(folder / "log")
-        )
+        os.environ.update(ROS_HOME=str(folder / "home"), ROS_LOG_DIR=str(folder / "log"))
         for name in ("home", "log"):
             (folder / name).mkdir()
-        with (folder / "master.txt").open("wb") as output:
-            self._master = start_program("rosmaster", "--core", "-p", str(port), stdout=output, stderr=output)
-        wait_until(lambda: can_connect(port), LIMIT, "the ROS master")
-        self._port = port
+        self._master = OwnMaster(folder / "master.txt")
+        os.environ["ROS_MASTER_URI"] = self._master.uri
 
     def ensure(self, world="empty"):
         """Start the stack, or start it again if a case has broken it or another world is wanted.
@@ -75,7 +71,7 @@ class RosStack:
         self._starts += 1
         try:
             self._start()
-        except (TimeoutError, StackNotReady) as error:
+        except (StackFailed, StackNotReady) as error:
             words = self.stack.log.read_text(errors="replace").splitlines()[-LINES:]
             self._failures.append(f"{error}\n" + "\n".join(words))
             raise RuntimeError(f"the stack did not start: {self._failures[-1]}") from error
@@ -88,10 +84,10 @@ class RosStack:
             self.folder / f"stack_{self._starts}.txt",
             {name: str(value) for name, value in self._arguments.items()},
             launch=("nao_library_tests", "whole_stack.launch"),
-            ros_port=self._port,
+            master_uri=self._master.uri,
         )
-        os.environ["NAO_PORT"] = str(self.stack.nao_port)
         self.stack.wait_for_robot(LIMIT)
+        os.environ["NAO_PORT"] = str(self.stack.nao_port)
         if not rospy.core.is_initialized():  # not before the stack has said whose time counts
             rospy.init_node(f"ros_tests_{os.getpid()}", disable_signals=True)
         self.robot = SimulatedRobot(limit=LIMIT)
@@ -117,8 +113,7 @@ class RosStack:
     def close(self):
         rospy.signal_shutdown("the tests are over")
         self.rest()
-        self._master.terminate()
-        self._master.wait(LIMIT)
+        self._master.stop()
 
 
 def _children(parent):

@@ -10,7 +10,7 @@ import sys
 
 from nao_sim_bridge.base.closing import REFUSED, close_all, exit_in_time, wait_for_end
 from nao_sim_bridge.base.errors import SimulationError
-from nao_sim_bridge.server.cli import parse, server_options
+from nao_sim_bridge.server.cli import parse, server_options, tell_ports
 from nao_sim_bridge.server.robots_server import open_server
 
 
@@ -26,6 +26,7 @@ def main() -> int:
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda *_: server.ended.set())
         server.start()
+        tell_ports(server, arguments.port_file)
     except (SimulationError, RuntimeError) as error:
         logging.getLogger("nao_sim").error("%s", error)
         return REFUSED

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import sys
+import tempfile
 from contextlib import ExitStack
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .places import NODES, PROGRAMS
@@ -45,13 +47,14 @@ class Stack:
         """Start a ROS master of our own, unless it runs already; this process becomes a node of it."""
         if self._ros:
             return
-        from nao_library_modules.processes.own_stack import free_port  # not above: rows that need no ROS run without it
+        # Not above: rows that need no ROS run without it.
+        from nao_library_modules.processes.own_master import OwnMaster
 
-        port = free_port()
-        os.environ.update(ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1")
+        folder = Path(self._started.enter_context(tempfile.TemporaryDirectory()))
+        os.environ["ROS_IP"] = "127.0.0.1"
         os.environ.pop("ROS_HOSTNAME", None)
-        core = self._started.enter_context(Program("roscore", ["roscore", "-p", str(port)]))
-        core.wait_for(r"started core service \[/rosout\]", START_LIMIT)
+        os.environ["ROS_MASTER_URI"] = self._started.enter_context(OwnMaster(folder / "master.log")).uri
+        self._started.enter_context(Program("rosout", ["rosrun", "rosout", "rosout"]))
         import rospy
 
         rospy.init_node("benchmarks", disable_signals=True)

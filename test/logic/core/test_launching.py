@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from nao_library_modules.processes.launcher import (  # fmt: skip
@@ -12,6 +14,7 @@ from nao_library_modules.processes.launcher import (  # fmt: skip
     launch_supervisor,
 )
 from nao_library_modules.processes.supervisor import SupervisorState
+from nao_library_modules.ros import node
 from nao_library_modules.ros.node import launch_path, robot_address, robot_parser
 from naoqi.errors import NaoError
 
@@ -38,9 +41,33 @@ def test_the_address_of_the_robot_comes_from_the_command_line_then_parameters_th
     monkeypatch.setenv("NAO_PORT", "nine")
     with pytest.raises(NaoError, match="'nine' is no port"):
         robot_address(robot_parser("A node.").parse_args([]), {}.get)
-    for port in (0, -1, 65536, "9559", True, 9559.0):
+    for port in (-1, 65536, "9559", True, 9559.0):
         with pytest.raises(NaoError, match=r"is no port: 1\.\.65535"):
             robot_address(robot_parser("A node.").parse_args([]), {"~pport": port}.get)
+
+
+def test_port_0_is_that_of_the_nearest_simulator_as_soon_as_it_has_told_it(monkeypatch):
+    told = {"/nao1/nao_sim/bound_port": 0}
+    answers = iter([OSError, "/nao1/nao_sim/bound_port", None, "/nao1/nao_sim/bound_port"])
+
+    def search(name):
+        assert name == "nao_sim/bound_port"
+        found = next(answers)
+        if found is OSError:
+            raise OSError("the master is away")
+        return found
+
+    def pause(_):
+        told["/nao1/nao_sim/bound_port"] = 40773 if next_pause() == 3 else 0
+
+    next_pause = itertools.count(1).__next__
+    monkeypatch.setattr(node.rospy, "search_param", search)
+    monkeypatch.setattr(node.rospy, "get_param", lambda name, default: told.get(name, default))
+    monkeypatch.setattr(node.rospy, "is_shutdown", lambda: False)
+    assert node.simulator_port(pause) == 40773
+    monkeypatch.setattr(node, "simulator_port", lambda: 40774)
+    options = robot_parser("A node.").parse_args(["--pport", "0"])
+    assert robot_address(options, {}.get)[1] == 40774
 
 
 def test_a_launch_path_is_a_text_or_a_list():

@@ -59,6 +59,7 @@ def test_the_clock_goes_on_whatever_fails_beside_it(monkeypatch):
     monkeypatch.setattr(rospy, "Service", MagicMock())
     monkeypatch.setattr(rospy, "Publisher", lambda *_, **__: MagicMock(publish=publish))
     monkeypatch.setattr(ros_side, "RosDiagnostics", lambda _: MagicMock(tick=broken))
+    monkeypatch.setattr(ros_side, "BoundPorts", lambda _: MagicMock(tick=broken))
     monkeypatch.setattr(ros_side, "RosRobot", lambda *_: MagicMock(tick=broken))
     monkeypatch.setattr(ros_side, "ShapesTopic", lambda _: MagicMock(tick=broken))
     side = ros_side.RosSide(server, True)

@@ -19,7 +19,6 @@ from programs import Program, at_port, shell
 from samples import PAGES, ROOT, samples
 
 from nao_library_modules.console.wizard.reader import read_layout
-from nao_library_modules.processes.own_stack import free_port
 from nao_sim_bridge.testing import wait_until
 from nao_sim_bridge.world.reader import load_world
 
@@ -67,8 +66,6 @@ class Folder:
 
     def start(self, *words: str, **variables: str) -> Program:
         """Start a program of a page."""
-        if "rostest " in words[-1]:  # it starts a robot of its own
-            variables["NAO_PORT"] = str(free_port())
         return Program(words, self.root, {**os.environ, "HOME": str(self.root), **variables})
 
     def typed(self, command: str) -> list[str]:

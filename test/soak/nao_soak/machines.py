@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from typing import Any, Union
 
-from nao_library_modules.processes.own_stack import free_port
+from named_port import named_port
 
 CABLE = "to_robot"
 INSIDE = "NAO_SOAK_INSIDE"
@@ -40,8 +40,8 @@ class OneMachine:
     here = robot = "127.0.0.1"
 
     def __enter__(self) -> OneMachine:
-        """Choose ports."""
-        self.ros_port, self.nao_port = free_port(), free_port()
+        """Choose ports: the simulator that was killed has its own again."""
+        self.ros_port, self.nao_port = named_port(0), named_port(1)
         return self
 
     def __exit__(self, *_: Any) -> None:

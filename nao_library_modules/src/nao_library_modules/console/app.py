@@ -9,7 +9,7 @@ import socket
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +41,7 @@ WHEELS = "scripts/setup installs it, where Python is 3.10 or newer"
 class ConsoleSettings:
     """What a console is started with. Raises NaoError if it would be open to others without need."""
 
-    port: int = PORT
+    port: int = PORT  # 0: the system gives one
     listen: str = LOOPBACK[0]  # address of this computer
     users: Path | None = None  # file of people who log in; needed beyond loopback
     certificate: Path | None = None  # of TLS, PEM
@@ -118,8 +118,10 @@ class Console:
         """Serve pages until the process is told to end (SIGINT, SIGTERM). Raises NaoError if the port is taken."""
         import uvicorn
 
-        settings = self.settings
-        pages, connections = PageLoop(self.app), Connections()
+        connections = Connections()
+        listener = self._listen(connections)
+        settings = self.settings = replace(self.settings, port=listener.getsockname()[1])
+        pages = PageLoop(self.app)
         guard = Guard(
             pages,
             self.sessions,
@@ -129,18 +131,6 @@ class Console:
             own={PATH: StopLine(self.robots, self.sessions)},
             connections=connections,
         )
-        family = socket.AF_INET6 if ":" in settings.listen else socket.AF_INET
-        listener = CountedListener(family)
-        listener.connections = connections
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            listener.bind((settings.listen, settings.port))
-            listener.listen(BACKLOG)  # who opens the address at once waits
-        except OSError as error:
-            listener.close()
-            raise NaoError(
-                f"port {settings.port} of {settings.listen}: {error.strerror}; --port takes another"
-            ) from None
         config: Any = uvicorn.Config(
             guard,
             log_level="warning",
@@ -164,3 +154,17 @@ class Console:
         with suppress(KeyboardInterrupt):
             uvicorn.Server(config).run(sockets=[listener])
         pages.close()
+
+    def _listen(self, connections: Connections) -> socket.socket:
+        """A socket that listens; uvicorn gets it, so that nobody can have its port meanwhile."""
+        address, port = self.settings.listen, self.settings.port
+        listener = CountedListener(socket.AF_INET6 if ":" in address else socket.AF_INET)
+        listener.connections = connections
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind((address, port))
+            listener.listen(BACKLOG)  # who opens the address at once waits
+        except OSError as error:
+            listener.close()
+            raise NaoError(f"port {port} of {address}: {error.strerror}; --port takes another") from None
+        return listener

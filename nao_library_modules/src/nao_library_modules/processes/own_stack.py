@@ -2,32 +2,60 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
-import socket
 import subprocess
+import sys
+import threading
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+
+from naoqi.errors import NaoError
 
 START_LIMIT = 90.0
 PERIOD = 0.05
 COLOUR = re.compile(r"\x1b\[[\d;]*m")
+LABELLED = re.compile(r"\[(?P<severity>[A-Z]+)\] \[(?P<node>/\S*)\]: (?P<text>.*)|\[roslaunch\] ")
+"""A line of a node's log, as LINES has it, or of roslaunch. What else programs print has no label."""
+LINES = "[${severity}] [${node}]: ${message}"
+LONGEST = 300
+"""Characters of last words."""
+PORTS = ("/nao_sim/bound_port", "/nao1/nao_sim/bound_port")
+"""Parameters of which one tells the port: of a robot that is alone, and of the first of several."""
+PROGRAM = "nao_library_modules.processes.launch_program"
 LIMITS = ((signal.SIGINT, 40.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 5.0))
 """Signals in turn, and s that roslaunch may take after each. It kills nodes that do not end themselves after 17 s; if
 it were killed before, they would be left."""
 
 
+class StackFailed(NaoError):
+    """A stack did not come up, or a process of it has ended.
+
+    `process`: name of the node whose process has ended; empty if it was none. `status`: its exit status, or minus the
+    number of a signal.
+    """
+
+    def __init__(self, text: str, process: str = "", status: int | None = None) -> None:
+        super().__init__(text)
+        self.process = process
+        self.status = status
+
+
 class OwnStack:
-    """Simulator, driver and action servers, started by roslaunch on free ports.
+    """Simulator, driver and action servers, launched on ports that the system gives to who listens on them.
 
     Args:
         log: File for the output of roslaunch and the nodes.
         arguments: Of the launch file, by name.
         launch: What roslaunch starts: package and launch file, or the path of one.
-        ros_port: Of a ROS master that runs already; None for one of its own.
+        master_uri: Of a ROS master that runs already; empty for one of its own.
+
+    Raises:
+        StackFailed: Its ROS master did not come up.
     """
 
     def __init__(
@@ -35,26 +63,26 @@ class OwnStack:
         log: Path,
         arguments: Mapping[str, str],
         launch: Sequence[str] = ("nao_library", "nao_sim.launch"),
-        ros_port: int | None = None,
+        master_uri: str = "",
     ) -> None:
-        self.ros_port, self.nao_port = ros_port or free_port(), free_port()
         self.log = log
-        # It gets Ctrl-C when this process is killed, and ends its nodes.
-        command = ["setpriv", "--pdeathsig", "INT", "roslaunch", "--port", str(self.ros_port), *launch]
-        command += [f"{name}:={value}" for name, value in {"nao_port": str(self.nao_port), **arguments}.items()]
-        with log.open("wb") as output, _interruptible():
-            self._process = subprocess.Popen(
-                command,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                stdin=subprocess.DEVNULL,
-                start_new_session=True,
-                env={**os.environ, "ROS_MASTER_URI": self.master_uri},
-            )
+        self.master_uri = master_uri
+        self._port = 0
+        self._news = threading.Condition()
+        self._ended: StackFailed | None = None
+        self._refused = ""
+        if master_uri:
+            self._forget_port()
+        self._process, reports = _launch(log, [*launch, *_words(arguments)], master_uri)
+        threading.Thread(target=self._read, args=(reports,), name="reports of a launch", daemon=True).start()
+        self._wait(lambda: bool(self.master_uri), "the ROS master", START_LIMIT)
 
     @property
-    def master_uri(self) -> str:
-        return f"http://127.0.0.1:{self.ros_port}"
+    def nao_port(self) -> int:
+        """Port of the simulated robot's NAOqi, of the first of several; known after `wait_for_robot`."""
+        if not self._port:
+            raise StackFailed("the port of the robot is not known yet: wait_for_robot() comes first")
+        return self._port
 
     @property
     def pid(self) -> int:
@@ -63,40 +91,27 @@ class OwnStack:
     def alive(self) -> bool:
         return self._process.poll() is None
 
-    def wait_for_master(self, limit: float = START_LIMIT) -> None:
-        """Wait up to `limit` s until the ROS master answers: nodes can be made then.
-
-        Raises TimeoutError if it does not, or roslaunch has ended.
-        """
-        self._wait_for("the ROS master", self.ros_port, limit)
-
     def wait_for_robot(self, limit: float = START_LIMIT) -> None:
         """Wait up to `limit` s until the simulated robot answers: parameters are set then, and nodes come up.
 
-        Raises TimeoutError if it does not, or roslaunch has ended.
+        Raises:
+            StackFailed: It does not, or a process of the stack has ended; the error has its last words.
         """
-        self._wait_for("the simulated robot", self.nao_port, limit)
+        self.wait_until(self._ask_port, "the simulated robot", limit)
 
-    def _wait_for(self, what: str, port: int, limit: float) -> None:
-        """No event says that a port is open: look again and again, but notice the end of roslaunch."""
-        deadline = time.monotonic() + limit
-        while not can_connect(port):
-            if self._ended_within(PERIOD):
-                raise TimeoutError(f"{what} does not come up: roslaunch has ended: {self._last_words()}")
-            if time.monotonic() > deadline:
-                raise TimeoutError(f"{what} does not come up: not there within {limit:g} s")
+    def wait_until(self, holds: Callable[[], bool], what: str, limit: float = START_LIMIT) -> None:
+        """Wait up to `limit` s until `holds()`, which answers soon: for what no event tells, such as a server.
 
-    def _last_words(self) -> str:
-        """The last error of roslaunch, up to 300 characters; empty if it printed none."""
-        text = COLOUR.sub("", self.log.read_text(encoding="utf-8", errors="replace"))
-        return " ".join(line for line in text.splitlines() if line.strip()).rpartition("RLException: ")[2][-300:]
+        Raises:
+            StackFailed: It does not hold, or a process of the stack has ended; the error has its last words.
+        """
+        self._wait(holds, what, limit)
 
-    def _ended_within(self, seconds: float) -> bool:
-        try:
-            self._process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            return False
-        return True
+    def check(self) -> None:
+        """Raise StackFailed if a process of the stack has ended with another exit status than 0 since its start."""
+        with self._news:
+            if self._ended is not None:
+                raise self._ended
 
     def stop(self) -> None:
         for number, limit in LIMITS:
@@ -110,6 +125,134 @@ class OwnStack:
     def __exit__(self, *_: object) -> None:
         self.stop()
 
+    def _wait(self, holds: Callable[[], bool], what: str, limit: float) -> None:
+        deadline = time.monotonic() + limit
+        while not holds():
+            with self._news:
+                if self._ended is None:
+                    self._news.wait(PERIOD)
+                if self._ended is not None:
+                    ended = self._ended
+                    raise StackFailed(f"{what} does not come up: {ended}", ended.process, ended.status)
+            if time.monotonic() > deadline:
+                raise StackFailed(f"{what} does not come up: not there within {limit:g} s; all output is in {self.log}")
+
+    def _read(self, reports: int) -> None:
+        """Take what the launch reports, until it has ended."""
+        with os.fdopen(reports, encoding="utf-8") as lines:
+            for line in lines:
+                self._take(json.loads(line))
+        self._note(StackFailed(self._words_of_launch()))
+
+    def _take(self, report: Mapping[str, object]) -> None:
+        if "master" in report:
+            with self._news:
+                self.master_uri = str(report["master"])
+                self._news.notify_all()
+        elif "refused" in report:
+            self._refused = str(report["refused"])
+        elif "ending" in report:
+            if fatal_words(self.log):  # else why is reported next, or nobody knows
+                self._note(StackFailed(self._words_of_launch()))
+        elif report["status"] != 0:
+            name, status = str(report["ended"]), report["status"]
+            words = last_words(self.log, name)
+            text = f"{name} has ended with exit status {status}: {words}; all output is in {self.log}"
+            self._note(StackFailed(text, name, status if isinstance(status, int) else None))
+
+    def _note(self, ended: StackFailed) -> None:
+        with self._news:
+            self._ended = self._ended or ended  # the first one: others end because of it
+            self._news.notify_all()
+
+    def _words_of_launch(self) -> str:
+        told = self._refused or fatal_words(self.log) or "without a word"
+        return f"its launch ends: {told}; all output is in {self.log}"
+
+    def _ask_port(self) -> bool:
+        """Ask the master for the port that the simulator has told it."""
+        import rosgraph
+
+        master = rosgraph.Master("/own_stack", self.master_uri)
+        for name in PORTS:
+            try:
+                self._port = self._port or int(master.getParam(name))
+            except (rosgraph.MasterError, OSError):
+                continue  # not set, or a master that has ended: its process tells
+        return self._port != 0
+
+    def _forget_port(self) -> None:
+        """Of a former stack on this master."""
+        import rosgraph
+
+        for name in PORTS:
+            try:
+                rosgraph.Master("/own_stack", self.master_uri).deleteParam(name)
+            except rosgraph.MasterError:
+                continue  # it is not set
+
+    def _ended_within(self, seconds: float) -> bool:
+        try:
+            self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
+
+def _words(arguments: Mapping[str, str]) -> list[str]:
+    return [f"{name}:={value}" for name, value in {"nao_port": "0", **arguments}.items()]
+
+
+def _launch(log: Path, words: Sequence[str], master_uri: str) -> tuple[subprocess.Popen[bytes], int]:
+    """Start the program that launches; it, and the descriptor of its reports."""
+    environment = {name: value for name, value in os.environ.items() if name != "ROS_MASTER_URI"}
+    environment.update({"ROS_MASTER_URI": master_uri} if master_uri else {}, ROSCONSOLE_FORMAT=LINES)
+    reports, writes = os.pipe()
+    # It gets Ctrl-C when this process is killed, and ends its nodes.
+    command = ["setpriv", "--pdeathsig", "INT", sys.executable, "-m", PROGRAM, str(writes), *words]
+    try:
+        with log.open("wb") as output, _interruptible():
+            process = subprocess.Popen(
+                command,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+                pass_fds=[writes],
+                env=environment,
+            )
+    except BaseException:
+        os.close(reports)
+        raise
+    finally:
+        os.close(writes)
+    return process, reports
+
+
+def last_words(log: Path, node: str) -> str:
+    """The last line of a node in the output of a stack, or the last one that no other program has labelled."""
+    for line in reversed(_lines(log)):
+        found = LABELLED.match(line)
+        if found is None:
+            return line[-LONGEST:]
+        if found["node"] == node:
+            return found["text"][-LONGEST:]
+    return "it printed nothing"
+
+
+def fatal_words(log: Path) -> str:
+    """The first line with which a node has ended its launch; empty if none has."""
+    for line in _lines(log):
+        found = LABELLED.match(line)
+        if found is not None and found["severity"] == "FATAL":
+            return f"{found['node']}: {found['text']}"[-LONGEST:]
+    return ""
+
+
+def _lines(log: Path) -> list[str]:
+    text = COLOUR.sub("", log.read_text(encoding="utf-8", errors="replace"))
+    return [line for line in text.splitlines() if line.strip()]
+
 
 @contextmanager
 def _interruptible() -> Iterator[None]:
@@ -119,16 +262,3 @@ def _interruptible() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def can_connect(port: int) -> bool:
-    """Whether a program listens on a port of this computer."""
-    with socket.socket() as probe:
-        probe.settimeout(1.0)
-        return probe.connect_ex(("127.0.0.1", port)) == 0
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]

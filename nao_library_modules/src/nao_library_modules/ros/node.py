@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
+import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -26,6 +28,12 @@ from .startup_grace import require_start_patience
 
 DEFAULT_IP = "127.0.0.1"
 DEFAULT_PORT = 9559
+BOUND_PORT = "nao_sim/bound_port"
+"""Parameter: where a simulator tells its port."""
+PORT_PERIOD = 0.2
+"""s between two looks at it: a dozen nodes look while the simulator starts."""
+TOLD_AFTER = 10.0
+"""s of waiting after which that is in the log."""
 FORWARDED_LOGGERS = ("naoqi", "nao_library_modules")
 SERVER = "NaoLights"
 """Whose parameters tell which robot the nodes of a namespace are for."""
@@ -44,7 +52,10 @@ def robot_parser(description: str) -> argparse.ArgumentParser:
     )
     parser.add_argument("--pip", metavar="IP", help=f"address of the robot (default NAO_IP, else {DEFAULT_IP})")
     parser.add_argument(
-        "--pport", metavar="PORT", type=int, help=f"port of its NAOqi (default NAO_PORT, else {DEFAULT_PORT})"
+        "--pport",
+        metavar="PORT",
+        type=int,
+        help=f"port of its NAOqi (default NAO_PORT, else {DEFAULT_PORT}); 0: that of the simulator in the namespace",
     )
     return parser
 
@@ -54,12 +65,35 @@ def robot_address(options: argparse.Namespace, get_param: Callable[[str, Any], A
 
     `options`: what `robot_parser` gave. `get_param`: gives a parameter by name, or the default given with it. Raises
     NaoError if the port is no port.
+
+    Port 0 is the port that the simulator in this namespace has: it is waited for.
     """
     ip = options.pip if options.pip is not None else get_param("~pip", os.environ.get("NAO_IP") or DEFAULT_IP)
     port = options.pport if options.pport is not None else get_param("~pport", _usual_port())
-    if isinstance(port, bool) or not isinstance(port, int) or not 0 < port < 65536:
-        raise NaoError(f"port {port!r} is no port: 1..65535")
-    return str(ip), port
+    if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port < 65536:
+        raise NaoError(f"port {port!r} is no port: 1..65535, or 0 for that of the simulator in this namespace")
+    return str(ip), port or simulator_port()
+
+
+def simulator_port(pause: Callable[[float], None] = rospy.rostime.wallsleep) -> int:
+    """Port of the simulator in this namespace, or the nearest one above; waits until the simulator has told it.
+
+    The program ends if the node is told to end before.
+    """
+    began, told = time.monotonic(), False
+    while not rospy.is_shutdown():
+        try:
+            name = rospy.search_param(BOUND_PORT)
+            port = rospy.get_param(name, 0) if name else 0
+        except (OSError, rospy.ROSException):  # no master at this moment
+            port = 0
+        if port:
+            return int(port)
+        if not told and time.monotonic() - began > TOLD_AFTER:
+            rospy.logwarn("waiting for the port of the simulator, parameter %s: nao_sim is not ready yet", BOUND_PORT)
+            told = True
+        pause(PORT_PERIOD)
+    sys.exit(0)
 
 
 def _usual_port() -> Any:

@@ -9,6 +9,7 @@ from typing import Any
 
 from nao_sim_bridge.base.readings import Pose
 
+from ..processes.own_stack import StackFailed
 from .subjects import LATE, Outcome, Subject
 from .watch import Push, TorsoWatch
 from .worker_stack import WorkerStack
@@ -97,7 +98,7 @@ class StackRuns:
         for _ in range(TRIES):
             try:
                 return self._run(self._stack, varied, push, parameters)
-            except (StackLost, StackNotReady, TimeoutError, rospy.ROSException, rospy.ServiceException) as error:
+            except (StackLost, StackNotReady, StackFailed, rospy.ROSException, rospy.ServiceException) as error:
                 self._stack.drop()
                 lost = error
         raise StackLost(f"the stack was lost {TRIES} times, at last: {lost}") from lost

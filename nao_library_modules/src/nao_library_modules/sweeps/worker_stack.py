@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
 import tempfile
-import threading
-import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..processes.own_stack import START_LIMIT, OwnStack, can_connect, free_port
-from ..processes.supervisor import WITH_ITS_PARENT
+from ..processes.own_master import OwnMaster
+from ..processes.own_stack import START_LIMIT, OwnStack
 
 NODE = "nao_sweep"
 AS_FAST_AS_POSSIBLE = "0"
-LOOK_PERIOD = 0.05
-"""s between two looks whether the master listens: no event says so."""
 
 
 class WorkerStack:
@@ -32,7 +27,7 @@ class WorkerStack:
 
     Raises:
         RuntimeError: This process is a ROS node already.
-        TimeoutError: The master does not come up.
+        MasterFailed: The master does not come up.
     """
 
     def __init__(self, launch: Mapping[str, str]) -> None:
@@ -43,28 +38,19 @@ class WorkerStack:
         self._folder = Path(tempfile.mkdtemp(prefix="nao_sweep_"))
         self.robot: Any = None
         self._launch = {"speed": AS_FAST_AS_POSSIBLE, "record_dir": str(self._folder), **launch}
-        self._port = free_port()
-        os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{self._port}"
         self._stack: OwnStack | None = None
-        with (self._folder / "master.log").open("wb") as output:
-            command = [*WITH_ITS_PARENT, "rosmaster", "--core", "-p", str(self._port)]
-            self._master = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output)
-        deadline, pause = time.monotonic() + START_LIMIT, threading.Event()
-        while not can_connect(self._port):
-            if time.monotonic() > deadline or self._master.poll() is not None:
-                self.close()
-                raise TimeoutError(f"the ROS master does not come up within {START_LIMIT:g} s")
-            pause.wait(LOOK_PERIOD)
+        self._master = OwnMaster(self._folder / "master.log")
+        os.environ["ROS_MASTER_URI"] = self._master.uri
 
     def start(self) -> bool:
-        """Start the stack, unless it runs; whether it had to be started. Raises TimeoutError if it does not come up."""
+        """Start the stack, unless it runs; whether it had to be started. Raises StackFailed if it does not come up."""
         import rospy
 
         from nao_sim_bridge.testing import SimulatedRobot
 
         if self.robot is not None:
             return False
-        self._stack = OwnStack(self._folder / "stack.log", self._launch, ros_port=self._port)
+        self._stack = OwnStack(self._folder / "stack.log", self._launch, master_uri=self._master.uri)
         self._stack.wait_for_robot()
         if not rospy.core.is_initialized():  # not before the stack has said whose time counts
             rospy.init_node(NODE, argv=[NODE], anonymous=True, disable_rosout=True, disable_signals=True)
@@ -84,6 +70,5 @@ class WorkerStack:
 
         rospy.signal_shutdown("the sweep is over")
         self.drop()
-        self._master.terminate()
-        self._master.wait()
+        self._master.stop()
         shutil.rmtree(self._folder, ignore_errors=True)

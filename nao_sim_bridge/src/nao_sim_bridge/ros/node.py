@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import http.client
-import os
 import signal
 import socket
 import sys
 import threading
 import xmlrpc.client
+from dataclasses import replace
 from typing import NoReturn
 
 import rosgraph
@@ -16,8 +16,10 @@ import rospy
 
 from nao_sim_bridge.base.closing import FAILED, REFUSED, close_all, exit_in_time, wait_for_end
 from nao_sim_bridge.base.errors import SimulationError
+from nao_sim_bridge.ros.bound_ports import ports_before
+from nao_sim_bridge.ros.launched import NAME, end_launch, launched, make_way, node_name, note_ready, stay_off
 from nao_sim_bridge.ros.side import RosSide
-from nao_sim_bridge.server.cli import parser, server_options
+from nao_sim_bridge.server.cli import parser, server_options, tell_ports
 from nao_sim_bridge.server.robots_server import RobotsServer, open_server
 from nao_sim_bridge.server.simulator_server import SimulatorServer
 
@@ -27,110 +29,62 @@ VALUES = (
     "sound_file publish_clock robots places"
 ).split()
 SWITCHES = ("gui", "paused", "verbose", "sound_card", "charger", "allow_private_streams")
-NAME = "nao_sim"
 ANSWER_LIMIT = 2.0
 """s that a node which may run already has for each answer: one that was stopped has none."""
-LAUNCHED = "__log:="
-"""How an argument begins that roslaunch gives to its nodes, and nobody else does."""
-OFF = "import signal; signal.signal(signal.SIGINT, signal.SIG_DFL); signal.pause()"
+RUNS = (
+    "a simulator {} runs on this ROS master already: end it first, or start this one on another master "
+    "(roslaunch -p PORT) or in a namespace, with another nao_port"
+)
 
 
 def main() -> int:
     """Run until ROS shuts down, a client shuts the robot down, or the simulation fails; returns the exit status.
 
-    roslaunch starts a simulator that died again. One that was switched off (ALSystem.shutdown), or that cannot start
-    again, would come back for ever: under roslaunch it stays as an idle process until the launch file ends. One that
-    cannot start in the first place ends the launch file, and so does one whose name is taken on the master.
+    roslaunch starts a simulator again that was killed or has failed. One that was switched off (ALSystem.shutdown)
+    would come back as well: under roslaunch it stays as an idle process until the launch file ends. One that cannot
+    start ends the launch file, and so does one whose name is taken on the master.
     """
     told = threading.Event()  # to end, by a signal or by ROS
+    status = REFUSED
     try:
         status = _run(told)
-    except SystemExit as end:  # of argparse
-        status = end.code
     except KeyboardInterrupt:  # before it listens to signals
         told.set()
-        status = REFUSED
-    if _launched() and status != FAILED and not told.is_set():
-        if status and not _was_there():
-            _end_launch("the simulator cannot start as it is told, see above")
-        _stay_off()
+    except (SimulationError, RuntimeError) as error:
+        if launched() and not told.is_set():
+            end_launch(str(error))
+        print(f"{NAME}: {error}", file=sys.stderr)
+    if launched() and status == 0 and not told.is_set():
+        rospy.signal_shutdown("off")
+        stay_off()
     rospy.signal_shutdown("the simulator has ended")
     return status
-
-
-def _launched() -> bool:
-    return any(argument.startswith(LAUNCHED) for argument in sys.argv)
-
-
-def _name() -> str:
-    """Name of this node, also before there is one."""
-    mappings = rosgraph.names.load_mappings(sys.argv)
-    return rosgraph.names.resolve_name(mappings.get("__name", NAME), rosgraph.names.get_ros_namespace())
-
-
-def _was_there() -> bool:
-    """Whether a simulator of this name has run on the master."""
-    try:
-        return bool(rosgraph.Master(f"{_name()}_starting").hasParam(f"{_name()}/bound_port"))
-    except (rosgraph.MasterError, OSError):
-        return True
-
-
-def _make_way(running: str) -> NoReturn:
-    """End the launch file: its other nodes have taken the names of those of the simulator that runs, and its time."""
-    master = rosgraph.Master(f"{running}_starting")
-    clock = any(topic == "/clock" and running in nodes for topic, nodes in master.getSystemState()[0])
-    master.setParam("/use_sim_time", clock)
-    _end_launch("the nodes of the one before come back")
-
-
-def _end_launch(reason: str) -> NoReturn:
-    print(f"this launch file ends: {reason}", file=sys.stderr, flush=True)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: os._exit(REFUSED))
-    os.kill(os.getppid(), signal.SIGINT)
-    while True:
-        signal.pause()  # until roslaunch ends this process
-
-
-def _stay_off() -> NoReturn:
-    print("nao_sim is off until its launch file is started again", file=sys.stderr, flush=True)
-    rospy.signal_shutdown("off")
-    sys.stdout.flush()
-    signal.alarm(0)
-    for descriptor in map(int, os.listdir("/proc/self/fd")):  # no range: a process may have room for a billion
-        if descriptor > 2:
-            os.closerange(descriptor, descriptor + 1)
-    os.execv(sys.executable, [sys.executable, "-c", OFF, "nao_sim is off"])  # noqa: S606  frees what it held
 
 
 def _run(told: threading.Event) -> int:
     arguments = rospy.myargv(sys.argv)[1:]
     options = parser("rosrun nao_sim_bridge nao_sim")
     options.add_argument("--publish-clock", choices=("auto", "true", "false"), default="auto", help="publish /clock")
-    parsed = options.parse_args(arguments)
-    name = _name()
-    if answers(name):
-        print(
-            f"a simulator {name} runs on this ROS master already: end it first, or start this one on another master "
-            "(roslaunch -p PORT) or in a namespace, with another nao_port",
-            file=sys.stderr,
-        )
-        if _launched():
-            _make_way(name)
-        return REFUSED
+    options.error = _refuse  # type: ignore[method-assign]
+    options.parse_args(arguments)
+    if answers(node_name()):
+        problem = RUNS.format(node_name())
+        if launched():
+            make_way(problem)
+        raise SimulationError(problem)
     rospy.init_node(NAME, disable_signals=True)  # the simulator ends before its node does
-    try:
-        parsed = options.parse_args([*_from_parameters(options), *arguments])
-        server = open_server(server_options(parsed))
-        _end_when_told(told, server.ended)
-        server.start()
-    except (SimulationError, RuntimeError) as error:
-        rospy.logfatal("%s", error)
-        return REFUSED
+    parsed = options.parse_args([*_from_parameters(), *arguments])
+    chosen = server_options(parsed)
+    if chosen.port == 0 and launched():
+        chosen = replace(chosen, ports=ports_before(chosen.robots))
+    server = open_server(chosen)
+    _end_when_told(told, server.ended)
+    server.start()
+    tell_ports(server, parsed.port_file)
     wants_clock = {"auto": parsed.speed != 1.0, "true": True, "false": False}[parsed.publish_clock]
     # Before the services: who waits for these may ask for it.
     ros_side, ready = _ros_side(server, wants_clock)
+    note_ready()
     clock = "the simulated time" if rospy.get_param("/use_sim_time", False) else "the computer's"
     rospy.loginfo("%s, world %s, speed %g; ROS time is %s", ready, parsed.world, parsed.speed, clock)
     status = wait_for_end(server)
@@ -139,6 +93,10 @@ def _run(told: threading.Event) -> int:
         rospy.logfatal("the simulation has failed; see the log of the node")
     close_all(ros_side.close, *server.ending())
     return status
+
+
+def _refuse(problem: str) -> NoReturn:
+    raise SimulationError(problem)
 
 
 def _end_when_told(*events: threading.Event) -> None:
@@ -168,24 +126,13 @@ def answers(name: str) -> bool:
 def _ros_side(server: SimulatorServer | RobotsServer, wants_clock: bool) -> tuple[RosSide, str]:
     """The ROS side of one robot or several, and what to say of them; their ports are parameters then."""
     if isinstance(server, SimulatorServer):
-        _tell_port("~bound_port", server.broker.port)
         return RosSide(server, wants_clock), f"simulated NAO ready on port {server.broker.port}"
     several = dict(zip(server.names, server.servers))
-    for name, one in several.items():
-        _tell_port(f"{name}/nao_sim/bound_port", one.broker.port)
     ports = ", ".join(f"{name} on port {one.broker.port}" for name, one in several.items())
     return RosSide(server.servers[0], wants_clock, several), f"simulated NAOs ready: {ports}"
 
 
-def _tell_port(name: str, port: int) -> None:
-    """Set a parameter; a ROS master that is away at this moment ends no robot."""
-    try:
-        rospy.set_param(name, port)
-    except OSError as error:
-        rospy.logwarn("the parameter %s is not set: the ROS master does not answer: %s", name, error)
-
-
-def _from_parameters(options) -> list[str]:
+def _from_parameters() -> list[str]:
     """Command line words for the node's private parameters that are set."""
     words: list[str] = []
     for name in VALUES:

@@ -15,6 +15,7 @@ from nao_library_msgs import srv
 from nao_sim_bridge.base.guard import Failure
 from nao_sim_bridge.base.record_dir import world_of_client
 from nao_sim_bridge.core.runner import FASTEST
+from nao_sim_bridge.ros.bound_ports import BoundPorts
 from nao_sim_bridge.ros.robot import RosRobot
 from nao_sim_bridge.ros.services import ERRORS, checked, success_service
 from nao_sim_bridge.ros.shapes import ShapesTopic
@@ -40,6 +41,7 @@ class RosSide:
         robot `~picture` (nao_library_msgs), which shows the first one, and those of `RosRobot` for each robot,
         `offer_sounds` and `offer_things`.
         Publishes `/diagnostics`, see `RosDiagnostics`, and `~shapes`, see `ShapesTopic`.
+        Sets `~bound_port`, or `nao1/nao_sim/bound_port` and so on for several robots, see `BoundPorts`.
 
     Time in ROS goes on when a factory reset begins that of the robot anew.
 
@@ -52,6 +54,8 @@ class RosSide:
         self, server: SimulatorServer, publish_clock: bool, several: Mapping[str, SimulatorServer] | None = None
     ) -> None:
         self._server = server
+        # Before the services: who waits for these may ask for it.
+        self._ports = BoundPorts({name: one.broker.port for name, one in (several or {"": server}).items()})
         self._robots = [RosRobot(one, publish_clock, name) for name, one in (several or {"": server}).items()]
         self._clock = rospy.Publisher("/clock", Clock, queue_size=1) if publish_clock else None
         rospy.Service("~advance", srv.AdvanceTime, self._on_advance)
@@ -86,6 +90,7 @@ class RosSide:
             call = self._server.simulation.shared.guard.call  # that of the present simulation
             call(self._diagnostics.tick)
             call(self._shapes.tick)
+            call(self._ports.tick)
             if self._clock is None and not any(robot.listened for robot in self._robots):
                 self._closing.wait(LOOK_PERIOD)
                 continue

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import socket
 import threading
 import time
 from collections import deque
@@ -13,13 +12,16 @@ import qi
 
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.naoqi.binding.client_calls import NoAnswer, answer, worth_telling
-from nao_sim_bridge.server.own_sockets import StuckClients, free_port_on_exit, has_clients
+from nao_sim_bridge.server.own_sockets import StuckClients, free_port_on_exit, has_clients, is_listened_on
 
 log = logging.getLogger("nao_sim.broker")
 
-# A port may still be held by connections of a simulator that has just ended: how long to keep trying, s.
+# Connections may hold a port on which nobody listens: how long to keep trying, s. Those of a program that has ended are
+# gone after 60 s (TIME_WAIT).
 BIND_PATIENCE = 65.0
 BIND_PAUSE = 0.5
+LISTENS = "another program listens there"
+HELD = "a connection of this computer, open or just closed, has that port"
 # The thread that calls a client's module ends after this time without a call, s.
 CALLER_IDLE = 20.0
 # Calls that wait for a client's module; with more it loses the oldest.
@@ -46,9 +48,9 @@ class Broker:
         self._lock = threading.Lock()
 
     def listen(self, address: str, port: int, still_wanted: Callable[[], bool] = lambda: True) -> None:
-        """Listen on `address`:`port`; port 0 takes a free one. Waits for a port that is just being freed.
+        """Listen on `address`:`port`; for port 0 the system gives one. Waits for a port that only connections hold.
 
-        A RuntimeError when the address cannot be had.
+        A RuntimeError when the address cannot be had: at once where another program listens.
         """
         give_up = time.monotonic() + BIND_PATIENCE
         warned = False
@@ -58,11 +60,14 @@ class Broker:
                 break
             except RuntimeError as error:
                 in_use = "Address already in use" in str(error)
-                if not in_use or _somebody_listens(address, port) or time.monotonic() > give_up:
-                    hint = "another program listens there" if in_use else str(error).strip()
-                    raise RuntimeError(f"cannot listen on {address}:{port}: {hint}") from error
+                listens = in_use and is_listened_on(port)
+                if not in_use or listens or time.monotonic() > give_up:
+                    held = f"{LISTENS if listens else HELD}: choose another port, or 0"
+                    raise RuntimeError(
+                        f"cannot listen on {address}:{port}: {held if in_use else str(error).strip()}"
+                    ) from error
                 if not warned:
-                    log.warning("port %d is still held by closed connections, waiting for it", port)
+                    log.warning("port %d: nobody listens, but %s: waiting up to %g s", port, HELD, BIND_PATIENCE)
                     warned = True
                 if not still_wanted():
                     raise
@@ -258,9 +263,3 @@ class _Caller:
         self._failed += 1
         if worth_telling(self._failed):
             log.warning("callback %s.%s %s (%d so far)", self.module, method, what, self._failed)
-
-
-def _somebody_listens(address: str, port: int) -> bool:
-    with socket.socket() as probe:
-        probe.settimeout(0.5)
-        return probe.connect_ex((address if address != "0.0.0.0" else "127.0.0.1", port)) == 0

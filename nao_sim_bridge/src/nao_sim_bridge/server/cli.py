@@ -5,18 +5,23 @@ from __future__ import annotations
 import argparse
 import math
 from pathlib import Path
-from typing import Callable, Sequence
+from typing import TYPE_CHECKING, Callable, Sequence
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.limits import kind, world_kind
 from nao_sim_bridge.base.record_dir import DEFAULT_RECORD_DIR
 from nao_sim_bridge.base.renderers import RENDERERS
+from nao_sim_bridge.base.whole_file import write_whole
 from nao_sim_bridge.core.simulation import Scene
 from nao_sim_bridge.model.postures import load_postures
 from nao_sim_bridge.model.robot_model import VERSIONS
 from nao_sim_bridge.server.options import ServerOptions
 from nao_sim_bridge.world.places import MOST_ROBOTS, RobotPlace, parse_places
 from nao_sim_bridge.world.reader import world_names
+
+if TYPE_CHECKING:
+    from nao_sim_bridge.server.robots_server import RobotsServer
+    from nao_sim_bridge.server.simulator_server import SimulatorServer
 
 # Options that have the names of attributes of the scene, and of the server.
 OF_SCENE = "world posture seed friction payload sensor_noise sensor_delay charger".split()
@@ -32,7 +37,10 @@ def parser(prog: str) -> argparse.ArgumentParser:
         description="A physically simulated NAO that serves NAOqi's modules over libqi.",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
-    options.add_argument("--port", type=_port, default=9559, help="port to listen on; 0 takes a free one")
+    options.add_argument("--port", type=_port, default=9559, help="port to listen on; 0: the system gives one")
+    options.add_argument(
+        "--port-file", type=Path, metavar="FILE", help="write the ports there when it listens, one a line; none: don't"
+    )
     options.add_argument("--listen", default="127.0.0.1", help="address to listen on; 0.0.0.0 for the whole network")
     options.add_argument(
         "--speed", type=_speed, default=1.0, help="simulated seconds per second; 0 or max: as fast as possible"
@@ -114,6 +122,15 @@ def server_options(arguments: argparse.Namespace) -> ServerOptions:
 def parse(prog: str, arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """Parsed command line; ends the program with a clear text when it is wrong."""
     return parser(prog).parse_args(arguments)
+
+
+def tell_ports(server: SimulatorServer | RobotsServer, file: Path | None) -> None:
+    """For programs: the address of each robot, a line each on standard output, and the ports in a file if wanted."""
+    robots = getattr(server, "servers", (server,))
+    for robot in robots:
+        print(f"tcp://{robot.options.address}:{robot.broker.port}", flush=True)
+    if file is not None:
+        write_whole(file.expanduser(), "".join(f"{robot.broker.port}\n" for robot in robots).encode())
 
 
 def _speed(text: str) -> float:

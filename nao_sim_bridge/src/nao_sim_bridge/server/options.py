@@ -16,7 +16,8 @@ class ServerOptions:
 
     scene: Scene = field(default_factory=Scene)  # world, robot version, posture, seed
     address: str = "127.0.0.1"
-    port: int = 9559  # 0 takes a free one
+    port: int = 9559  # 0: the system gives one
+    ports: tuple[int, ...] = ()  # of the robots, instead of `port`: those that they had before; 0 as there
     speed: float = 1.0  # simulated seconds per wall second, infinity for as fast as possible
     paused: bool = False
     gui: bool = False  # show the robot in a window

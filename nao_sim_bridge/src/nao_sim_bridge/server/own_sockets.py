@@ -52,6 +52,11 @@ def free_port_on_exit(port: int) -> None:
             found.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
 
 
+def is_listened_on(port: int) -> bool:
+    """Whether a program listens on a port of this computer. Nobody is connected to for that."""
+    return bool(_rows(port, LISTENS))
+
+
 def has_clients(port: int) -> bool:
     """Whether somebody is connected to a port that this process listens on; true where the system does not tell."""
     return bool(_rows(port, CONNECTED)) or not _rows(port, LISTENS)

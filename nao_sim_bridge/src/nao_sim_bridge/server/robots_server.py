@@ -169,6 +169,7 @@ def _own_options(options: ServerOptions, number: int) -> ServerOptions:
         options,
         name=name,
         port=options.port + number if options.port else 0,
+        ports=options.ports[number : number + 1],
         gui=options.gui and number == 0,  # a window shows all of them
         record_dir=Path(options.record_dir) / name,
     )

@@ -135,7 +135,8 @@ class SimulatorServer:
         self._robot.begin()
         self._open_outlets()
         sys.setswitchinterval(SWITCH_INTERVAL)
-        self.broker.listen(self.options.address, self.options.port, lambda: not self.ended.is_set())
+        port = self.options.ports[0] if self.options.ports else self.options.port
+        self.broker.listen(self.options.address, port, lambda: not self.ended.is_set())
         self.broker.when_gone(lambda module: self._robot.client_gone(module))
 
     def serve(self) -> None:

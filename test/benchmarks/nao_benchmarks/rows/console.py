@@ -31,16 +31,13 @@ class ConsoleUnderTest:
     """The console on the stack's ROS master, as a browser sees it."""
 
     def __init__(self, held: ExitStack) -> None:
-        from nao_library_modules.processes.own_stack import free_port
-
         self._held = held
         folder = Path(held.enter_context(tempfile.TemporaryDirectory()))
         (folder / "buttons.yaml").write_text(json.dumps({"groups": [{"group": "A", "buttons": [BUTTON]}]}))
-        port = free_port()
-        self._base = f"http://127.0.0.1:{port}"
-        options = ["--port", str(port), "--console", str(folder / "buttons.yaml"), "--studies", str(folder)]
+        options = ["--port", "0", "--console", str(folder / "buttons.yaml"), "--studies", str(folder)]
         self.program = held.enter_context(Program("console", [sys.executable, str(NODES / "nao"), "console", *options]))
-        token = self.program.wait_for(r"NAO console: \S+token=(\S+)", START_LIMIT)[1]
+        told = self.program.wait_for(r"NAO console: (\S+)/\?token=(\S+)", START_LIMIT)
+        self._base, token = told[1], told[2]
         opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())
         self._open = opener.open
         answer = urllib.request.Request(f"{self._base}/functions?token={token}")

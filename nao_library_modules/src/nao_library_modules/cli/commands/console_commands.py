@@ -16,7 +16,13 @@ FILE = click.Path(dir_okay=False, path_type=Path)
 
 
 @click.command(cls=NaoCommand, name="console")
-@click.option("--port", type=click.IntRange(1, 65535), default=8080, show_default=True, help="Of the pages.")
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=8080,
+    show_default=True,
+    help="Of the pages; 0: a free one.",
+)
 @click.option("--listen", default="127.0.0.1", show_default=True, metavar="ADDRESS", help="Of this computer.")
 @click.option("--users", type=FILE, metavar="FILE", help="Who may log in; needed where others can reach it.")
 @click.option("--add-user", metavar="NAME", help="Ask for a password, write NAME into the file of --users, and end.")

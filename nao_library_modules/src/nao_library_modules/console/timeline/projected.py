@@ -18,7 +18,7 @@ from typing import Any, Tuple
 
 from naoqi.errors import NaoError
 
-from ...processes.own_stack import OwnStack
+from ...processes.own_stack import OwnStack, StackFailed
 
 LIMIT = 600.0
 """s of this computer that a projected behaviour may take."""
@@ -68,7 +68,7 @@ def project_behavior(text: str, file: str, given: Sequence[str], cancelled: thre
         with OwnStack(Path(folder) / "stack.log", launch) as stack:
             try:
                 stack.wait_for_robot()
-            except TimeoutError as error:
+            except StackFailed as error:
                 raise NotProjected(str(error)) from error
             if cancelled.is_set():
                 raise NotProjected("it was cancelled")

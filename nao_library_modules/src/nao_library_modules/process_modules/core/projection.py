@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...processes.own_stack import OwnStack
+from ...processes.own_stack import OwnStack, StackFailed
 from ..language.failures import PlanFailure
 from ..language.trace import Record, Trace
 
@@ -44,7 +44,7 @@ def project(
         with OwnStack(Path(folder) / "stack.log", given) as stack:
             try:
                 stack.wait_for_robot()  # a program that begins before has another time
-            except TimeoutError as error:
+            except StackFailed as error:
                 raise ProjectionFailed(str(error)) from error
             return run_program(program, arguments, stack.master_uri, Path(folder))
 
