@@ -17,7 +17,6 @@ class ServerOptions:
     scene: Scene = field(default_factory=Scene)  # world, robot version, posture, seed
     address: str = "127.0.0.1"
     port: int = 9559  # 0: the system gives one
-    ports: tuple[int, ...] = ()  # of the robots, instead of `port`: those that they had before; 0 as there
     speed: float = 1.0  # simulated seconds per wall second, infinity for as fast as possible
     paused: bool = False
     gui: bool = False  # show the robot in a window
@@ -29,3 +28,4 @@ class ServerOptions:
     robots: int = 1  # how many there are in the world; with more than one the port is that of the first
     places: tuple[RobotPlace, ...] = ()  # where they stand; empty for where the world says, or else the usual places
     allow_private_streams: bool = False  # whether playWebStream may fetch from this computer and from private networks
+    ports: tuple[int, ...] = ()  # of the robots, instead of `port`: those that they had before; 0 as there
