@@ -76,17 +76,14 @@ class Stack(OwnStack):
         """A client of an action server that is there.
 
         Raises:
-            RuntimeError: The server did not come up.
+            StackFailed: The server did not come up.
         """
         import rospy
 
         from nao_library_modules.simple_action_client import SimpleActionClient
 
         client = SimpleActionClient(name, action)
-        give_up = time.monotonic() + START_LIMIT
-        while not client.wait_for_server(rospy.Duration(1.0)):
-            if not self.alive() or time.monotonic() > give_up:
-                raise RuntimeError(f"the server {name} did not come up; see {self.log}")
+        self.wait_until(lambda: client.wait_for_server(rospy.Duration(0.5)), f"the server {name}", START_LIMIT)
         return client
 
 

@@ -39,7 +39,10 @@ def parser(prog: str) -> argparse.ArgumentParser:
     )
     options.add_argument("--port", type=_port, default=9559, help="port to listen on; 0: the system gives one")
     options.add_argument(
-        "--port-file", type=Path, metavar="FILE", help="write the ports there when it listens, one a line; none: don't"
+        "--port-file",
+        default="",
+        metavar="FILE",
+        help="write the ports there, one a line, when it listens; empty: no",
     )
     options.add_argument("--listen", default="127.0.0.1", help="address to listen on; 0.0.0.0 for the whole network")
     options.add_argument(
@@ -124,13 +127,13 @@ def parse(prog: str, arguments: Sequence[str] | None = None) -> argparse.Namespa
     return parser(prog).parse_args(arguments)
 
 
-def tell_ports(server: SimulatorServer | RobotsServer, file: Path | None) -> None:
+def tell_ports(server: SimulatorServer | RobotsServer, file: str) -> None:
     """For programs: the address of each robot, a line each on standard output, and the ports in a file if wanted."""
     robots = getattr(server, "servers", (server,))
     for robot in robots:
         print(f"tcp://{robot.options.address}:{robot.broker.port}", flush=True)
-    if file is not None:
-        write_whole(file.expanduser(), "".join(f"{robot.broker.port}\n" for robot in robots).encode())
+    if file:
+        write_whole(Path(file).expanduser(), "".join(f"{robot.broker.port}\n" for robot in robots).encode())
 
 
 def _speed(text: str) -> float:
