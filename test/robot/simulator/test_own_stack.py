@@ -21,6 +21,7 @@ LOG = """[INFO] [/nao_sim]: it begins
 [FATAL] [/NaoLights]: no such LED
 [INFO] [/NaoMotion]: NaoMotion is ready
 Segmentation fault
+[I] 1795972224.145697 7716 qi.eventloop: Spawning 1 more thread.
 [roslaunch] [nao_sim-1] process has died [pid 4711, exit code -11, cmd /ws/lib/nao_sim]
 """
 

@@ -19,8 +19,11 @@ from naoqi.errors import NaoError
 START_LIMIT = 90.0
 PERIOD = 0.05
 COLOUR = re.compile(r"\x1b\[[\d;]*m")
-LABELLED = re.compile(r"\[(?P<severity>[A-Z]+)\] \[(?P<node>/\S*)\]: (?P<text>.*)|\[roslaunch\] ")
-"""A line of a node's log, as LINES has it, or of roslaunch. What else programs print has no label."""
+LABELLED = re.compile(
+    r"\[(?P<severity>[A-Z]+)\] \[(?P<node>/\S*)\]: (?P<text>.*)|\[roslaunch\] |\[[WIVD]\] [\d.]+ \d+ qi"
+)
+"""A line of a node's log, as LINES has it, or of roslaunch, or of libqi below an error. What else programs print has no
+label."""
 LINES = "[${severity}] [${node}]: ${message}"
 LONGEST = 300
 """Characters of last words."""
