@@ -22,8 +22,7 @@ COLOUR = re.compile(r"\x1b\[[\d;]*m")
 LABELLED = re.compile(
     r"\[(?P<severity>[A-Z]+)\] \[(?P<node>/\S*)\]: (?P<text>.*)|\[roslaunch\] |\[[WIVD]\] [\d.]+ \d+ qi"
 )
-"""A line of a node's log, as LINES has it, or of roslaunch, or of libqi below an error. What else programs print has no
-label."""
+"""A line of a node's log, as LINES has it, of roslaunch, or of libqi below an error. All else has no label."""
 LINES = "[${severity}] [${node}]: ${message}"
 LONGEST = 300
 """Characters of last words."""
