@@ -186,7 +186,7 @@ class RobotClient:
             _in_thread(self._prepare, server)
 
     def watch(self) -> Callable[[], None]:
-        """Follow goals of other programs, and be ready to stop at once, until what comes back is called."""
+        """Follow goals of other programs until what comes back is called; be ready to stop at once from now on."""
         with self._following:
             self._watchers += 1
         self.refresh()
@@ -211,11 +211,7 @@ class RobotClient:
             self._watchers -= 1
             if self._watchers:
                 return
-            self._foreign.follow(())
-            with self._lock:
-                left, self._cancels = self._cancels, {}
-            for publisher in left.values():
-                publisher.unregister()
+            self._foreign.follow(())  # topics of cancels stay: who comes back while the master hangs can stop
 
     # --- stop and walk --------------------------------------------------------------------------------------------
 
@@ -232,8 +228,7 @@ class RobotClient:
             own = list(self._own.values())
         self._hold_walk(None)
         for publisher in ready.values():
-            with suppress(rospy.ROSException):  # closed at this moment, as its last page has left
-                publisher.publish(GoalID())
+            publisher.publish(GoalID())
         for run in own:
             run.cancel()  # a goal that is on its way may come behind the cancel of all
         _in_thread(self._stop_walk)
