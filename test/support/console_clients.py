@@ -214,12 +214,8 @@ def idle_connections(port, count=1200, address="127.0.0.1"):
                 held.pop(0).close()
                 if over.wait(0.02):
                     return
-            made = socket.socket()  # a stranger who is closed comes again
-            made.settimeout(LIMIT)
-            with suppress(OSError):
-                made.bind((address, 0))
-                made.connect(("127.0.0.1", port))
-            held.append(made)
+            with suppress(OSError):  # a stranger who is closed comes again
+                held.append(socket.create_connection(("127.0.0.1", port), LIMIT, source_address=(address, 0)))
 
     thread = threading.Thread(target=come, daemon=True)
     thread.start()

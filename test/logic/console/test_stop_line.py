@@ -266,9 +266,7 @@ def test_a_session_has_room_for_many_pages_and_not_for_all(crowd):
 
 
 def test_a_flood_of_connections_leaves_the_loop_time_for_others():
-    with CountedListener() as listener:
-        listener.bind(("127.0.0.1", 0))
-        listener.listen(BURST + 5)
+    with CountedListener.on("127.0.0.1", 0) as listener:
         listener.setblocking(False)
         callers = [socket.create_connection(listener.getsockname()) for _ in range(BURST + 1)]
         taken = [listener.accept()[0] for _ in range(BURST)]

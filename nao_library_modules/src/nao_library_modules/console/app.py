@@ -16,7 +16,7 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ..base.paths import config_file
-from .access.connections import Connections, CountedListener
+from .access.connections import BACKLOG, Connections, CountedListener
 from .access.controls import Controls
 from .access.guard import COOKIE, Guard
 from .access.sessions import Sessions
@@ -29,8 +29,6 @@ from .view.views import Views
 
 PORT = 8080
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
-BACKLOG = 512
-"""Connections that wait to be taken."""
 SWITCH_INTERVAL = 0.001
 """s for which a thread that takes the processor keeps others waiting, a stop among them."""
 STUDIES = "~/.ros/nao_studies"
@@ -119,7 +117,12 @@ class Console:
         import uvicorn
 
         connections = Connections()
-        listener = self._listen(connections)
+        settings = self.settings
+        try:
+            listener = CountedListener.on(settings.listen, settings.port, connections)
+        except OSError as error:
+            text = f"port {settings.port} of {settings.listen}: {error.strerror}; --port takes another"
+            raise NaoError(text) from None
         settings = self.settings = replace(self.settings, port=listener.getsockname()[1])
         pages = PageLoop(self.app)
         guard = Guard(
@@ -154,17 +157,3 @@ class Console:
         with suppress(KeyboardInterrupt):
             uvicorn.Server(config).run(sockets=[listener])
         pages.close()
-
-    def _listen(self, connections: Connections) -> socket.socket:
-        """A socket that listens; uvicorn gets it, so that nobody can have its port meanwhile."""
-        address, port = self.settings.listen, self.settings.port
-        listener = CountedListener(socket.AF_INET6 if ":" in address else socket.AF_INET)
-        listener.connections = connections
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            listener.bind((address, port))
-            listener.listen(BACKLOG)  # who opens the address at once waits
-        except OSError as error:
-            listener.close()
-            raise NaoError(f"port {port} of {address}: {error.strerror}; --port takes another") from None
-        return listener

@@ -19,6 +19,8 @@ PATIENCE = 10.0
 """s for which a stranger's connection stays open behind its last request."""
 SWEEP_PERIOD = 1.0
 """s between two looks for strangers that are over their time."""
+BACKLOG = 512
+"""Connections that wait to be taken."""
 BURST = 16
 """Connections that are accepted before the event loop turns to what else there is."""
 Peer = Tuple[str, int]
@@ -148,6 +150,23 @@ class CountedListener(socket.socket):
 
     connections: Connections | None = None
     _burst = 0
+
+    @classmethod
+    def on(cls, address: str, port: int, connections: Connections | None = None) -> CountedListener:
+        """One that listens already, so that nobody can have its port meanwhile; port 0 takes a free one.
+
+        An OSError when the address cannot be had.
+        """
+        listener = cls(socket.AF_INET6 if ":" in address else socket.AF_INET)
+        listener.connections = connections
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            listener.bind((address, port))
+            listener.listen(BACKLOG)  # who opens the address at once waits
+        except OSError:
+            listener.close()
+            raise
+        return listener
 
     def accept(self) -> tuple[socket.socket, Any]:
         """As that of sockets; says that nobody is there after each BURST, so that a flood is no hold-up."""
