@@ -13,6 +13,7 @@ import faulthandler
 import os
 import random
 import shutil
+import subprocess
 import sys
 import tempfile
 import threading
@@ -122,10 +123,8 @@ class Meddler(threading.Thread):
         self._cluster, self._kind, self._rows = cluster, kind, rows
         self._at_once, self._moment = at_once, moment
         self._over = threading.Event()
-        self._second = self._add() if kind == "kill" else None
-
-    def _add(self) -> Any:
-        return insist(lambda: self._cluster.add_node(num_cpus=1))
+        self._second = insist(lambda: cluster.add_node(num_cpus=1)) if kind == "kill" else None
+        self._joined: subprocess.Popen[bytes] | None = None
 
     def run(self) -> None:
         while not self._at_once and not self._rows.exists():
@@ -137,9 +136,13 @@ class Meddler(threading.Thread):
             self._cluster.remove_node(self._second, allow_graceful=False)
             self._second = None
         else:
-            self._second = self._add()
+            command = [sys.executable, "-m", "ray.scripts.scripts", "start", "--address", self._cluster.address]
+            with self._rows.with_suffix(".log").open("wb") as log:
+                self._joined = subprocess.Popen(
+                    [*command, "--num-cpus", "1", "--block"], stdout=log, stderr=log, stdin=subprocess.DEVNULL
+                )
         rows = self._rows.read_text().count("\n") - 1 if self._rows.exists() else 0
-        self.done = "after the end" if self._over.is_set() else f"with {rows} rows"
+        self.done = f"with {rows} rows"
 
     def end(self) -> None:
         """The sweep is over: take the second node away."""
@@ -147,6 +150,9 @@ class Meddler(threading.Thread):
         self.join()
         if self._second is not None:
             self._cluster.remove_node(self._second)
+        if self._joined is not None:
+            self._joined.terminate()
+            self._joined.wait(GONE_LIMIT)
 
 
 def main() -> int:
@@ -175,7 +181,7 @@ def main() -> int:
                 if options.stacks:
                     problems, made = run_stacks(cluster.address, options.stacks, rows)
                 else:
-                    lengths = [0.8, 1.2] if kind == "kill" else [1.8, 2.2]  # a node takes a while to join
+                    lengths = [0.8, 1.2] if kind == "kill" else [3.0, 4.0]  # a node takes a while to join
                     problems, made = run_small(cluster.address, rows, lengths)
             finally:
                 meddler.end()
