@@ -166,7 +166,7 @@ def main() -> int:
     for name, value in RAY.items():
         os.environ.setdefault(name, value)
     chance, failed = random.Random(options.seed), 0
-    lasted = 60.0 if options.stacks else 8.0  # s from the first row to the last one, about
+    lasted = 30.0 if options.stacks else 8.0  # s from the first row to the last one, about
     folder = tempfile.mkdtemp(prefix="sweep_cluster_")
     cluster = insist(lambda: Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False}))
     try:
