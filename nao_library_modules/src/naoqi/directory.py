@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, List
 
 from .errors import NaoError, RobotUnreachable
-from .limits import ANSWER_LIMIT, READY_LIMIT, START_LIMIT
+from .limits import ANSWER_LIMIT, FIRST_MODULE_LIMIT, READY_LIMIT, START_LIMIT
 from .session import Live
 from .translate import is_unknown_service, unknown_module
 
@@ -39,9 +39,11 @@ def find_module(connection: Connection, live: Live, name: str) -> Any:
             return future.value()
         text = future.error().strip()
         if is_unknown_service(text):
-            if connection.answering_time() < live.connected_at + START_LIMIT and not live.broken.wait(delay):
+            names = module_names(connection, live)
+            limit = START_LIMIT if any(each.startswith("AL") for each in names) else FIRST_MODULE_LIMIT
+            if connection.answering_time() < live.connected_at + limit and not live.broken.wait(delay):
                 continue
-            raise unknown_module(name, connection.host, connection.port, module_names(connection, live))
+            raise unknown_module(name, connection.host, connection.port, names)
         if live is not connection.live or not live.session.isConnected():
             raise connection.unreachable()
         # The module has just been registered, or is being unregistered.

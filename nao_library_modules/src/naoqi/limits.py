@@ -62,6 +62,8 @@ CLEAN_UP_LIMIT = 2.0
 up what comes next for long."""
 START_LIMIT = 0.5
 """After the connection, modules may still appear: a starting robot registers them in turn."""
+FIRST_MODULE_LIMIT = 10.0
+"""The same while it has no module of NAOqi at all: on a busy computer a simulator listens for seconds before it has."""
 READY_LIMIT = 1.0
 """A module that has just been registered may not be callable yet."""
 STANDING_LIMIT = 2.0

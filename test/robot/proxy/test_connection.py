@@ -27,6 +27,16 @@ SOON = 60.0
 """More than any machine needs; the promise itself is of the settings, see Timing."""
 
 
+class Adder:
+    """A module of a robot."""
+
+    def add(self, first, second):
+        return first + second
+
+    def ping(self):
+        return True
+
+
 @pytest.fixture
 def robot(fragile_robot):
     return fragile_robot
@@ -102,6 +112,23 @@ def test_a_module_may_appear_a_moment_after_the_robot(robot, states, pool):
     answer = pool.submit(lambda: robot.proxy("Visitor").add(1, 1))
     robot.proxy("Switch").arrive("Visitor")
     assert answer.result(SOON) == 2
+
+
+def test_a_robot_without_any_module_is_still_starting(pool, monkeypatch):
+    monkeypatch.setattr(directory, "START_LIMIT", 0.0)
+    find_names, asked = directory.module_names, threading.Event()
+    monkeypatch.setattr(directory, "module_names", lambda *where: (asked.set(), find_names(*where))[1])
+    session = qi.Session()
+    session.listenStandalone("tcp://127.0.0.1:0")
+    port = int(session.endpoints()[0].rpartition(":")[2])
+    try:
+        answer = pool.submit(lambda: naoqi.ALProxy("ALTest", "127.0.0.1", port).add(1, 1))
+        assert asked.wait(SOON)
+        session.registerService("ALTest", Adder())
+        assert answer.result(SOON) == 2
+    finally:
+        naoqi.connection("127.0.0.1", port, wait=False).close()
+        session.close()
 
 
 def test_threads_that_want_the_same_module_look_it_up_once(robot, pool, monkeypatch):
