@@ -12,7 +12,7 @@ from itertools import islice
 
 import pytest
 from gaps import LONGEST, gaps_at
-from naoqi_calls import read_calls
+from naoqi_calls import CHAIR, ENDS, SIMULATION, calls_of, example, read_calls
 from programs import Program, shell
 from simulator import connected
 
@@ -29,64 +29,6 @@ MANY = 10**5
 """Items of a list in the place of its first."""
 NUMBER = re.compile(r"[iIlLfd]")
 """Of a signature of libqi."""
-ENDS = {"exit", "shutdown", "reboot", "factoryReset"}
-"""These end what is tested, or begin it anew."""
-SIMULATION = "NaoSimulation"
-CHAIR = {"name": "chair", "box": [0.1, 0.1, 0.1], "position": [1.0, 1.0, 0.1]}
-SHAPE = {"position": [1.0, 1.0, 0.5], "mass": 0.1, "friction": 0.8, "color": [1.0, 0.0, 0.0], "heading": 1.0}
-OWN = [
-    ("setSpeed", (1.0,)),
-    ("advance", (0.1,)),
-    ("push", ([1.0, 0.0, 0.0], 0.1, "torso")),
-    ("touch", ("Head/Touch/Front", 0.1)),
-    ("stroke", (["Head/Touch/Front", "Head/Touch/Rear"], 0.5)),
-    ("picture", ("front", 64, 48)),
-    ("setBatteryCharge", (0.5,)),
-    ("setTemperature", ("Head", 40.0)),
-    ("startFilm", ("film.mp4", "front", 160, 160, 20.0)),
-    ("placeObject", ({"box": [0.1, 0.1, 0.1], **SHAPE},)),
-    ("placeObject", ({"ball": 0.03, "position": [1.0, 1.0, 0.5]},)),
-    ("placeObject", ({"cylinder": [0.02, 0.1], "rpy": [0.0, 0.0, 1.0], "position": [1.0, 1.0, 0.5]},)),
-    ("placeObject", ({"face": "anna", "size": 0.2, "position": [1.0, 1.0, 0.5]},)),
-    ("moveObject", ("chair", [1.0, 1.0, 0.1], [0.0, 0.0, 0.1], 0.1)),
-    ("addSound", ("tone", "tone:440", [1.0, 0.0, 0.0], 60.0, False)),
-    ("moveSound", ("tone", [1.0, 0.0, 0.0])),
-    ("personSays", ("hello", [1.0, 0.0, 0.5], "", 60.0)),
-]
-"""Calls of the simulator's own service; descriptions are JSON there."""
-BIP = "nao_library/bip.ogg"
-MORE = {
-    "ALLandMarkDetection": [("setParameter", ("pause", 1.0))],
-    "ALMemory": [("getData", ("Test/Key", 0)), ("getDataOnChange", ("Test/Key", 0)), ("getListData", ([1.0],))],
-    "ALVideoDevice": [
-        *((method, (0,)) for method in ("getColorSpace", "getFrameRate", "getResolution")),
-        ("onClientDisconnected", ("ClientDisconnected", 1.0, "")),
-    ],
-    "ALAudioDevice": [("sendLocalBufferToOutput", (1, 0))],
-    "ALAudioPlayer": [
-        *((method, (BIP, 0.5, 0.0)) for method in ("playFile", "playFileInLoop")),
-        *((method, (1, 0.5, 0.0)) for method in ("play", "playInLoop")),
-        ("playFileFromPosition", (BIP, 0.1, 0.5, 0.0)),
-        ("playSoundSetFile", ("nao_library", "bip", 0.1, 0.5, 0.0, False)),
-        ("playWebStream", ("http://127.0.0.1:9/x.wav", 0.5, 0.0)),
-    ],
-    "ALMotion": [
-        ("setMotionConfig", ([["ENABLE_STIFFNESS_PROTECTION", 1.0]],)),
-        ("getAngles", ([1.0], True)),
-        ("getStiffnesses", ([1.0],)),
-    ],
-    "ALSpeechRecognition": [("setContextParam", ("context", "Sensitivity", 0.5))],
-    "DCM": [("calibration", ([1.0],)), ("createAlias", (["TestEyes", [1.0]],))],
-    "ALMovementDetection": [("setDepthSensitivity", (0.3,))],
-    "ALAnimatedSpeech": [
-        ("say", ("One.", {"bodyLanguageMode": 1.0})),
-        ("addTagsToWords", ({"hello": [1.0]},)),
-        ("declareTagForAnimations", ({"ahoy": [1.0]},)),
-    ],
-}
-"""Calls with numbers that `naoqi_calls.txt` has without any."""
-TASKS = [("isRunning", (1,)), ("wait", (1, 1)), ("stop", (1,))]
-"""Calls of every module."""
 MODULES = [SIMULATION, *(module for module, (_, calls) in read_calls().items() if calls)]
 
 
@@ -115,32 +57,6 @@ def with_long_lists(value):
             if isinstance(inner, (list, tuple)) and inner and isinstance(inner[0], (int, float)):
                 yield [*value[:i], [inner[0]] * MANY, *value[i + 1 :]]
             yield from ([*value[:i], other, *value[i + 1 :]] for other in with_long_lists(inner))
-
-
-PLAIN = {"b": True, "s": "HeadYaw", "r": b"piece", "m": [0.5]} | dict.fromkeys("fd", 0.5) | dict.fromkeys("iIlL", 1)
-"""A value of each of libqi's letters."""
-
-
-def example(signature):
-    """Arguments for the parameters of a method, "(sf)", as nobody has written down better ones."""
-    stack = [[]]
-    for letter in re.sub("<[^>]*>", "", signature):
-        if letter in "([{":
-            stack.append([])
-        elif letter in ")]}":
-            items = stack.pop()
-            stack[-1].append(dict([items]) if letter == "}" else items)
-        else:
-            stack[-1].append(PLAIN[letter])
-    return stack[0][0]
-
-
-def calls_of(module):
-    """Method and arguments of the calls that are tried."""
-    if module == SIMULATION:
-        return OWN
-    known = [(method, arguments) for method, arguments, *_ in read_calls()[module][1]]
-    return [*known, *MORE.get(module, ()), *TASKS]
 
 
 class Victim:

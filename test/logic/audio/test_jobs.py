@@ -36,10 +36,9 @@ def test_jobs_are_done_in_turn_and_hold_until_the_last_is_done():
     assert not background.holds()
 
 
-def test_work_beside_the_rest_holds_nothing_and_keeps_nobody_waiting():
-    background, may_end = Background(), threading.Event()
-    slow = background.beside(lambda _: may_end.wait(PATIENCE), "work")
-    assert not background.holds()
+def test_with_several_threads_work_that_is_slow_keeps_nobody_waiting():
+    background, may_end = Background(threads=2), threading.Event()
+    slow = background.in_turn(lambda _: may_end.wait(PATIENCE), "work")
     assert background.in_turn(lambda _: 1, "work").result(PATIENCE) == 1
     assert not slow.finished
     may_end.set()
@@ -63,7 +62,7 @@ def test_work_learns_that_nobody_wants_it_any_more(way):
     task.result(PATIENCE)
     background.in_turn(lambda _: None, "after it").result(PATIENCE)
     assert seen == [True, False] and (way == "stop" or task.killed)
-    done = background.beside(lambda _: 1, "work")
+    done = background.in_turn(lambda _: 1, "work")
     assert done.result(PATIENCE) == 1
     done.request_kill()
     assert not done.killed
@@ -75,7 +74,7 @@ def test_work_learns_that_nobody_wants_it_any_more(way):
 def test_no_more_wait_for_their_turn_than_may():
     background, may_end = Background(most=2), threading.Event()
     tasks = [background.in_turn(lambda _: may_end.wait(PATIENCE), "look") for _ in range(2)]
-    with pytest.raises(BadValue, match="calls of look that wait is 3, allowed is at most 2"):
+    with pytest.raises(BadValue, match="calls of look that have not ended is 3, allowed is at most 2"):
         background.in_turn(lambda _: None, "look")
     may_end.set()
     assert [task.result(PATIENCE) for task in tasks] == [True, True]

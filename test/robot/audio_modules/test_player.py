@@ -12,7 +12,6 @@ import pytest
 import soundfile
 from sounds import RATE, frequency, loudness, played, tone, until, write
 
-from nao_sim_bridge.base.sizes import LoadedSizes
 from nao_sim_bridge.naoqi.sound.sound_files import SoundFiles
 from nao_sim_bridge.naoqi.sound.web_stream import WebStreams
 
@@ -186,7 +185,9 @@ def test_what_is_loaded_has_a_budget_and_the_refusal_names_what_is_there_and_wha
     robot, player, monkeypatch
 ):
     reader = robot.server.sound_reader
-    monkeypatch.setattr(reader, "sizes", replace(reader.sizes, loaded_sounds=LoadedSizes(500_000)))
+    monkeypatch.setattr(
+        reader, "sizes", replace(reader.sizes, loaded_sounds=replace(reader.sizes.loaded_sounds, bytes=500_000))
+    )
     write(robot, "long.wav", tone(440.0, 2.0))
     player.loadFile("tone.wav")
     words = (

@@ -216,11 +216,11 @@ def test_a_module_that_could_not_be_made_fails_its_call_and_is_made_by_the_next(
 
 
 def test_an_error_arrives_as_a_short_text_with_module_and_method(proxy, motion):
-    for name in ("Hed", BOOK):
+    for name, allowed in (("Hed", "a joint"), (BOOK, "a name of 1000 characters at most")):
         with pytest.raises(RuntimeError) as caught:
             proxy.getLimits(name)
         text = str(caught.value).strip()
-        assert text.startswith(f"ALMotion::getLimits name is '{name[:3]}") and text.endswith("allowed is a joint")
+        assert text.startswith(f"ALMotion::getLimits name is '{name[:3]}") and text.endswith(f"allowed is {allowed}")
         assert len(text) < 1300
     future = begun(proxy, "wakeUp")
     motion.tasks[-1].finish(error=BadValue("name", "Hed", "a joint"))
@@ -299,4 +299,4 @@ def test_a_wait_that_is_cancelled_or_over_leaves_nothing_with_what_it_waited_for
         future.wait(int(1000 * PATIENCE))
         assert future.isCanceled()
     callbacks = motion.tasks[0]._callbacks
-    assert len(callbacks) == 1, callbacks  # that of the posted call itself
+    assert len(callbacks) == 2, callbacks  # those of the posted call itself

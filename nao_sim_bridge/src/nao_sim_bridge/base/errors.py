@@ -15,9 +15,13 @@ SimulationError (RuntimeError)
 from __future__ import annotations
 
 import math
+import os
 from typing import Any, Iterable, Sequence
 
 LONGEST = 300
+"""Characters of a value that an error shows."""
+LONGEST_HINTED, MOST_HINTED = 100, 2000
+"""Names that are looked at for one that is close: their characters, and how many; to compare two takes some 50 us."""
 
 
 def shortened(value: Any) -> str:
@@ -28,12 +32,20 @@ def shortened(value: Any) -> str:
 
 def closest(name: Any, known: Iterable[str]) -> list[str]:
     """Up to three known names that look like one, the best first; upper and lower case do not matter."""
+    wanted = str(name).lower()
     lowered: dict[str, list[str]] = {}
+    if len(wanted) > LONGEST_HINTED:
+        return []
     for candidate in known:
-        lowered.setdefault(candidate.lower(), []).append(candidate)
+        if len(candidate) <= LONGEST_HINTED:
+            lowered.setdefault(candidate.lower(), []).append(candidate)
+    if len(lowered) > MOST_HINTED:  # those that begin alike are the closest, mostly
+        begin = os.path.commonprefix
+        likely = sorted(lowered, key=lambda one: -len(begin((one, wanted))))[:MOST_HINTED]
+        lowered = {one: lowered[one] for one in likely}
     import difflib  # most names are right
 
-    close = difflib.get_close_matches(str(name).lower(), lowered, n=3, cutoff=0.5)
+    close = difflib.get_close_matches(wanted, lowered, n=3, cutoff=0.5)
     return [candidate for key in close for candidate in lowered[key]][:3]
 
 

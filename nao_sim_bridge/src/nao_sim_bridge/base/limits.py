@@ -62,7 +62,7 @@ def kinds() -> Mapping[str, Kind]:
 @lru_cache(maxsize=None)
 def declared() -> Mapping[str, Any]:
     content = read_json(config_file(FILE))
-    return check_keys(content, FILE, ("_source", "kinds", "parameters", "methods", "fields", "world"))
+    return check_keys(content, FILE, ("_source", "kinds", "parameters", "methods", "texts", "fields", "world"))
 
 
 def kind(name: str) -> Kind:

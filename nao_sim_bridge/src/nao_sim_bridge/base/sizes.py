@@ -35,9 +35,19 @@ class DecoderSizes:
 
 @dataclass(frozen=True)
 class LoadedSizes:
-    """Of all sounds that the player of a robot keeps, or that the world has."""
+    """Of all sounds that the player of a robot keeps, and how many its loudspeakers play at once."""
 
     bytes: int
+    sounds: int
+    at_once: int
+
+
+@dataclass(frozen=True)
+class WorldSoundSizes:
+    """Of all sounds that the world has."""
+
+    bytes: int
+    sounds: int
 
 
 @dataclass(frozen=True)
@@ -80,13 +90,25 @@ class YamlSizes:
 
 
 @dataclass(frozen=True)
+class XmlSizes:
+    """Of XML files and texts; levels are elements in each other."""
+
+    file_bytes: int
+    elements: int
+    attributes: int
+    levels: int
+
+
+@dataclass(frozen=True)
 class CallSizes:
-    """Of the arguments of a call: one text, one buffer, items of all lists together, lists in lists."""
+    """Of the arguments of a call: one text, one buffer, items of all lists together, lists in lists; names in them."""
 
     text_characters: int
     buffer_bytes: int
     items: int
     levels: int
+    name_characters: int
+    names: int
 
 
 @dataclass(frozen=True)
@@ -104,6 +126,11 @@ class ListSizes:
     commands: int
     aliases: int
     devices: int
+    led_groups: int
+    led_members: int
+    gestures: int
+    pieces: int
+    pushes: int
 
 
 @dataclass(frozen=True)
@@ -127,6 +154,14 @@ class ClientSizes:
     things: int
     uploads: int
     resource_calls: int
+    unfinished_calls: int
+    called_modules: int
+    microphones: int
+    mapping_calls: int
+    threads: int
+    stacked_activities: int
+    activities: int
+    seen_faces: int
 
 
 @dataclass(frozen=True)
@@ -139,12 +174,16 @@ class MemorySizes:
 
 @dataclass(frozen=True)
 class SpeechSizes:
-    """Of a text to say and its pauses, of speech that is written to a file or sounds in the world, of a dictionary."""
+    """Of a text to say and its pauses, of files of speech, of a dictionary, of what clients add to the animations."""
 
     text_characters: int
     pauses_s: float
     file_s: float
     dictionary_words: int
+    words: int
+    animations: int
+    tags: int
+    paths: int
 
 
 @dataclass(frozen=True)
@@ -154,14 +193,19 @@ class VocabularySizes:
     phrases: int
     phrase_characters: int
     put_aside: int
+    contexts: int
+    grammar_characters: int
 
 
 @dataclass(frozen=True)
 class BehaviorSizes:
-    """Of how many behaviours a robot keeps: those that clients install, and those that ALFrameManager makes."""
+    """Of the behaviours of clients: those that they install, and those that ALFrameManager makes."""
 
     installed: int
     made: int
+    bytes: int
+    running: int
+    packages: int
 
 
 @dataclass(frozen=True)
@@ -174,6 +218,10 @@ class KeptSizes:
     resources: int
     notifications: int
     users: int
+    people: int
+    log_filters: int
+    filter_stars: int
+    robot_name_characters: int
 
 
 @dataclass(frozen=True)
@@ -190,11 +238,12 @@ class Sizes:
     sound: SoundSizes
     decoder: DecoderSizes
     loaded_sounds: LoadedSizes
-    world_sounds: LoadedSizes
+    world_sounds: WorldSoundSizes
     stream: StreamSizes
     archive: ArchiveSizes
     picture: PictureSizes
     yaml: YamlSizes
+    xml: XmlSizes
     call: CallSizes
     lists: ListSizes
     clients: ClientSizes

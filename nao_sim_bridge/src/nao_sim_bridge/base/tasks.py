@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import threading
+from collections import deque
 from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import SimulationStopped
@@ -163,7 +164,37 @@ def stopped_error() -> SimulationStopped:
     return SimulationStopped("the simulation has stopped")
 
 
-def worked_out(task: Task, work: Callable[[], Any], thread: str) -> Task:
-    """`task`, which ends with what `work` returns or raises in a thread of its own: for what takes wall time."""
-    threading.Thread(target=task.finish_with, args=(work,), name=thread, daemon=True).start()
-    return task
+class WorkThreads:
+    """Does jobs in up to `most` threads, which end when nothing is left to do; further jobs wait for their turn."""
+
+    def __init__(self, name: str, most: int = 1) -> None:
+        self._name = name
+        self._most = most
+        self._lock = threading.Lock()
+        self._jobs: deque[Callable[[], Any]] = deque()
+        self._threads = 0
+
+    def do(self, job: Callable[[], Any]) -> None:
+        """Do a job, which raises nothing; returns at once."""
+        with self._lock:
+            self._jobs.append(job)
+            if self._threads >= self._most:
+                return
+            self._threads += 1
+        threading.Thread(target=self._work, name=self._name, daemon=True).start()
+
+    def work_out(self, name: str, work: Callable[[], Any]) -> Task:
+        """A task that ends with what `work` returns or raises."""
+        task = Task(name, 0)
+        self.do(lambda: task.finish_with(work))
+        return task
+
+    def _work(self) -> None:
+        while True:
+            with self._lock:
+                if not self._jobs:
+                    self._threads -= 1
+                    return
+                job = self._jobs.popleft()
+            job()
+            del job  # what it leads to is not kept until the next one

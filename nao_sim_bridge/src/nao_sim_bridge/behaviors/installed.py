@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from dataclasses import replace
 from functools import lru_cache
@@ -11,7 +12,7 @@ from nao_sim_bridge.base.config import config_file
 from nao_sim_bridge.base.errors import BadValue, ConfigError, NotAllowed, UnknownName
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.behaviors.reader import read_behaviors
-from nao_sim_bridge.behaviors.steps import Behavior, Gesture
+from nao_sim_bridge.behaviors.steps import Behavior, Gesture, Step, bytes_of
 from nao_sim_bridge.speech.animations import POSTURE, POSTURE_PATTERN, AnimationLibrary
 
 FOLDER = "behaviors"
@@ -28,6 +29,8 @@ class InstalledBehaviors:
         self._lock = threading.Lock()
         self._gestures = gestures
         self._user: dict[str, Behavior] = {}
+        # Bytes of what clients have: installed behaviours by name, and others by what they are kept under.
+        self._held: dict[str, int] = {}
         # Those of the system, and the revision of the gestures of which they are.
         self._system: tuple[dict[str, Behavior] | None, int] = (None, 0)
 
@@ -89,7 +92,7 @@ class InstalledBehaviors:
 
         Raises:
             BadValue: A name is that of a behaviour of the system, or, without `overwrite`, of any other.
-            NotAllowed: There would be too many.
+            NotAllowed: There would be too many, or they would take too much memory.
         """
         new, system = {behavior.name: behavior for behavior in behaviors}, self.system
         with self._lock:
@@ -100,9 +103,35 @@ class InstalledBehaviors:
             kept = {name: behavior for name, behavior in self._user.items() if name not in gone}
             if len({*kept, *new}) > most:
                 raise NotAllowed(f"{most} behaviors are installed at most: removeBehavior first")
+            self._hold({name: _bytes(behavior) for name, behavior in new.items()}, gone)
             replaced = [name for name in new if name in kept]
             self._user = {**kept, **new}
         return [name for name in new if name not in replaced], replaced
+
+    def hold(self, key: str, step: Step) -> None:
+        """Count a step that is kept under `key` beside the installed behaviours, which no behaviour is called.
+
+        Raises:
+            NotAllowed: All behaviours of clients would take too much memory.
+        """
+        with self._lock:
+            self._hold({key: bytes_of(step)})
+
+    def release(self, keys: Iterable[str]) -> None:
+        """Count these no more."""
+        with self._lock:
+            for key in keys:
+                self._held.pop(key, None)
+
+    def _hold(self, new: Mapping[str, int], gone: Collection[str] = ()) -> None:
+        held = {**{key: size for key, size in self._held.items() if key not in gone}, **new}
+        most = load_sizes().behaviors.bytes
+        if sum(held.values()) > most:
+            raise NotAllowed(
+                f"behaviors of clients would take {sum(held.values())} bytes, {most} at most: removeBehavior, "
+                "deleteBehavior or cleanBehaviors first"
+            )
+        self._held = held
 
     def remove(self, name: str) -> list[str]:
         """Take a behaviour of a user away, or all of a package; their names.
@@ -116,6 +145,7 @@ class InstalledBehaviors:
             gone = [full for full in self._user if full == path or full.startswith(path + "/")]
             for full in gone:
                 del self._user[full]
+                self._held.pop(full, None)
         if gone:
             return gone
         if path in self.system:
@@ -133,6 +163,11 @@ def shipped_behaviors() -> Mapping[str, Behavior]:
                 raise ConfigError(path.name, f"{name} is in another file, too")
             found[name] = behavior
     return found
+
+
+def _bytes(behavior: Behavior) -> int:
+    texts = (behavior.name, behavior.help, *behavior.tags)
+    return bytes_of(behavior.step) + sum(map(sys.getsizeof, texts))
 
 
 def _plain(name: str) -> str:

@@ -14,9 +14,11 @@ from xml.etree.ElementTree import Element
 from nao_sim_bridge.base.archives import Archive, BadArchive
 from nao_sim_bridge.base.config import TooLarge, read_bounded
 from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.xml_values import parse_xml
 from nao_sim_bridge.behaviors.reader import NATURES, checked_name, read_behaviors
 from nao_sim_bridge.behaviors.steps import NO_NATURE, Behavior
-from nao_sim_bridge.behaviors.xar import LARGEST_FILE, parse_xml, read_xar, xar_step
+from nao_sim_bridge.behaviors.xar import read_xar, xar_step
 
 MANIFEST, BEHAVIOR_FILE, ICON = "manifest.xml", "behavior.xar", "icon.png"
 LARGEST_ICON = 1_000_000
@@ -111,7 +113,7 @@ def _inside(folder: Path, name: str) -> bytes:
     if folder.resolve() not in path.parents:
         raise ConfigError(folder.name, f"{name!r} is not in the package")
     try:
-        return read_bounded(path, LARGEST_FILE)
+        return read_bounded(path, load_sizes().xml.file_bytes)
     except TooLarge as error:
         raise ConfigError(folder.name, f"{name!r} {error}") from error
     except OSError as error:

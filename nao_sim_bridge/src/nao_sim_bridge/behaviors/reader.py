@@ -43,7 +43,7 @@ from nao_sim_bridge.behaviors.steps import (
     takes_time,
 )
 from nao_sim_bridge.body.led_animations import COLOR_NAMES, color_of_int
-from nao_sim_bridge.control.joints.bezier import KeyPoint
+from nao_sim_bridge.control.joints.bezier import KeyPoint, PackedKeyPoints
 from nao_sim_bridge.model.leds_layout import load_leds
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures
@@ -224,7 +224,7 @@ def _way(joint: Any, frames: list, where: str) -> JointWay:
     if not times or any(b <= a for a, b in zip((0.0, *times), times)) or times[-1] > LONGEST_STEP:
         raise ConfigError(where, f"times {times} do not rise from above 0 to at most {LONGEST_STEP:g} s")
     checked = [_number(angle, where, limits.lower - 1e-6, limits.upper + 1e-6) for _, angle in frames]
-    return JointWay(tuple(KeyPoint(time, angle) for time, angle in zip(times, checked)))
+    return JointWay(PackedKeyPoints(KeyPoint(time, angle) for time, angle in zip(times, checked)))
 
 
 def _number(value: Any, where: str, low: float, high: float) -> float:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from typing import Mapping, Tuple, Union
 
 from nao_sim_bridge.base.errors import SimulationError
-from nao_sim_bridge.control.joints.bezier import KeyPoint
+from nao_sim_bridge.control.joints.bezier import PackedKeyPoints
 
 NO_NATURE = "no nature"
+STEP_BYTES = 200
+"""Of a step or a joint's way without what is in it, about."""
 
 
 class BehaviorFailed(SimulationError):
@@ -23,7 +26,7 @@ class JointWay:
     curved way; else it is smooth and at rest at both ends.
     """
 
-    points: Tuple[KeyPoint, ...]
+    points: PackedKeyPoints
     curved: bool = False
 
     @property
@@ -131,6 +134,17 @@ def words(step: Step) -> str:
     if isinstance(step, Say):
         return f"text {step.text[:40]!r}"
     return f"lights {step.group}" if isinstance(step, Lights) else type(step).__name__
+
+
+def bytes_of(step: Step) -> int:
+    """Memory that a step takes, about."""
+    if isinstance(step, (InTurn, Together)):
+        return STEP_BYTES + sum(map(bytes_of, step.steps))
+    if isinstance(step, Repeat):
+        return STEP_BYTES + bytes_of(step.step)
+    if isinstance(step, Joints):
+        return STEP_BYTES + sum(STEP_BYTES + way.points.nbytes for way in step.ways.values())
+    return STEP_BYTES + (sys.getsizeof(step.text) if isinstance(step, Say) else 0)
 
 
 def takes_time(step: Step) -> bool:

@@ -13,21 +13,20 @@ import logging
 import math
 from pathlib import Path
 from typing import Iterator
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from nao_sim_bridge.base.config import TooLarge, read_bounded
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.xml_values import parse_xml
 from nao_sim_bridge.behaviors.steps import GoToPosture, InTurn, Joints, JointWay, Say, Step, Together, Wait
-from nao_sim_bridge.control.joints.bezier import Handle, Interpolation, KeyPoint
+from nao_sim_bridge.control.joints.bezier import PLAIN, Handle, Interpolation, KeyPoint, PackedKeyPoints
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.model.postures import load_postures
 
-LARGEST_FILE = 20_000_000
-# Boxes in each other and branches behind each other, together. Boxes, elements and keys count each time they are read:
-# a box to which several ways lead is read on each of them.
-DEEPEST, MOST_BOXES, MOST_ELEMENTS, MOST_KEYS = 50, 2000, 2_000_000, 50_000
+# Boxes in each other and branches behind each other, together. Boxes, elements, keys and characters of texts count
+# each time they are read: a box to which several ways lead is read on each of them.
+DEEPEST, MOST_BOXES, MOST_ELEMENTS, MOST_KEYS, MOST_CHARACTERS = 50, 2000, 2_000_000, 50_000, 1_000_000
 # Frames a second; and the longest way to a key, handle or wait, s.
 DEFAULT_FPS, LOWEST_FPS, HIGHEST_FPS, LONGEST = 25.0, 1.0, 100.0, 3600.0
 # Largest value of a key or handle, deg or shares: above all limits of joints.
@@ -43,7 +42,6 @@ TEXT_PARAMETER = "Text"
 POSTURE_PARAMETER, SPEED_PARAMETER, WAIT_PARAMETERS = "Posture name", "Speed (%)", ("Timeout (s)", "Timeout")
 # Boxes that prepare the robot for others, which is not up to a behaviour here.
 LEFT_OUT = ("setLanguage", "setStiffnesses", "stiffnessInterpolation")
-DOCTYPE = b"<!DOCTYPE"
 log = logging.getLogger("nao_sim.behaviors")
 
 
@@ -54,7 +52,7 @@ def read_xar(path: Path) -> Step:
         ConfigError: It cannot be read, or has a box that cannot be played.
     """
     try:
-        content = read_bounded(path, LARGEST_FILE)
+        content = read_bounded(path, load_sizes().xml.file_bytes)
     except (OSError, TooLarge) as error:
         raise ConfigError(path.name, f"cannot be read: {error}") from error
     return xar_step(content, path.name)
@@ -70,24 +68,12 @@ def xar_step(content: bytes, where: str) -> Step:
     return _Xar(where).box(root.find("Box"), "", 0)
 
 
-def parse_xml(content: bytes, where: str) -> Element:
-    """The root of what is written in XML; a ConfigError for too much of it, or with a document type."""
-    # Entities can make a short file one that fills the memory; Choregraphe writes none. UTF-16, of which every other
-    # byte is 0, would hide them.
-    if len(content) > LARGEST_FILE or DOCTYPE in content or b"\0" in content:
-        raise ConfigError(where, f"is larger than {LARGEST_FILE} bytes, is not in UTF-8, or declares a document type")
-    try:
-        return ElementTree.fromstring(content)
-    except ElementTree.ParseError as error:
-        raise ConfigError(where, f"is no XML: {error}") from error
-
-
 class _Xar:
     """Reads one file and counts its boxes."""
 
     def __init__(self, file: str) -> None:
         self._file = file
-        self._boxes = self._elements = self._keys = 0
+        self._boxes = self._elements = self._keys = self._characters = 0
 
     def box(self, box: Element, text: str, depth: int) -> Step:
         """What a box does that gets `text` from the box before it and is in `depth` others."""
@@ -171,6 +157,9 @@ class _Xar:
         longest = load_sizes().speech.text_characters
         if len(text) > longest:
             raise ConfigError(self._file, f"has a text of {len(text)} characters, at most {longest} are allowed")
+        self._characters += len(text)
+        if self._characters > MOST_CHARACTERS:
+            raise ConfigError(self._file, f"has texts of more than {MOST_CHARACTERS} characters")
         return text
 
     # --- single boxes ---------------------------------------------------------------------------------------------
@@ -221,7 +210,7 @@ class _Xar:
                 if not limits.lower - 0.02 <= point.angle <= limits.upper + 0.02:
                     raise ConfigError(self._file, f"{joint} goes to {point.angle:.3f}, beyond what it can")
             curved = any(p.before.kind or p.after.kind for p in kept if p.after.kind is not Interpolation.LINEAR)
-            ways[joint] = JointWay(tuple(kept), curved)
+            ways[joint] = JointWay(PackedKeyPoints(kept), curved)
         return ways
 
     def _key(self, key: Element, fps: float, factor: float, joint: str) -> KeyPoint:
@@ -231,7 +220,7 @@ class _Xar:
         last = LONGEST * fps
         frame = self._within(key.get("frame"), math.nan, -last, last, f"the frame of a key of {joint}")
         value = self._within(key.get("value"), math.nan, -WIDEST, WIDEST, f"a key of {joint}")
-        handles = {"left": Handle(), "right": Handle()}
+        handles = {"left": PLAIN, "right": PLAIN}
         for tangent in key.findall("Tangent"):
             kind = KINDS.get(tangent.get("interpType", "linear").split("_")[0], Interpolation.LINEAR)
             what = f"the tangent of a key of {joint}"

@@ -12,6 +12,7 @@ from __future__ import annotations
 from typing import Iterable, List, Mapping, NamedTuple, Sequence, Tuple
 
 from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.sizes import require_few
 
 FREE = "000"
 Gesture = Tuple[str, ...]
@@ -99,10 +100,12 @@ class GestureBook:
         """Name of the gesture that a sequence is from now on; the one it has when it is known.
 
         Raises:
-            BadValue: No head can be touched like that.
+            BadValue: No head can be touched like that, or there would be too many gestures.
         """
         gesture = checked(sequence)
         name = "".join(("Gesture", *(f"_{pattern}" for pattern in gesture[1:])))
+        if gesture not in self._names:
+            require_few("sensor sequence", len(self._names) - len(GESTURES) + 1, "gestures")
         return self._names.setdefault(gesture, name)
 
 

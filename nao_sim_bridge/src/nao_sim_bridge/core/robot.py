@@ -12,6 +12,7 @@ from nao_sim_bridge.base.errors import BadValue, NotFinite, UnknownName, check_f
 from nao_sim_bridge.base.readings import Pose
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.settings import Settings
+from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.body.faults import Faults
 from nao_sim_bridge.body.hand import pointed_at
@@ -187,6 +188,8 @@ class SimulatedRobot:
         if link != "torso" and link not in self._physics.links:
             raise UnknownName("link", link, ["torso", *self._physics.links])
         check_finite(f"push of {link}", (*force, duration))
+        self._pushes = [push for push in self._pushes if push.until > self.time]
+        require_few("push", len(self._pushes) + 1, "pushes")
         self._pushes.append(_Push(link, force, self.time + duration))
 
     def press(self, sensors: Iterable[str]) -> None:

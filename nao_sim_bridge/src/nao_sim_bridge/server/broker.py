@@ -11,6 +11,7 @@ from typing import Any, Callable
 import qi
 
 from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.tasks import WorkThreads
 from nao_sim_bridge.naoqi.binding.client_calls import NoAnswer, answer, worth_telling
 from nao_sim_bridge.server.own_sockets import StuckClients, free_port_on_exit, has_clients, is_listened_on
 
@@ -26,6 +27,8 @@ HELD = "a connection of this computer, open or just closed, has that port"
 CALLER_IDLE = 20.0
 # Calls that wait for a client's module; with more it loses the oldest.
 WAITING = load_sizes().clients.calls
+# Modules that are called at the same time; calls of further ones are lost.
+MODULES = load_sizes().clients.called_modules
 # How long a module may take to be found, s: one of a program that has stopped is never connected to.
 FOUND = load_sizes().clients.found_s
 # libqi reports each service it registers, and warns that it deduces paths it has no use for here.
@@ -43,6 +46,8 @@ class Broker:
         self._services: dict[str, tuple[int, Any]] = {}
         self._callers: dict[str, _Caller] = {}
         self._gone: Callable[[str], None] = lambda module: None
+        self._telling = WorkThreads("modules that have left")
+        self._lost = 0
         self._watch: StuckClients | None = None
         self._closed = False
         self._lock = threading.Lock()
@@ -128,6 +133,14 @@ class Broker:
             if self._closed:
                 return
             caller = self._callers.get(module)
+            if caller is None and len(self._callers) >= MODULES:
+                self._lost += 1
+                if worth_telling(self._lost):
+                    log.warning(
+                        "call of %s.%s is lost: %d modules are called already (%d calls so far)",
+                        *(module, method, MODULES, self._lost),
+                    )
+                return
             if caller is None:
                 caller = self._callers[module] = _Caller(module, self.service, self._end_if_idle, self._give_up)
             caller.add(method, arguments)
@@ -156,7 +169,7 @@ class Broker:
         if caller is not None:
             caller.end()
         if not ours:  # in a thread of its own: libqi's must not wait for an answer of libqi
-            threading.Thread(target=self._tell_of, args=(module,), name=f"{module} has left", daemon=True).start()
+            self._telling.do(lambda: self._tell_of(module))
 
     def _tell_of(self, module: str) -> None:
         try:
@@ -198,6 +211,7 @@ class _Caller:
         self._news = threading.Condition()
         self._calls: deque[tuple[str, list]] = deque()
         self._ended = False
+        self._found = True  # the module, when it was looked for last
         self._lost = self._failed = 0
         threading.Thread(target=self._run, name=f"calls of {module}", daemon=True).start()
 
@@ -231,7 +245,7 @@ class _Caller:
     def _run(self) -> None:
         while True:
             with self._news:
-                self._news.wait_for(lambda: self._calls or self._ended, CALLER_IDLE)
+                self._news.wait_for(lambda: self._calls or self._ended, CALLER_IDLE if self._found else 0.0)
                 if self._ended:
                     return
                 call = self._calls.popleft() if self._calls else None
@@ -244,7 +258,9 @@ class _Caller:
     def _make(self, method: str, arguments: list) -> bool:
         """Make a call and wait for its end; whether to go on."""
         try:
+            self._found = False
             service = self._service(self.module)
+            self._found = True
         except RuntimeError as error:
             self._tell(method, f"lost: {error}")
             return True

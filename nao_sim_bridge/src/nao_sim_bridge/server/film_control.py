@@ -8,7 +8,7 @@ import threading
 from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.record_dir import ClientFiles, unused
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.base.tasks import Task, worked_out
+from nao_sim_bridge.base.tasks import Task, WorkThreads
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import known
 from nao_sim_bridge.render.client import RenderError
@@ -32,6 +32,7 @@ class FilmControl:
         self._engine = engine
         self._lock = threading.Lock()
         self._film: Film | None = None
+        self._working = WorkThreads("films", 2)  # another one may begin while the last frames of one are drawn
 
     def start(self, file: str, view: str, width: int, height: int, frame_rate: float) -> Task:
         """Begin a film; the task ends with its path, as text, when the camera runs.
@@ -67,7 +68,7 @@ class FilmControl:
                 self._film = film
             return str(path)
 
-        return worked_out(Task("startFilm", 0), start, "startFilm")
+        return self._working.work_out("startFilm", start)
 
     def caption(self, text: str) -> None:
         """Write a text into the film from now on; empty for none.
@@ -89,7 +90,7 @@ class FilmControl:
                 self._film = None
             return film.end()
 
-        return worked_out(Task("stopFilm", 0), stop, "stopFilm")
+        return self._working.work_out("stopFilm", stop)
 
     def close(self, limit: float = END_LIMIT) -> None:
         """End the film that is taken, before the simulation ends; what is not drawn in `limit` s is left out."""

@@ -13,7 +13,7 @@ from typing import Any, Callable, Sequence
 from nao_sim_bridge.base.closing import Step, close_all
 from nao_sim_bridge.base.errors import BadValue, NotAllowed
 from nao_sim_bridge.base.record_dir import unused
-from nao_sim_bridge.base.tasks import Task, worked_out
+from nao_sim_bridge.base.tasks import Task, WorkThreads
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.core.runner import SimulationRunner
@@ -85,6 +85,7 @@ class SimulatorServer:
         self._services: dict[str, Service] = {}
         self._outlets: list[SoundFile | SoundCard] = []
         self._resetting = threading.Lock()
+        self._resets = WorkThreads("factory reset")
 
     # --- the robot as it is now --------------------------------------------------------------------------------------
 
@@ -213,7 +214,7 @@ class SimulatorServer:
 
     def factory_reset_task(self, world: str = "") -> Task:
         """As `factory_reset`, without waiting."""
-        return worked_out(Task("factoryReset", 0), lambda: self.factory_reset(world), "factory reset")
+        return self._resets.work_out("factoryReset", lambda: self.factory_reset(world))
 
     def modules_for(self, simulation: Simulation) -> RobotModules:
         """Modules for a robot at its start, which do nothing yet."""

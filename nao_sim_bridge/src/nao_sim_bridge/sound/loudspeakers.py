@@ -8,6 +8,7 @@ import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.samples import RATE, Sound, frame_at, pcm16
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import TaskIds
 from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.sound.envelope import Envelope
@@ -22,6 +23,7 @@ SIDES = "-1 (left) to 1 (right)"
 
 class SpeakerPlaying(Playing):
     def __init__(self, volume: float, pan: float, *args, **options) -> None:
+        self.follows = False  # whether it was to begin when another one ends
         self.volume, self.pan = _within("volume", volume, 0.0, "0 to 1"), _within("pan", pan, -1.0, SIDES)
         super().__init__(*args, gains=self._sides(), **options)
 
@@ -107,12 +109,18 @@ class Loudspeakers:
                 one should have RATE already: else it is converted here.
             after: Begin at the very frame at which this one will end as things are, so that they follow without a gap;
                 now when that is over, paused or a loop.
+
+        Raises:
+            BadValue: Too much plays already.
         """
+        if after is None:  # else it plays when others have ended
+            self._require_room(sound)
         begin = after.end_frame if after is not None else None
         if sound.channels > 2:
             sound = Sound(sound.samples[:, :2], sound.rate)
         options = {"start": start, "loop": loop, "marks": marks, "begin": begin}
         player = SpeakerPlaying(volume, pan, self._timeline, self._ids, name, sound, **options)
+        player.follows = after is not None
         self._players = (*self._players, player)
         return player
 
@@ -154,6 +162,14 @@ class Loudspeakers:
         """(last - first, 2) int16 from frame `first` to `last`, silence included."""
         mixed = self.mixed(first, last)
         return np.zeros((last - first, 2), np.int16) if mixed is None else pcm16(mixed)
+
+    def _require_room(self, sound: Sound) -> None:
+        sizes, playing = load_sizes().loaded_sounds, self.playing
+        if len(playing) >= sizes.at_once and sum(not player.follows for player in playing) >= sizes.at_once:
+            raise BadValue("number of sounds that play", len(playing) + 1, f"{sizes.at_once} at most")
+        taken = sum({id(each): each.samples.nbytes for each in (sound, *(p.sound for p in playing))}.values())
+        if taken > sizes.bytes:
+            raise BadValue("bytes of sounds that play", taken, f"{sizes.bytes} at most")
 
     def _set_master(self) -> None:
         on = not (self._muted or self._closed)

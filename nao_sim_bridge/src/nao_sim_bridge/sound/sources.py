@@ -162,7 +162,10 @@ class Sources:
             raise BadValue("name", source.name, f"a name that is not among {', '.join(self.names()) or 'none'}")
         if not -60.0 <= source.level_db <= 140.0:
             raise BadValue("level_db", source.level_db, "-60 to 140 dB SPL at 1 m")
-        kept, largest = sum(playing.sound.samples.nbytes for playing in self._all), load_sizes().world_sounds.bytes
+        sizes = load_sizes().world_sounds
+        if len(self.names()) >= sizes.sounds:
+            raise BadValue("number of sounds", len(self.names()) + 1, f"{sizes.sounds} at most: removeSound makes room")
+        kept, largest = sum(playing.sound.samples.nbytes for playing in self._all), sizes.bytes
         if kept + source.sound.samples.nbytes > largest:
             there = f"{len(self._all)} sources have {kept} already: removeSound makes room"
             raise BadValue("sound", f"{source.sound.samples.nbytes} bytes", f"{largest} bytes for all sources; {there}")

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Iterable, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.config import array, check_keys, config_file, read_json
-from nao_sim_bridge.base.errors import ConfigError
+from nao_sim_bridge.base.errors import ConfigError, NotAllowed
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.control.balance.posture_recognition import CROUCHING, ON_CHAIR, SITTING, STANDING
 from nao_sim_bridge.model.model_reader import load_model
 from nao_sim_bridge.speech.gesture import Animation, KeyFrames, is_of_legs
@@ -70,6 +71,7 @@ class AnimationLibrary:
 
     def __init__(self) -> None:
         self.revision = 0
+        self._tags_added = self._words_added = 0
         self._added: Mapping[str, Animation] = {}
         self._changing = threading.Lock()
 
@@ -130,17 +132,29 @@ class AnimationLibrary:
         return self.tagged(tag, posture) or self.tagged(self.body_language, posture)
 
     def add(self, animations: Iterable[Animation]) -> None:
-        """Know further ones, or others of the same names."""
+        """Know further ones, or others of the same names.
+
+        Raises:
+            NotAllowed: Clients would have too many.
+        """
         added = {animation.name: animation for animation in animations}
         with self._changing:
+            _require_few(len({*self._added, *added}), load_sizes().speech.animations, "animations")
             self._added = {**self._added, **added}
             self._change({name: animation.tags for name, animation in added.items()})
 
     def add_tag(self, tag: str, names: Iterable[str]) -> None:
-        """Give animations one more tag; a KeyError where there is none of that name."""
+        """Give animations one more tag; a KeyError where there is none of that name.
+
+        Raises:
+            NotAllowed: Clients would have too many tags.
+        """
         with self._changing:
-            known = self._index.tags
-            self._change({name: (*known[name], tag) for name in names})
+            known, tagged, names = self._index.tags, set(self._with(tag)), list(dict.fromkeys(names))
+            new = {name: (*known[name], tag) for name in names if name not in tagged}
+            _require_few(self._tags_added + len(new), load_sizes().speech.tags, "tags of animations")
+            self._tags_added += len(new)
+            self._change(new)
 
     def _change(self, tags: Mapping[str, Sequence[str]]) -> None:
         """Readers have what was before, or all of what is now."""
@@ -151,15 +165,24 @@ class AnimationLibrary:
         return self._index.names.get(tag.strip().lower(), ())
 
     def add_words(self, tag: str, words: Sequence[str]) -> None:
-        """Let words call for a tag."""
-        for word in words:
-            tags = self._words.setdefault(word.strip().lower(), [])
-            if tag not in tags:
-                tags.append(tag)
+        """Let words call for a tag.
+
+        Raises:
+            NotAllowed: Clients would have too many words.
+        """
+        with self._changing:
+            known = self._words
+            new = [w for w in dict.fromkeys(word.strip().lower() for word in words) if tag not in known.get(w, ())]
+            _require_few(self._words_added + len(new), load_sizes().speech.words, "words with tags")
+            self._words_added += len(new)
+            for word in new:
+                known.setdefault(word, []).append(tag)
 
     def forget_words(self) -> None:
         """Have words call for what they call for on a new robot."""
-        self.__dict__.pop("_words", None)
+        with self._changing:
+            self.__dict__.pop("_words", None)
+            self._words_added = 0
 
     @cached_property
     def _index(self) -> _Index:
@@ -177,6 +200,11 @@ class AnimationLibrary:
             for word in linked:
                 words.setdefault(word, []).append(tag)
         return words
+
+
+def _require_few(count: int, most: int, what: str) -> None:
+    if count > most:
+        raise NotAllowed(f"clients would have {count} {what}: {most} at most")
 
 
 def load_animations() -> AnimationLibrary:

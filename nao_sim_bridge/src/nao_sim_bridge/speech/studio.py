@@ -13,7 +13,7 @@ import numpy as np
 from nao_sim_bridge.base.errors import BadValue, SimulationError
 from nao_sim_bridge.base.samples import RATE, Sound
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.base.tasks import Task, worked_out
+from nao_sim_bridge.base.tasks import Task, WorkThreads
 from nao_sim_bridge.speech.clips import Clip, ClipMaker, Style
 from nao_sim_bridge.speech.engines import Engines, SpeechError, silence
 from nao_sim_bridge.speech.sentences import Item, Sentence, sentences
@@ -52,6 +52,7 @@ class Studio:
         self._orders: queue.SimpleQueue = queue.SimpleQueue()
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
+        self._working = WorkThreads("speech in files", load_sizes().clients.threads)
 
     def warm_up(self) -> None:
         """Have everything ready for the first text, without waiting for it; a missing engine is told when asked for."""
@@ -108,8 +109,8 @@ class Studio:
         return Sound(np.clip(np.concatenate(samples)[:, None] * np.float32(style.volume), -1.0, 1.0), RATE)
 
     def in_background(self, work: Callable[[], Any], name: str) -> Task:
-        """Do something that may take a while in a thread of its own; the task ends with what it returns or raises."""
-        return worked_out(Task(name, 0), work, f"speech: {name}")
+        """Do something that may take a while in another thread; the task ends with what it returns or raises."""
+        return self._working.work_out(name, work)
 
     def close(self) -> None:
         """End the threads and the engines."""

@@ -23,6 +23,8 @@ TAG = re.compile(
     r"""|\\(?P<open>[A-Za-z]+)=(?P<rest>[^\\\s]+)(?=\s|$)"""
 )
 PLAIN = Prosody()
+MOST_TOLD = 100
+"""Tags that are left out and of which that is said."""
 LONGEST_PAUSE = 65.535
 LAST_BOOKMARK = 65535
 # Unit of \wait=N\ , s.
@@ -83,8 +85,8 @@ class TagReader:
         return list(_Reading(self, prosody).pieces(text))
 
     def leave_out(self, tag: str, why: str) -> None:
-        """Say, once for each tag, that it does nothing."""
-        if tag not in self._left_out:
+        """Say, once for each of the first tags, that it does nothing."""
+        if tag not in self._left_out and len(self._left_out) < MOST_TOLD:
             self._left_out.add(tag)
             self._warn(f"tag \\{tag}\\ is left out of what is said: {why}")
 

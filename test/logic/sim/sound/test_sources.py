@@ -10,7 +10,7 @@ import pytest
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.samples import RATE, Sound, sine
-from nao_sim_bridge.base.sizes import LoadedSizes, load_sizes
+from nao_sim_bridge.base.sizes import WorldSoundSizes, load_sizes
 from nao_sim_bridge.sound import sources
 from nao_sim_bridge.sound.sources import SoundSource
 
@@ -104,7 +104,7 @@ def test_a_source_that_comes_nearer_sounds_higher(sounding):
 
 
 def test_sources_have_a_budget_together(sounding, monkeypatch):
-    two_seconds = LoadedSizes(2 * RATE * 4)
+    two_seconds = WorldSoundSizes(2 * RATE * 4, sounds=64)
     monkeypatch.setattr(sources, "load_sizes", lambda: replace(load_sizes(), world_sounds=two_seconds))
     room = sounding(sine(1000.0, 1.5))
     with pytest.raises(BadValue, match="sound is '192000 bytes', allowed is 384000 bytes for all sources"):

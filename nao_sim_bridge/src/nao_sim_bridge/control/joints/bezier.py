@@ -7,11 +7,12 @@ at a time is found by solving for the parameter. Arithmetic only.
 
 from __future__ import annotations
 
+from array import array
 from bisect import bisect_right
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
-from typing import Sequence
+from typing import Any, Iterable, Sequence, Tuple, overload
 
 import numpy as np
 
@@ -47,14 +48,56 @@ class Handle:
     angle: float = 0.0
 
 
+PLAIN = Handle()
+
+
 @dataclass(frozen=True)
 class KeyPoint:
     """A point that the joint passes at a time, s, and an angle, rad; handles of the curves that come in and go on."""
 
     time: float
     angle: float
-    before: Handle = Handle()
-    after: Handle = Handle()
+    before: Handle = PLAIN
+    after: Handle = PLAIN
+
+
+_FIELDS = 8
+
+
+class PackedKeyPoints(Sequence[KeyPoint]):
+    """Key points that are kept for later, of which there may be many: they take 64 bytes each, a ninth of others."""
+
+    def __init__(self, points: Iterable[KeyPoint]) -> None:
+        sides = lambda p: (number for h in (p.before, p.after) for number in (h.kind, h.time, h.angle))  # noqa: E731
+        self._numbers = array("d", [number for p in points for number in (p.time, p.angle, *sides(p))])
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that they take."""
+        return self._numbers.itemsize * len(self._numbers)
+
+    def __len__(self) -> int:
+        return len(self._numbers) // _FIELDS
+
+    @overload
+    def __getitem__(self, place: int) -> KeyPoint: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> Tuple[KeyPoint, ...]: ...
+
+    def __getitem__(self, place: Any) -> Any:
+        if isinstance(place, slice):
+            return tuple(self[i] for i in range(*place.indices(len(self))))
+        begin = _FIELDS * range(len(self))[place]
+        time, angle, *handles = self._numbers[begin : begin + _FIELDS]
+        before, after = (Handle(Interpolation(int(kind)), *offset) for kind, *offset in (handles[:3], handles[3:]))
+        return KeyPoint(time, angle, before, after)
+
+    def __eq__(self, other: Any) -> bool:
+        return tuple(self) == tuple(other) if isinstance(other, Sequence) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._numbers.tobytes())
 
 
 @dataclass(frozen=True)

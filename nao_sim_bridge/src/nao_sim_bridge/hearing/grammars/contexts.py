@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, FrozenSet, Iterable, List, Mapping, Sequence, Tuple
 
 from nao_sim_bridge.base.errors import BadValue, SimulationError, UnknownName
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.hearing.grammars import grammar as g
 from nao_sim_bridge.hearing.grammars.bnf import BnfGrammar, Group, Part, RuleUse
 
@@ -19,9 +20,10 @@ class ContextError(SimulationError):
 
 @dataclass(frozen=True)
 class Context:
-    """A grammar in use. Never changed: every change makes another one."""
+    """A grammar in use, of so many characters. Never changed: every change makes another one."""
 
     bnf: BnfGrammar
+    characters: int = 0
     inactive: FrozenSet[str] = frozenset()
     slots: Mapping[str, Tuple[str, ...]] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=lambda: {THRESHOLD: 0.0})
@@ -56,9 +58,15 @@ class Context:
         """With a slot filled with words, beside those that it has; with none, it is empty."""
         if slot not in self.bnf.slots:
             raise UnknownName("slot", slot, self.bnf.slots)
+        sizes = load_sizes().vocabulary
         for word in words:
+            if len(word) > sizes.phrase_characters:
+                raise BadValue("wordList", f"{word[:40]}...", f"{sizes.phrase_characters} characters at most of a word")
             g.words(word)  # refuses what has no word in it
         filled = tuple(dict.fromkeys([*self.slots.get(slot, ()), *words])) if words else ()
+        count = len(filled) + sum(len(other) for name, other in self.slots.items() if name != slot)
+        if count > sizes.phrases:
+            raise BadValue("wordList", f"{count} words of a context", f"{sizes.phrases} at most")
         return replace(self, slots={**self.slots, slot: filled})
 
     def with_parameter(self, name: str, value: float) -> Context:
@@ -136,17 +144,29 @@ class Contexts:
         context = self._contexts.get(name)
         return context.parameter(THRESHOLD) if context is not None else 0.0
 
-    def add(self, name: str, bnf: BnfGrammar) -> None:
-        """A new context with all rules active.
+    def add(self, name: str, bnf: BnfGrammar, characters: int = 0) -> None:
+        """A new context with all rules active; its grammar has so many characters.
 
         Raises:
-            ContextError: The name is taken.
+            ContextError: The name is taken, or there are too many contexts or characters of grammars.
         """
         if not name:
             raise BadValue("contextName", name, "a name, not empty")
         if name in self._contexts:
             raise ContextError(f"a context named {name!r} already exists; remove it first")
-        self._contexts[name] = Context(bnf)
+        sizes = load_sizes().vocabulary
+        if len(self._contexts) >= sizes.contexts:
+            raise ContextError(
+                f"there are {len(self._contexts)} contexts, {sizes.contexts} at most: removeContext first"
+            )
+        kept = [self._contexts, *self._stack, *self._saved.values()]
+        grammars = {id(context.bnf): context.characters for contexts in kept for context in contexts.values()}
+        whole = sum(grammars.values()) + characters
+        if whole > sizes.grammar_characters:
+            raise ContextError(
+                f"grammars in use, put aside, saved would have {whole} characters, {sizes.grammar_characters} at most"
+            )
+        self._contexts[name] = Context(bnf, characters)
 
     def put(self, name: str, context: Context) -> None:
         """Put a changed context in the place of the one of this name."""
@@ -177,9 +197,12 @@ class Contexts:
         self._contexts = self._stack.pop()
 
     def save(self, name: str) -> None:
-        """Keep the contexts as they are under a name."""
+        """Keep the contexts as they are under a name; a ContextError when too many are kept."""
         if not name:
             raise BadValue("saveName", name, "a name, not empty")
+        most = load_sizes().vocabulary.put_aside
+        if len({*self._saved, name}) > most:
+            raise ContextError(f"{most} sets of contexts are saved at most: eraseContextSet first")
         self._saved[name] = dict(self._contexts)
 
     def load(self, name: str) -> None:

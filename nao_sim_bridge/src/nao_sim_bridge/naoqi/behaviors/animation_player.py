@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import random
+import threading
 from typing import Mapping, Sequence
 
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.steps import Behavior
 from nao_sim_bridge.control.balance.posture_recognition import recognise
@@ -23,7 +25,8 @@ class ALAnimationPlayer:
         self._running = running
         self._runner = runner
         self._chance = random.Random(runner.simulation.scene.seed)
-        self._tags: dict[str, list[str]] = {}
+        self._tags: dict[str, dict[str, None]] = {}
+        self._lock = threading.Lock()
         self._paths: list[str] = [ANIMATIONS]
 
     def run(self, path: str) -> Task:
@@ -50,17 +53,24 @@ class ALAnimationPlayer:
 
     def addTagForAnimations(self, tags: Mapping[str, Sequence[str]]) -> None:
         resolved = {tag: [self._running.installed.resolve(name).name for name in names] for tag, names in tags.items()}
-        for tag, names in resolved.items():
-            self._tags.setdefault(tag.lower(), []).extend(names)
+        with self._lock:
+            tagged = {tag: dict(names) for tag, names in self._tags.items()}
+            for tag, names in resolved.items():
+                tagged.setdefault(tag.lower(), {}).update(dict.fromkeys(names))
+            _require_few(sum(map(len, tagged.values())), load_sizes().speech.tags, "tags of animations")
+            self._tags = tagged
 
     def declarePathForTags(self, path: str) -> None:
         """Animations of the path are found by their tags, too; [posture] in it stands for the one that is asked for."""
-        if path not in self._paths:
-            self._paths.append(path)
+        with self._lock:
+            if path not in self._paths:
+                _require_few(len(self._paths) + 1, load_sizes().speech.paths, "paths")
+                self._paths.append(path)
 
     def reset(self) -> None:
-        self._tags.clear()
-        self._paths = [ANIMATIONS]
+        with self._lock:
+            self._tags = {}
+            self._paths = [ANIMATIONS]
 
     def _tagged_for(self, posture: str, tag: str) -> list[Behavior]:
         """Those below the declared paths that are made for a posture."""
@@ -80,3 +90,8 @@ class ALAnimationPlayer:
 
     def _play(self, behavior: Behavior, call: str) -> Task:
         return self._runner.execute(lambda: self._running.start(behavior), call)
+
+
+def _require_few(count: int, most: int, what: str) -> None:
+    if count > most:
+        raise NaoqiError(f"there would be {count} {what}, {most} at most: reset forgets them")

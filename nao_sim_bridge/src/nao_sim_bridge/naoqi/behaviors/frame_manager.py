@@ -33,7 +33,7 @@ class _Made:
 class ALFrameManager:
     """ALFrameManager as the simulated robot offers it, without what NAOqi has had no use for since 1.14.
 
-    The behaviours that it makes are run under their ids.
+    The behaviours that it makes are run under their ids. Their memory counts with that of the installed ones.
     """
 
     def __init__(self, running: RunningBehaviors, runner: RobotRunner, files: ClientFiles) -> None:
@@ -70,12 +70,14 @@ class ALFrameManager:
         made = self._of(number)
         with self._lock:
             self._made.pop(number, None)
+            self._running.installed.release([f"/{number}"])
         return self._stop([made.behavior.name], "deleteBehavior")
 
     def cleanBehaviors(self) -> Task:
         with self._lock:
             names = list(self._made)
             self._made.clear()
+            self._running.installed.release([f"/{name}" for name in names])
         return self._stop(names, "cleanBehaviors")
 
     # --- playing --------------------------------------------------------------------------------------------------
@@ -116,6 +118,7 @@ class ALFrameManager:
             if len(self._made) >= most:
                 raise NotAllowed(f"there are {most} behaviors already: deleteBehavior or cleanBehaviors first")
             number = f"FrameManager/{next(self._ids)}"
+            self._running.installed.hold(f"/{number}", step)
             self._made[number] = _Made(Behavior(number, step, path), path)
         return number
 

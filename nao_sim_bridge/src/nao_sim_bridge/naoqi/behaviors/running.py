@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from typing import Callable, Iterable
 
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.installed import InstalledBehaviors
 from nao_sim_bridge.behaviors.player import BehaviorPlayer
@@ -39,10 +40,13 @@ class RunningBehaviors:
     def start(self, behavior: Behavior) -> Task:
         """Begin with a behaviour; its task ends with it.
 
-        A NaoqiError when it runs already, a BehaviorFailed when its first step cannot be done.
+        A NaoqiError when it runs already or too many do, a BehaviorFailed when its first step cannot be done.
         """
         if behavior.name in self._tasks:
             raise NaoqiError(f"{behavior.name} runs already")
+        most = load_sizes().behaviors.running
+        if len(self._tasks) >= most:
+            raise NaoqiError(f"{most} behaviors run at most at the same time: stopBehavior or stopAllBehaviors first")
         task = self._player.start(behavior)
         if task.finished and task.error is not None:
             raise task.error

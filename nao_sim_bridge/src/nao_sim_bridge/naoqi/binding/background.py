@@ -5,11 +5,10 @@ from __future__ import annotations
 import logging
 import math
 import threading
-from collections import deque
 from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.base.tasks import Task, WorkThreads
 
 Wanted = Callable[[], bool]
 Work = Callable[[Wanted], Any]
@@ -18,15 +17,14 @@ Work = Callable[[Wanted], Any]
 class Background:
     """Jobs in threads of their own; `released` is called when `holds` has become False.
 
-    `most`: how many may be asked for `in_turn` that have not ended.
+    `most`: how many may be asked for that have not ended; `threads`: how many of them are done at the same time.
     """
 
-    def __init__(self, released: Callable[[], None] = lambda: None, most: float = math.inf) -> None:
+    def __init__(self, released: Callable[[], None] = lambda: None, most: float = math.inf, threads: int = 1) -> None:
         self._released = released
         self._most = most
         self._lock = threading.Lock()
-        self._jobs: deque[Callable[[], None]] = deque()
-        self._working = False
+        self._threads = WorkThreads("background", threads)
         self.unfinished = 0  # jobs in turn that have not ended
         self._stops = 0
         self._closed = False
@@ -44,7 +42,7 @@ class Background:
         self._closed = True
 
     def in_turn(self, work: Work, name: str) -> Task:
-        """Do something after what was asked for before; time that runs fast waits for it.
+        """Do something after what was asked for before, or beside it if there are `threads`; time that runs fast waits.
 
         `work` is called with a function that answers whether anybody still wants the result; when it returns a task,
         time waits for that as well. The task that this returns ends with what `work` returns or raises, or when nobody
@@ -52,21 +50,10 @@ class Background:
         """
         with self._lock:
             if self.unfinished >= self._most:
-                raise BadValue(f"calls of {name} that wait", self.unfinished + 1, f"at most {self._most}")
+                raise BadValue(f"calls of {name} that have not ended", self.unfinished + 1, f"at most {self._most}")
             self.unfinished += 1
         task, job = self._job(work, name, self._finished)
-        with self._lock:
-            self._jobs.append(job)
-            if self._working:
-                return task
-            self._working = True
-        threading.Thread(target=self._work, name=name, daemon=True).start()
-        return task
-
-    def beside(self, work: Work, name: str) -> Task:
-        """As `in_turn`, beside everything else, and time does not wait: for what may take very long."""
-        task, job = self._job(work, name, lambda: None)
-        threading.Thread(target=job, name=name, daemon=True).start()
+        self._threads.do(job)
         return task
 
     def _job(self, work: Work, name: str, finished: Callable[[], None]) -> tuple[Task, Callable[[], None]]:
@@ -97,15 +84,6 @@ class Background:
                 finished()
 
         return task, job
-
-    def _work(self) -> None:
-        while True:
-            with self._lock:
-                if not self._jobs:
-                    self._working = False
-                    return
-                job = self._jobs.popleft()
-            job()
 
     def _finished(self) -> None:
         with self._lock:

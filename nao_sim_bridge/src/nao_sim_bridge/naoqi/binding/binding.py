@@ -22,6 +22,7 @@ from nao_sim_bridge.naoqi.binding.common import CommonModule
 from nao_sim_bridge.naoqi.binding.later import Later, made
 from nao_sim_bridge.naoqi.binding.limits import check_sizes
 from nao_sim_bridge.naoqi.binding.older import older_methods, warning_once
+from nao_sim_bridge.naoqi.binding.unfinished import Unfinished
 from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to
 
 log = logging.getLogger("nao_sim.services")
@@ -115,11 +116,12 @@ class _Targets:
         self.methods = methods
         self._make = make
         self._making = threading.Lock()
-        self._waiting: set[Task] = set()
+        self._unfinished = Unfinished()
         self._ended = False
 
     def answer(self, module: str, method: str, args: Iterable[Any]) -> Any:
-        result = answer(module, method, self.methods.get(method) or partial(self._first, method), args, self._note)
+        call = self.methods.get(method) or partial(self._first, method)
+        result = answer(module, method, call, args, self._unfinished)
         if self._ended:  # by the time it was noted
             self.end()
         return result
@@ -127,19 +129,12 @@ class _Targets:
     def end(self) -> None:
         """End what waits, as if it had been killed."""
         self._ended = True
-        while self._waiting:
-            task = self._waiting.pop()
-            task.killed = task.killed or not task.finished
-            task.finish()
+        self._unfinished.kill_all()
 
     def _first(self, method: str, *args: Any) -> Any:
         with self._making:
             self.methods = self.methods or self._make()
         return self.methods[method](*args)
-
-    def _note(self, task: Task) -> None:
-        self._waiting.add(task)
-        task.add_done_callback(self._waiting.discard)
 
 
 def typed(
@@ -159,7 +154,7 @@ def typed(
 
         @wraps(method)
         def published(*args: Any) -> Any:
-            return answer(module, called, checked, args)
+            return answer(module, called, checked, args, vars(args[0]).setdefault("_unfinished", Unfinished()))
 
         return qi.bind(returns, types, name)(published)
 
@@ -230,25 +225,31 @@ def answer(
     method: str,
     call: Callable[..., Any],
     args: Iterable[Any],
-    note: Callable[[Task], None] = lambda task: None,
+    unfinished: Unfinished | None = None,
 ) -> Any:
     """What libqi sends back for a call: a value, or a future for what takes simulated time.
 
-    Errors go back as failed futures: raised through libqi they would carry a Python traceback in their text. `note` is
-    called with each task that the client waits for.
+    Errors go back as failed futures: raised through libqi they would carry a Python traceback in their text. The
+    `unfinished` calls of the module, which may be too many, have each task that the client waits for.
     """
     args, label = tuple(args), f"{module}::{method}"
     try:
         check_sizes(args)
+        if unfinished is not None:
+            unfinished.require_room(method)
         result = call(*args)
     except Exception as error:
         promise = qi.Promise()
         promise.setError(_text(label, error))
         return promise.future()
-    return _as_future(result, label, note) if isinstance(result, Task) else result
+    if not isinstance(result, Task):
+        return result
+    if unfinished is not None:
+        unfinished.note(result)
+    return _as_future(result, label)
 
 
-def _as_future(task: Task, label: str, note: Callable[[Task], None]) -> Any:
+def _as_future(task: Task, label: str) -> Any:
     """A libqi future that ends with the task, or with the one that is its value; cancelling it kills the task."""
     cancelled = threading.Event()
 
@@ -257,19 +258,17 @@ def _as_future(task: Task, label: str, note: Callable[[Task], None]) -> Any:
         task.request_kill()
 
     promise = qi.Promise(cancel)
-    note(task)
-    task.add_done_callback(partial(_settle, promise, cancelled, label, note))
+    task.add_done_callback(partial(_settle, promise, cancelled, label))
     return promise.future()
 
 
-def _settle(promise: Any, cancelled: threading.Event, label: str, note: Callable[[Task], None], done: Task) -> None:
+def _settle(promise: Any, cancelled: threading.Event, label: str, done: Task) -> None:
     # Not a closure that names itself: such a cycle would keep the promise until the next garbage collection, and a
     # promise with a value that is still there when the interpreter ends makes libqi abort the process.
     if done.error is not None:
         promise.setError(_text(label, done.error))
     elif isinstance(done.value, Task):
-        note(done.value)
-        done.value.add_done_callback(partial(_settle, promise, cancelled, label, note))
+        done.value.add_done_callback(partial(_settle, promise, cancelled, label))
     elif done.killed and cancelled.is_set():
         promise.setCanceled()
     else:

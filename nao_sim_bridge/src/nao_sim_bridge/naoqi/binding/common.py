@@ -13,6 +13,7 @@ from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.api import Method
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.binding.unfinished import Unfinished
 
 VERSION = "2.8.5"
 # Finished posted calls that `wait` and `isRunning` still know.
@@ -29,6 +30,7 @@ class CommonModule:
         self._broker = broker
         self._ids = itertools.count(1)
         self._posted: OrderedDict[int, Task | None] = OrderedDict()
+        self._unfinished = Unfinished()
         self._lock = threading.Lock()
 
     def ping(self) -> bool:
@@ -66,7 +68,10 @@ class CommonModule:
             raise BadValue("method", call[0] if call else None, "the name of a method, and its arguments after it")
         name, *args = call
         self._method(name)
+        self._unfinished.require_room(name)
         result = self.targets[name](*args)
+        if isinstance(result, Task):
+            self._unfinished.note(result)
         with self._lock:
             call_id = next(self._ids)
             self._posted[call_id] = result if isinstance(result, Task) else None

@@ -52,11 +52,40 @@ def kind_of(module: str, method: str, parameter: str) -> Kind:
     return kind(own.get(parameter) or declared()["parameters"].get(parameter, OTHER))
 
 
+def takes_texts(module: str, method: str, parameter: str) -> bool:
+    """Whether a parameter takes texts of any content, and not only names."""
+    return not _TEXTS.isdisjoint((parameter, f"{module}.{method} {parameter}"))
+
+
+_TEXTS = frozenset(declared()["texts"])
+
+
 def check_arguments(module: str, method: str, names: Sequence[str], values: Sequence[Any]) -> None:
-    """Look at every number in the arguments of a call; a BadValue when one of them is out of the bounds of its kind."""
+    """Look at every number and every name in the arguments of a call.
+
+    A BadValue when a number is out of the bounds of its kind, or a name, or a list of them, is too long.
+    """
     for name, value in zip(names, values):
         if not isinstance(value, (str, bool)):
             check(value, name, kind_of(module, method, name))
+        if not takes_texts(module, method, name):
+            _check_names(name, value)
+
+
+def _check_names(parameter: str, value: Any) -> None:
+    sizes, count = load_sizes().call, 0
+    waiting = [value]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, str):
+            count += 1
+            if len(one) > sizes.name_characters:
+                raise BadValue(parameter, one, f"a name of {sizes.name_characters} characters at most")
+            if count > sizes.names:
+                raise BadValue(parameter, f"more than {sizes.names} names", f"{sizes.names} at most")
+        elif isinstance(one, (list, tuple, dict)):
+            inner = (*one.keys(), *one.values()) if isinstance(one, dict) else one
+            waiting += [each for each in inner if isinstance(each, (str, list, tuple, dict))]
 
 
 def table() -> list[Row]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any, Callable, Mapping, Sequence
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
@@ -20,12 +21,15 @@ class LedNames:
 
     def __init__(self, layout: LedLayout) -> None:
         self._layout = layout
+        self._lock = threading.Lock()
         self._made: dict[str, tuple[str, ...]] = {}
+        self._devices: dict[str, tuple[int, ...]] = {}  # of each made group
 
     def devices(self, name: str) -> tuple[int, ...]:
         """Indices of the devices behind a name; an UnknownName when there is no LED or group of it."""
-        if name in self._made:
-            return tuple(dict.fromkeys(i for member in self._made[name] for i in self.devices(member)))
+        found = self._devices.get(name)
+        if found is not None:
+            return found
         self._check(name)
         return self._layout.devices_of(name)
 
@@ -35,11 +39,15 @@ class LedNames:
             raise NaoqiError(f"the name {name!r} is taken by the robot's own LEDs")
         if not members:
             raise NaoqiError(f"group {name!r} has no members")
-        for member in members:
-            self._check(member)
-            if self._leads_to(member, name):
-                raise NaoqiError(f"group {name!r} would hold itself")
-        self._made[name] = tuple(members)
+        require_few("ledNames", len(members), "led_members")
+        with self._lock:
+            require_few("groupName", len({*self._made, name}), "led_groups")
+            for member in members:
+                if member != name:
+                    self._check(member)
+            made = {**self._made, name: tuple(members)}
+            self._devices = _Expansion(self._layout, made).devices  # those that hold this one have changed with it
+            self._made = made
 
     def listGroups(self) -> list[str]:
         return sorted([*self._layout.groups, *self._made])
@@ -58,14 +66,36 @@ class LedNames:
         short = self._layout.short_names
         return [self._layout.devices[i] for i in short[known(name, "LED", short)]]
 
-    def _leads_to(self, member: str, name: str) -> bool:
-        """Whether a member is `name`, or a made group that holds it at any depth."""
-        return member == name or any(self._leads_to(inner, name) for inner in self._made.get(member, ()))
-
     def _check(self, name: str) -> None:
         tables = (self._made, self._layout.groups, self._layout.short_names, self._layout.device_index)
         if not any(name in names for names in tables):
             raise UnknownName("LED or group", name, [n for names in tables for n in names])
+
+
+class _Expansion:
+    """The devices of each made group, each group looked at once; a NaoqiError when one holds itself."""
+
+    def __init__(self, layout: LedLayout, made: Mapping[str, Sequence[str]]) -> None:
+        self.devices: dict[str, tuple[int, ...]] = {}
+        self._layout = layout
+        self._made = made
+        self._above: set[str] = set()
+        for name in made:
+            self._of(name)
+
+    def _of(self, name: str) -> tuple[int, ...]:
+        if name not in self._made:
+            return self._layout.devices_of(name)
+        if name in self._above:
+            raise NaoqiError(f"group {name!r} would hold itself")
+        if name not in self.devices:
+            self._above.add(name)
+            found: dict[int, None] = {}
+            for member in self._made[name]:
+                found.update(dict.fromkeys(self._of(member)))
+            self._above.discard(name)
+            self.devices[name] = tuple(found)
+        return self.devices[name]
 
 
 class ALLeds:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import deque
 from typing import Callable
 
+from nao_sim_bridge.base.sizes import load_sizes
+
 # Entries that are remembered.
 LENGTH = 500
 FOCUS_COUNT, COMPLETION_COUNT = "focusCount", "completionCount"
@@ -53,12 +55,14 @@ class LifeRecord:
     def focused(self, activity: str) -> None:
         now = int(self._clock())
         self._focus.append((activity, now))
+        if activity not in self._statistics and len(self._statistics) >= load_sizes().clients.activities:
+            del self._statistics[next(iter(self._statistics))]
         entry = self._statistics.setdefault(activity, dict.fromkeys((FOCUS_COUNT, COMPLETION_COUNT, TOTAL), 0))
         entry[FOCUS_COUNT] += 1
         entry[START] = now
 
     def left(self, activity: str, completed: bool) -> None:
-        now, entry = int(self._clock()), self._statistics[activity]
+        now, entry = int(self._clock()), self._statistics[activity]  # it has the focus: nothing is forgotten meanwhile
         entry[DURATION] = now - entry[START]
         entry[TOTAL] += entry[DURATION]
         if completed:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import logging
 from typing import Any, Callable
 
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.behaviors.steps import Behavior
 from nao_sim_bridge.core.simulation import Simulation
@@ -133,6 +134,9 @@ class Life:
             raise NaoqiError(f"the state is {self.state}: activities get the focus in {' and '.join(ALIVE)}")
         if behavior.nature not in ALIVE:
             raise NaoqiError(f"{behavior.name} has {behavior.nature!r}: activities are solitary or interactive")
+        most = load_sizes().clients.stacked_activities
+        if flag == STACK and len(self._stacked) >= most:
+            raise NaoqiError(f"{most} activities wait for the focus, which is the most allowed: stopAll ends them")
         self._memory.raise_event(NEXT, behavior.name)
         before = self.focused
         self._leave_focus()

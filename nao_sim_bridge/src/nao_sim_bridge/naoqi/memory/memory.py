@@ -52,9 +52,13 @@ class ALMemory:
     def __init__(self, store: MemoryStore, broker: Any) -> None:
         self._store = store
         self._broker = broker
+        self._lock = threading.Lock()  # of what is mapped
         self._signals: dict[str, EventSignal] = {}
-        # What was mapped: service, signal and event; with the signal, and the link to it.
-        self._mappings: dict[tuple[str, str, str], tuple[Any, int]] = {}
+        # What was mapped: service, signal and event; with the signal and the link to it, None until there is one.
+        self._mappings: dict[tuple[str, str, str], tuple[Any, int] | None] = {}
+        sizes = load_sizes().clients
+        # Not in libqi's own thread: a client may not answer, and others want to call this module meanwhile.
+        self._connecting = Background(most=sizes.mapping_calls, threads=sizes.threads)
 
     def getData(self, key: str, *_deprecated: Any) -> Any:
         return self._store.get(key)
@@ -163,7 +167,12 @@ class ALMemory:
     def client_gone(self, module: str) -> None:
         """A module of a client has left: it is told nothing more, and its signals are no events any more."""
         self._store.forget_module(module)
-        self._mappings = {mapped: link for mapped, link in self._mappings.items() if mapped[0] != module}
+        with self._lock:
+            gone = [mapped for mapped, link in self._mappings.items() if link and mapped[0] == module]
+            for mapped in gone:
+                del self._mappings[mapped]
+        for mapped in gone:
+            self._store.release(mapped[2], mapped)
 
     def addMapping(self, service: str, *rest: Any) -> Task:
         pairs = rest[0] if len(rest) == 1 else {rest[0]: rest[1]}
@@ -172,8 +181,7 @@ class ALMemory:
             for signal, event in pairs.items():
                 self._connect_signal(service, signal, event)
 
-        # Not in libqi's own thread: the client may not answer, and others want to call this module meanwhile.
-        return Background().beside(connect, "addMapping")
+        return self._connecting.in_turn(connect, "addMapping")
 
     def take_over(self, former: ALMemory) -> None:
         """Go on with the signals that clients are connected to; nobody is told of what the former one had."""
@@ -181,7 +189,8 @@ class ALMemory:
         for name, signal in self._signals.items():
             self._store.hold(name)
             self._store.listen(name, signal, declare=False)
-        for signal, link in former._mappings.values():
+        for connected in filter(None, list(former._mappings.values())):
+            signal, link = connected
             try:
                 signal.disconnect(link)
             except RuntimeError:
@@ -189,7 +198,8 @@ class ALMemory:
 
     def _remove(self, key: str, kind: str | None = None) -> None:
         self._store.remove(key, kind)
-        self._signals.pop(key, None)
+        if key in self._signals:  # it is there when the event comes again: qi never lets go of all that it was made of
+            self._store.hold(key)
 
     def _subscribe(
         self, name: str, module: str, message: str, method: str, kind: str, only_changes: bool = False
@@ -205,18 +215,32 @@ class ALMemory:
         self._store.subscribe(_name(name), module, notify, message, kind, by_client=True)
 
     def _connect_signal(self, service: str, signal: str, event: str) -> None:
-        if (service, signal, event) in self._mappings:
-            return
+        mapped = service, signal, event
+        with self._lock:
+            if mapped in self._mappings:
+                return
+            self._mappings[mapped] = None
+        try:
+            self._mappings[mapped] = self._connected(mapped)
+        except Exception:
+            with self._lock:
+                del self._mappings[mapped]
+            self._store.release(event, mapped)
+            raise
+
+    def _connected(self, mapped: tuple[str, str, str]) -> tuple[Any, int]:
+        """The signal of a client's service, and the link to it; its module waits for it."""
+        service, signal, event = mapped
         source = self._broker.service(service)
         if not hasattr(source, signal):
             raise NaoqiError(f"service {service!r} has no signal {signal!r}")
         self._store.declare_event(_name(event), by_client=True)
+        self._store.hold(event, mapped)
         raising = getattr(source, signal)
         connecting = raising.connect(
             lambda *values: self._store.raise_event(event, _one(values), by_client=True), _async=True
         )
-        link = answer(connecting, threading.Condition(), lambda: True, FOUND)
-        self._mappings[service, signal, event] = raising, link
+        return raising, answer(connecting, threading.Condition(), lambda: True, FOUND)
 
 
 def _done(value: Any) -> Any:

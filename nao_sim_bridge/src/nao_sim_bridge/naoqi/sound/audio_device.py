@@ -7,7 +7,8 @@ from typing import Any, Callable, Mapping, Sequence
 import numpy as np
 
 from nao_sim_bridge.base.errors import UnknownName
-from nao_sim_bridge.base.tasks import Task, worked_out
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.base.tasks import Task, WorkThreads
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -82,6 +83,7 @@ class ALAudioDevice:
         self._energy = energy
         self._recorder = recorder
         self._buffers = OutputBuffers(runner.simulation)
+        self._working = WorkThreads("microphones", load_sizes().clients.threads)
         self._input_size = INPUT_SIZES[0]
         self._input_closed = False
 
@@ -130,10 +132,10 @@ class ALAudioDevice:
 
     def subscribe(self, module: str) -> Task:
         # Not in libqi's own thread: the first call of a module may need that to get through.
-        return worked_out(Task("subscribe", 0), lambda: self._clients.subscribe(module), "subscribe")
+        return self._working.work_out("subscribe", lambda: self._clients.subscribe(module))
 
     def unsubscribe(self, module: str) -> Task:
-        return worked_out(Task("unsubscribe", 0), lambda: self._clients.unsubscribe(module), "unsubscribe")
+        return self._working.work_out("unsubscribe", lambda: self._clients.unsubscribe(module))
 
     def client_gone(self, module: str) -> None:
         self._clients.gone(module)
@@ -214,7 +216,7 @@ class ALAudioDevice:
             self._clients.set_closed(closed)
             self._energy.set_closed(closed)
 
-        return worked_out(Task("closeAudioInputs", 0), change, "closeAudioInputs")
+        return self._working.work_out("closeAudioInputs", change)
 
 
 def _device(index: int, devices: tuple[str, ...]) -> str:

@@ -38,12 +38,14 @@ class ALAudioPlayer:
         self._background = background
         self._sounds = sounds
         self._streams = WebStreams(sounds, allow_private_streams)
+        # It may take so long that time does not wait for it.
+        self._fetching = Background(threads=self._streams.sizes.at_once)
         folders = (sounds.files.folder / OWN_SETS, *sounds.files.shipped)
         self._sets = SoundSets(sounds, lambda name, size: self._player.check_room(name, size), *folders)
         self._player = Player(
             runner.simulation,
             lambda onset, end: memory.insert(TIMES, [onset, end]),
-            lambda: sounds.reader.sizes.loaded_sounds.bytes,
+            lambda: sounds.reader.sizes.loaded_sounds,
             self._sets.kept,
         )
 
@@ -100,7 +102,7 @@ class ALAudioPlayer:
             sound = self._streams.fetch(address, wanted)
             return self._do(lambda: self._begin_once(address, sound, checked, name) if wanted() else None, name)
 
-        return self._background.beside(play, name)  # it may take so long that time should not wait for it
+        return self._fetching.in_turn(play, name)
 
     def pause(self, sound_id: int) -> Task:
         loaded = self._player.find(sound_id)
@@ -118,6 +120,7 @@ class ALAudioPlayer:
     def stopAll(self) -> Task:
         # At once, so that what is asked for right after this call is played.
         self._background.stop()
+        self._fetching.stop()
         return self._do(self._player.stop_all, "stopAll")
 
     # --- volume, panorama, pitch ----------------------------------------------------------------------------------

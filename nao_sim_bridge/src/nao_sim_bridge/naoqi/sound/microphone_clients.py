@@ -24,6 +24,8 @@ log = logging.getLogger("nao_sim.microphones")
 METHOD, OLDER_METHOD = "processRemote", "processSoundRemote"
 # Blocks that wait for a client, at 170 ms each; it loses the oldest when it is that far behind.
 WAITING = load_sizes().clients.sound_blocks
+# Modules that are subscribed, and modules that have said what they want.
+MOST = load_sizes().clients.microphones
 # Wall time, s: how long one call may take before the client counts as hanging, and its time is not waited for any more.
 HANGS = load_sizes().clients.held_up_s
 # While time runs faster than real time, it waits for a client with more blocks than this before it.
@@ -48,8 +50,10 @@ class MicrophoneClients:
         self._closed = False
 
     def prefer(self, module: str, wanted: MicrophoneFormat) -> None:
-        """What a module wants to get, now or when it subscribes."""
+        """What a module wants to get, now or when it subscribes; a NaoqiError when too many have said it."""
         with self._lock:
+            if module not in self._formats and len(self._formats) >= MOST:
+                raise NaoqiError(f"{MOST} modules have client preferences, which is the most allowed")
             self._formats[module] = wanted
             client = self._clients.get(module)
         if client is not None:
@@ -58,7 +62,7 @@ class MicrophoneClients:
     def subscribe(self, module: str) -> None:
         """Begin to call a module. One that is subscribed already stays so.
 
-        A NaoqiError when there is no such module.
+        A NaoqiError when there is no such module, or too many are subscribed.
         """
         try:
             remote = self._service(module)
@@ -70,6 +74,8 @@ class MicrophoneClients:
             old = self._clients.get(module)
             if old is not None and old.alive:
                 return
+            if len(self._clients) >= MOST:
+                raise NaoqiError(f"{MOST} modules hear the microphones, which is the most allowed; unsubscribe some")
             wanted = self._formats.get(module, MicrophoneFormat())
             client = self._clients[module] = _Client(
                 module, remote, self._service, self._ears, self._gone, self._released

@@ -10,6 +10,7 @@ import soxr
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.samples import RATE, Sound
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.naoqi.binding.arguments import number
 
@@ -42,7 +43,7 @@ class OutputBuffers:
         """
         if not self._queued:
             self._stream = None
-        if self._ahead > TOO_MUCH:
+        if self._ahead > TOO_MUCH or len(self._queued) >= load_sizes().lists.pieces:
             return False
         self._play(self._at_rate_of_the_world(samples))
         if self._ahead <= AHEAD:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Callable
 
 from nao_sim_bridge.base.samples import Sound
+from nao_sim_bridge.base.sizes import LoadedSizes
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -55,7 +56,7 @@ class Player:
 
     Args:
         on_end: Told the simulated times of first and last sample, s, when a sound has been played.
-        largest: Answers how many bytes all sounds may take together.
+        sizes: Answers how many bytes all sounds may take together, and how many there may be.
         elsewhere: Names and bytes of other sounds that count with them.
     """
 
@@ -63,10 +64,10 @@ class Player:
         self,
         simulation: Simulation,
         on_end: Callable[[float, float], None],
-        largest: Callable[[], int],
+        sizes: Callable[[], LoadedSizes],
         elsewhere: Callable[[], list[tuple[str, int]]],
     ) -> None:
-        self._largest = largest
+        self._sizes = sizes
         self._elsewhere = elsewhere
         self._on_end = on_end
         self._simulation = simulation
@@ -88,8 +89,11 @@ class Player:
 
     def check_room(self, name: str, size: int) -> None:
         """Raise a NaoqiError that names what takes the most, unless there is room for a sound of so many bytes."""
-        largest = self._largest()
-        kept = [(loaded.name, loaded.size) for loaded in self.loaded()] + self._elsewhere()
+        largest = self._sizes().bytes
+        there, most = self.loaded(), self._sizes().sounds
+        if len(there) >= most:
+            raise NaoqiError(f"no room for {name!r}: {len(there)} sounds are loaded or play, {most} at most")
+        kept = [(loaded.name, loaded.size) for loaded in there] + self._elsewhere()
         if sum(each for _, each in kept) + size <= largest:
             return
         most = sorted(kept, key=lambda entry: -entry[1])[:SHOWN]

@@ -10,7 +10,7 @@ from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import BadValue, SimulationStopped
 from nao_sim_bridge.base.record_dir import ClientFiles
-from nao_sim_bridge.base.tasks import Task, worked_out
+from nao_sim_bridge.base.tasks import Task, WorkThreads
 from nao_sim_bridge.base.whole_file import FileTrouble
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
@@ -51,6 +51,7 @@ class Recorder:
         self._files = files
         self._in_use = in_use
         self._lock = threading.Lock()
+        self._ending = WorkThreads("end of a recording")
         self._recording: _Recording | None = None
 
     def start(self, name: str, kind: str, heard: MicrophoneFormat) -> Task:
@@ -92,7 +93,7 @@ class Recorder:
             recording.until = self._runner.simulation.sound.time
 
         def marked(_: Task | None) -> None:  # what was heard last has still to be worked out
-            worked_out(ended, end, "end of a recording")
+            self._ending.do(lambda: ended.finish_with(end))
 
         try:
             self._runner.execute(mark, "stopMicrophonesRecording").add_done_callback(marked)

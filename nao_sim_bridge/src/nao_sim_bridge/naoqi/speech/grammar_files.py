@@ -27,8 +27,8 @@ def compile_grammar(source: Path, target: Path, language: str) -> None:
     write_whole(target, json.dumps(content, indent=1).encode())
 
 
-def load_grammar(path: Path) -> BnfGrammar:
-    """A compiled grammar; a NaoqiError when the file is none."""
+def load_grammar(path: Path) -> tuple[BnfGrammar, int]:
+    """A compiled grammar, and its characters; a NaoqiError when the file is none."""
     text = _text(path)
     try:
         content = json.loads(text)
@@ -37,7 +37,7 @@ def load_grammar(path: Path) -> BnfGrammar:
         grammar = content["grammar"]
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise NaoqiError(f"file {path.name!r} is no compiled grammar; make one of a BNF file with compile()") from error
-    return _parsed(grammar, path)
+    return _parsed(grammar, path), len(str(grammar))
 
 
 def read_vocabulary(path: Path) -> list[str]:

@@ -127,8 +127,8 @@ class ALSpeechRecognition:
         compile_grammar(self._files.to_read(source), self._files.to_write(target), language)
 
     def addContext(self, name: str, context: str) -> None:
-        bnf = load_grammar(self._files.to_read(name))
-        self._change("contexts", lambda: self._contexts.add(context, bnf))
+        bnf, characters = load_grammar(self._files.to_read(name))
+        self._change("contexts", lambda: self._contexts.add(context, bnf, characters))
 
     def removeContext(self, context: str) -> None:
         self._change("contexts", lambda: self._contexts.remove(context))

@@ -68,7 +68,13 @@ class ALLogger:
 
     def setFilter(self, filters: str = "") -> None:
         """Levels of single modules, the last that fits counts: "Game*=debug:Noise=silent", also "+Game:-Noise"."""
-        self._filters = [_rule(rule) for rule in filters.split(":") if rule]
+        rules, most = [rule for rule in filters.split(":") if rule], load_sizes().kept
+        if len(rules) > most.log_filters:
+            raise BadValue("filter", f"{len(rules)} rules", f"{most.log_filters} at most")
+        for rule in rules:
+            if rule.count("*") > most.filter_stars:  # to look whether a name fits takes time that grows with each
+                raise BadValue("filter", rule, f"{most.filter_stars} * at most in the name of a module")
+        self._filters = [_rule(rule) for rule in rules]
 
     def logInStd(self) -> None:
         self._standard = True

@@ -10,7 +10,7 @@ from typing import Any, Callable
 from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.naoqi.binding.arguments import map_or_pairs, one_of
+from nao_sim_bridge.naoqi.binding.arguments import map_or_pairs, one_of, text
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.body.touch import CLICKED
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -106,4 +106,5 @@ def _notification(value: Any) -> _Notification:
     message, remove = given.get("message", ""), given.get("removeOnRead", True)
     if set(given) - set(KEYS) or not isinstance(message, str) or not isinstance(remove, (bool, int)):
         raise BadValue("notification", value, right)
+    text(message, "message", load_sizes().speech.text_characters)
     return _Notification(message, one_of(given.get("severity") or SEVERITIES[0], "severity", SEVERITIES), bool(remove))

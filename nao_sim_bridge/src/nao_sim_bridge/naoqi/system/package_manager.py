@@ -65,6 +65,9 @@ class PackageManager:
         if file.suffix.lower() not in PACKAGES:
             raise ConfigError(file.name, f"is no package: known are {', '.join(PACKAGES)}")
         info = package_info(file)
+        most = load_sizes().behaviors.packages
+        if len({*self._packages, info.uuid}) > most:
+            raise NaoqiError(f"{most} packages are installed at most: removePkg first")
         names = {behavior.name for behavior in read_package(file)}
         self._manager.installBehavior(path, gone=[name for name in self._behaviors(info.uuid) if name not in names])
         self._packages[info.uuid] = package = _Installed(info, path)

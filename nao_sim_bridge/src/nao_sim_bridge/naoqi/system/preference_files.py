@@ -11,8 +11,9 @@ from xml.etree.ElementTree import Element
 from nao_sim_bridge.base.config import TooLarge, read_bounded
 from nao_sim_bridge.base.errors import BadValue, ConfigError
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.whole_file import write_whole
-from nao_sim_bridge.behaviors.xar import LARGEST_FILE, parse_xml
+from nao_sim_bridge.base.xml_values import parse_xml
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 NAME = "ALPreferences"
@@ -60,7 +61,7 @@ class PreferenceFiles:
         """
         path = self._files.to_read(_path(application, name))
         try:
-            content = read_bounded(path, LARGEST_FILE)
+            content = read_bounded(path, load_sizes().xml.file_bytes)
         except (TooLarge, OSError) as error:
             raise ConfigError(path.name, str(error)) from error
         return _read(content, path)
@@ -69,14 +70,14 @@ class PreferenceFiles:
         """Write a file that `read` gives back as it is; a BadValue when no file can hold the content."""
         root = ElementTree.Element(ROOT, name=content.name, description=content.description, version="1.0")
         _add(root, content.value)
-        path = self._files.to_change(_path(APPLICATION, name))
+        path, most = self._files.to_change(_path(APPLICATION, name)), load_sizes().xml.file_bytes
         try:
             text = ElementTree.tostring(root)
-            held = len(text) <= LARGEST_FILE and _read(text, path) == replace(content, name=content.name or path.stem)
+            held = len(text) <= most and _read(text, path) == replace(content, name=content.name or path.stem)
         except (ConfigError, UnicodeEncodeError):  # it has characters that XML has not
             held = False
         if not held:
-            raise BadValue("prefs", content.as_value(), f"what an XML file of {LARGEST_FILE} bytes can hold")
+            raise BadValue("prefs", content.as_value(), f"what an XML file of {most} bytes can hold")
         write_whole(path, text)
 
     def remove(self, name: str) -> None:

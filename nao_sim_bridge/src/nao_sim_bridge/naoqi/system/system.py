@@ -6,7 +6,8 @@ import os
 import shutil
 from typing import Any, Callable
 
-from nao_sim_bridge.naoqi.binding.arguments import whole_number
+from nao_sim_bridge.base.sizes import load_sizes
+from nao_sim_bridge.naoqi.binding.arguments import text, whole_number
 from nao_sim_bridge.naoqi.binding.common import VERSION
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -48,6 +49,7 @@ class ALSystem:
     def setRobotName(self, name: str) -> bool:
         if not name or not name.replace("-", "").isalnum():
             raise NaoqiError(f"name is {name!r}, allowed are letters, digits and hyphens")
+        text(name, "name", load_sizes().kept.robot_name_characters)
         self._name = name
         self._memory.raise_event(NAME_CHANGED, name)
         return True

@@ -120,12 +120,12 @@ class Tracking:
         self.sightings: Sequence[Sighting] = ()
 
     def _begin(self, active: _Active, event: str) -> None:
+        if event not in self._listening:
+            self._memory.listen(event, lambda value: self._hear(event, value))  # before it counts: there may be no room
+            self._listening.add(event)
         self.stop()
         self._active = active
         self._seen = self._simulation.time
-        if event not in self._listening:
-            self._listening.add(event)
-            self._memory.listen(event, lambda value: self._hear(event, value))
         self._memory.raise_event(CHANGED, active.name)
 
     def _hear(self, event: str, value: Any) -> None:

@@ -163,7 +163,7 @@ class UserBook:
     def see(self, faces: Mapping[int, str], time: float) -> None:
         """A picture shows these faces: number -> name, empty for who is not recognised."""
         for number, name in faces.items():
-            face = self._faces.setdefault(number, _Face(name, time))
+            face = self._face(number, name, time)
             face.seen, face.name = time, name or face.name
             known = self.of_name(face.name)
             if face.user != NOBODY and known is not None and known.number != face.user:
@@ -178,7 +178,7 @@ class UserBook:
         if face == NOBODY:
             self.focused = NOBODY
             return
-        entry = self._faces.setdefault(face, _Face("", time))
+        entry = self._face(face, "", time)
         entry.seen = time
         if entry.user == NOBODY:
             user = self.of_name(entry.name) or self._create("", time)
@@ -206,6 +206,13 @@ class UserBook:
             found.append((News.NOBODY_HERE, not self.open))
         self._told = (self.focused, not self.open)
         return found
+
+    def _face(self, number: int, name: str, time: float) -> _Face:
+        """A face by its number; of too many the one that was not seen for longest is forgotten."""
+        if number not in self._faces and len(self._faces) >= load_sizes().clients.seen_faces:
+            oldest = min(self._faces, key=lambda one: self._faces[one].seen)
+            self._close_unseen([self._faces.pop(oldest).user], time)
+        return self._faces.setdefault(number, _Face(name, time))
 
     def _create(self, name: str, time: float) -> User:
         if len(self._users) >= load_sizes().kept.users:

@@ -8,6 +8,7 @@ from typing import Any, Callable, Iterable, TypeVar
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.whole_file import FileTrouble, put_aside
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.core.simulation import Simulation
@@ -196,7 +197,8 @@ class Users:
 def _faces(value: Any) -> dict[int, str]:
     """Name by number of the faces in a value of `FaceDetected`, which clients may have raised with anything."""
     try:
-        found = [(face[1][0], face[1][2]) for face in value[1][:-1]]  # behind them is what is new about names
+        most = load_sizes().clients.seen_faces  # clients may raise it with any number
+        found = [(face[1][0], face[1][2]) for face in value[1][:-1][:most]]  # behind them is what is new about names
     except (TypeError, LookupError):
         return {}
     return {number: name for number, name in found if _is_face(number) and isinstance(name, str)}

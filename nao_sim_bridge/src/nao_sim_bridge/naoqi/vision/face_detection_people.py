@@ -8,7 +8,9 @@ from typing import Any, Callable
 
 import numpy as np
 
+from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
+from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.whole_file import put_aside
 from nao_sim_bridge.vision.face_memory import FaceFileError, FaceMemory
 from nao_sim_bridge.vision.faces_features import DESCRIPTION_LENGTH
@@ -76,6 +78,11 @@ class KnownPeople:
         with self._lock:
             changed = self._known().copy()
             done = change(changed)
+            most = load_sizes().kept.people
+            if len(changed.names) > max(most, len(self._known().names)):
+                raise BadValue(
+                    "people", len(changed.names), f"at most {most} whose faces are known: forgetPerson first"
+                )
             if done:
                 changed.save(self._files.to_change(FILE))
                 self._memory = changed
