@@ -21,7 +21,6 @@ from example_parts.demo_behaviors import BehaviorPlayer, Turn
 from example_parts.demo_lights import Step, steps
 from example_parts.demo_support import (
     SOUND,
-    START_LIMIT,
     Film,
     Stack,
     Table,
@@ -36,6 +35,8 @@ DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
 # s of simulated time.
 STEP_LIMIT = 30.0
 WORLD, FILM = "lab", "demo.mp4"
+# Pixels each way and pictures a second: a slow computer should not draw for long.
+FILM_SIZE = (240, 8.0)
 # m. The near edge of the table is 0.6 m ahead of where the robot starts; an arm needs the rest.
 TO_THE_TABLE = 0.3
 GREETING = "Hello! I am a NAO that lives in a simulator. Welcome to the laboratory."
@@ -64,7 +65,6 @@ class Demonstration:
     """
 
     def __init__(self, stack: Stack, output: Path, table: Table) -> None:
-        import rospy
 
         import nao_library_actions.msg as actions
         from nao_library_msgs.srv import TakePicture
@@ -78,9 +78,8 @@ class Demonstration:
         self._speaker = stack.client("nao_audio_out", actions.NaoAudioOutAction)
         self._listener = stack.client("nao_audio_in", actions.NaoAudioInAction)
         self._eyes = stack.client("NaoVision", actions.NaoVisionAction)
-        self.film, self.behaviors = Film(FILM), BehaviorPlayer(stack, table)
-        rospy.wait_for_service("nao_sim/picture", START_LIMIT)
-        self._take_picture = rospy.ServiceProxy("nao_sim/picture", TakePicture)
+        self.film, self.behaviors = Film(stack, FILM, *FILM_SIZE), BehaviorPlayer(stack, table)
+        self._take_picture = stack.service("nao_sim/picture", TakePicture)
         self._memory = ALProxy("ALMemory", "127.0.0.1", stack.nao_port)
         self._motion = ALProxy("ALMotion", "127.0.0.1", stack.nao_port)
 

@@ -28,7 +28,7 @@ def film_behaviors(output: Path, table: Table, turns: Sequence[Turn] = TURNS) ->
 
     with Stack(output, driver="false", cameras="false") as stack:
         stack.join("nao_library_film")
-        player, film = BehaviorPlayer(stack, table), Film(FILM)
+        player, film = BehaviorPlayer(stack, table), Film(stack, FILM)
         player.run(Turn("nod", ("times=1",)))  # after it the server has found the servers that it needs
         film.start()
         began, parts = rospy.get_time(), []

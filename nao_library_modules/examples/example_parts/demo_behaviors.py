@@ -58,14 +58,13 @@ class BehaviorPlayer:
     """
 
     def __init__(self, stack: Stack, table: Table) -> None:
-        import rospy
 
         from nao_library_actions.msg import NaoBehaviorAction
         from nao_library_msgs.srv import GetTruepose
 
         self._table = table
         self._client = stack.client("NaoBehavior", NaoBehaviorAction)
-        self._pose = rospy.ServiceProxy("get_truepose", GetTruepose)
+        self._pose = stack.service("get_truepose", GetTruepose)
 
     def play(self, turn: Turn) -> None:
         """Play one to its end."""

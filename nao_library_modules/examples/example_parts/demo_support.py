@@ -16,6 +16,8 @@ START_LIMIT = 240.0
 """s of wall time for a server to come up on a busy computer."""
 # Everything the loudspeakers play.
 SOUND = "sound.wav"
+# Of films.
+VIEW = "stage"
 # Root mean square of speech, of full scale.
 LOUD = 0.02
 
@@ -86,30 +88,45 @@ class Stack(OwnStack):
         self.wait_until(lambda: client.wait_for_server(rospy.Duration(0.5)), f"the server {name}", START_LIMIT)
         return client
 
+    def service(self, name: str, kind: Any) -> Any:
+        """A service that is there.
+
+        Raises:
+            StackFailed: It did not come up.
+        """
+        import rospy
+
+        def there() -> bool:
+            try:
+                rospy.wait_for_service(name, 0.5)
+            except rospy.ROSException:
+                return False
+            return True
+
+        self.wait_until(there, f"the service {name}", START_LIMIT)
+        return rospy.ServiceProxy(name, kind)
+
 
 class Film:
     """The film of the simulated robot, drawn while the computer has time for it and else when it ends.
 
     Args:
+        stack: The running stack.
         file: Its name in the output folder.
+        size: Pixels each way.
+        rate: Pictures a second.
     """
 
-    SIZE, RATE, VIEW = 300, 8.0, "stage"
-    """Pixels each way, pictures a second, from where."""
-
-    def __init__(self, file: str) -> None:
-        import rospy
-
+    def __init__(self, stack: Stack, file: str, size: int = 300, rate: float = 10.0) -> None:
         from nao_library_msgs.srv import CaptionFilm, StartFilm, StopFilm
 
-        self._file = file
-        rospy.wait_for_service("nao_sim/film/start", START_LIMIT)  # the last thing that the simulator does
-        self._start = rospy.ServiceProxy("nao_sim/film/start", StartFilm)
-        self._caption = rospy.ServiceProxy("nao_sim/film/caption", CaptionFilm)
-        self._stop = rospy.ServiceProxy("nao_sim/film/stop", StopFilm)
+        self._file, self._size, self._rate = file, size, rate
+        self._start = stack.service("nao_sim/film/start", StartFilm)
+        self._caption = stack.service("nao_sim/film/caption", CaptionFilm)
+        self._stop = stack.service("nao_sim/film/stop", StopFilm)
 
     def start(self) -> None:
-        _require(self._start(self._file, self.VIEW, self.SIZE, self.SIZE, self.RATE))
+        _require(self._start(self._file, VIEW, self._size, self._size, self._rate))
 
     def caption(self, text: str) -> None:
         _require(self._caption(text))
