@@ -40,7 +40,9 @@ def find_module(connection: Connection, live: Live, name: str) -> Any:
         text = future.error().strip()
         if is_unknown_service(text):
             names = module_names(connection, live)
-            limit = START_LIMIT if any(each.startswith("AL") for each in names) else FIRST_MODULE_LIMIT
+            # It may also have appeared between the two questions.
+            starting = name in names or not any(each.startswith("AL") for each in names)
+            limit = FIRST_MODULE_LIMIT if starting else START_LIMIT
             if connection.answering_time() < live.connected_at + limit and not live.broken.wait(delay):
                 continue
             raise unknown_module(name, connection.host, connection.port, names)

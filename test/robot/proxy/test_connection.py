@@ -217,7 +217,7 @@ def test_calls_under_way_new_ones_and_new_proxies_wait_for_a_silent_robot(robot,
     assert under_way.result(SOON) == 6
     assert followed.seen == [] and (connection.generation, connection.silent) == (1, 0.0)
     texts = [each.getMessage() for each in caplog.records if each.name == "naoqi"]
-    assert len(texts) == 2 and "calls wait for it, up to 10 s" in texts[0] and "answers again, after" in texts[1]
+    assert len(texts) == 2 and f"calls wait for it, up to {SOON:g} s" in texts[0] and "answers again, after" in texts[1]
 
 
 def test_a_call_that_the_robot_leaves_open_has_its_limit_while_it_answers_others(proxy):
@@ -226,15 +226,15 @@ def test_a_call_that_the_robot_leaves_open_has_its_limit_while_it_answers_others
         call.result(timeout=0.3)
 
 
-@pytest.mark.parametrize("patience, state", [(SOON, "connected"), (0.6, "lost")])
+@pytest.mark.parametrize("patience, state", [(3600.0, "connected"), (0.6, "lost")])
 def test_a_connection_to_a_silent_robot_is_closed_soon(robot, proxy, patience, state):
-    connection, began = proxy.connection, time.monotonic()
+    connection = proxy.connection
     connection.timing = Timing(heartbeat_period=0.05, silence=0.1, patience=patience)
     silence = Silence(connection)
     robot.silence()
     silence.wait_for(*([SILENT] if state == "connected" else [SILENT, ("lost", False)]))
     connection.close()
-    assert connection.state == "closed" and time.monotonic() - began < SOON
+    assert connection.state == "closed"  # long before the patience is over
 
 
 PROGRAM = """
