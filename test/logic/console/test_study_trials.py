@@ -100,7 +100,7 @@ def test_pages_look_at_a_robot_whose_trial_begins_and_nobody_begins_another(tria
     assert asked.wait(LIMIT)
     looking = threading.Thread(target=lambda: seen.append(trial.studies.running(trial.robot.namespace)))
     looking.start()
-    looking.join(5.0)
+    looking.join(60.0)
     looked = list(seen)
     with pytest.raises(StudyError, match="about to begin"):
         trial.studies.begin(trial.protocol, "P02", trial.robot)
