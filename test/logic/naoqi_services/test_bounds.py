@@ -31,7 +31,7 @@ from nao_sim_bridge.speech.animations import load_animations
 from nao_sim_bridge.speech.tags import TagReader
 
 SIZES = load_sizes()
-PATIENCE = 10.0
+PATIENCE = 60.0
 ATTRIBUTES = " ".join(f'k{number}=""' for number in range(1000))
 
 
