@@ -3,11 +3,18 @@
 import threading
 
 import pytest
+from store_walk import Walk, shrink
 
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.sizes import load_sizes
 
 SIZES = load_sizes()
+
+
+@pytest.mark.parametrize("module", ["ALLeds", "ALAnimatedSpeech", "ALAudioDevice", "ALMemory", "ALTracker"])
+def test_what_a_module_keeps_of_ever_new_texts_comes_to_an_end(robot, module, monkeypatch):
+    shrink(monkeypatch)  # all modules are in the level slow
+    assert [(str(way), way.wrong) for way in Walk(robot).module(module) if way.wrong] == []
 
 
 def test_pushes_that_last_are_bounded_and_those_that_are_over_make_room(robot):
