@@ -106,7 +106,7 @@ class RecordedNode:
         self.descriptions[name] = answer
 
     def kept(self):
-        return SimpleNamespace(load=lambda: None, save=lambda value: None, forget=lambda: None)
+        return SimpleNamespace(load=lambda form: None, save=lambda value: None, forget=lambda: None)
 
     def on_shutdown(self, action):
         self.shutdown_actions.append(action)

@@ -232,7 +232,7 @@ def test_a_module_that_never_answers_is_given_up(listening, client_program, monk
 
 
 def test_a_program_that_stopped_before_it_is_called_first_is_not_waited_for(listening, client_program, monkeypatch):
-    monkeypatch.setattr(module, "PATIENCE", 0.2)
+    monkeypatch.setattr(module, "FOUND", 0.2)
     broker = listening()
     hold(client_program(broker.port).pid)
     with pytest.raises(RuntimeError, match="no answer within 0.2 s"):
