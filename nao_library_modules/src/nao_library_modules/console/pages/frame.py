@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -24,6 +25,8 @@ log = logging.getLogger(__name__)
 STATIC = "/console/static"
 PATHS = {"/": "Robot", "/wizard": "Wizard", "/study": "Study", "/behaviors": "Behaviours", "/functions": "Functions"}
 HOLDER_PERIOD = 1.0
+MOST_WORK = 4
+"""Pieces of work of one page that wait; what more is asked for is refused."""
 
 Callback = Callable[[], Union[None, Awaitable[None]]]
 
@@ -34,23 +37,49 @@ def build(console: Any) -> None:
 
 
 class PageContext:
-    """One open page: who looks at which robot."""
+    """One open page: who looks at which robot.
+
+    `gone`: whether it was left.
+    """
 
     def __init__(self, console: Any, session: Session, robot: RobotClient) -> None:
         self.console = console
         self.visitor = session
         self.robot = robot
+        self.gone = False
+        self._working = 0
         self._leave: list[Callable[[], None]] = []
         self._client = context.client
         self._client.on_delete(self._left)
 
     async def ask(self, task: Callable[..., Any], *arguments: Any) -> Any:
-        """What a function gives that waits for ROS, the disk or a lock. It is never called in the event loop."""
-        return await in_background(task, *arguments)
+        """What a function gives that waits for ROS, the disk or a lock. It is never called in the event loop.
+
+        What waits for it ends where the page is gone meanwhile.
+        """
+        found = await in_background(task, *arguments)
+        self._end_if_gone()
+        return found
 
     async def work(self, task: Callable[..., Any], *arguments: Any) -> Any:
-        """What a function gives that may take the processor for a while, as reading YAML does; see `Lane`."""
-        return await self.console.lanes[self.visitor.role].do(task, *arguments)
+        """What a function gives that may take the processor for a while, as reading YAML does; see `Lane`.
+
+        What waits for it ends where the page is gone meanwhile, and so does what has not begun. Raises NaoError where
+        the page has MOST_WORK waiting already.
+        """
+
+        def wanted() -> Any:
+            return None if self.gone else task(*arguments)
+
+        if self._working >= MOST_WORK:
+            raise NaoError("this page has asked for much already: wait for the answers")
+        self._working += 1
+        try:
+            found = await self.console.lanes[self.visitor.role].do(wanted)
+        finally:
+            self._working -= 1
+        self._end_if_gone()
+        return found
 
     def operate(self) -> bool:
         """Whether this visitor may move the robot now; says why not."""
@@ -81,7 +110,12 @@ class PageContext:
         with self._client:
             ui.notify(text, type=kind)
 
+    def _end_if_gone(self) -> None:
+        if self.gone:
+            raise asyncio.CancelledError  # nothing of the page can be shown any more
+
     def _left(self) -> None:
+        self.gone = True
         for callback in self._leave:
             try:
                 callback()
