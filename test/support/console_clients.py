@@ -42,7 +42,9 @@ class Visitor:
         """A WebSocket of the console."""
         address = self.base.replace("http", "ws", 1) + path
         headers = {"Cookie": self.cookie}
-        made = connect(address, origin=self.base, additional_headers=headers, proxy=None, open_timeout=LIMIT)
+        made = connect(
+            address, origin=self.base, additional_headers=headers, proxy=None, open_timeout=LIMIT, ping_interval=None
+        )
         return made.__enter__()  # whoever has it closes it
 
 

@@ -234,8 +234,8 @@ class _StudyPage:
         except (NaoError, OSError) as error:
             self._tell_problems([error])
             return
-        if (protocol, person) != (self.protocol, self._person.value.strip()):
-            return  # typed on meanwhile, which is told by itself
+        if self._help.is_deleted or (protocol, person) != (self.protocol, self._person.value.strip()):
+            return  # a trial has begun meanwhile, or somebody has typed on, which is told by itself
         lines = [protocol.help]
         if protocol.factors and number:
             order = order_of(protocol, number)
@@ -313,6 +313,8 @@ class _StudyPage:
         await self._read()
 
     def _tell_problems(self, problems: Iterable[Any]) -> None:
+        if self._problems.is_deleted:
+            return  # a trial has begun meanwhile, which the page shows
         self._problems.clear()
         with self._problems:
             for problem in itertools.islice(problems, MOST_PROBLEMS):
