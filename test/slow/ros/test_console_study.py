@@ -101,6 +101,7 @@ class ConsoleStudy(RobotTestCase):
         self.browser.open("/study", protocol=STUDY, participant="P01")
         self.browser.reads("One trial of ten steps")
         self.browser.click("button", "Begin trial")
+        self.browser.reads("wait for a touch")
         self.at("1.3")
         folder = self.files.trial(TRIAL).path
         self.limit_files((folder / EVENTS).stat().st_size)  # as a disk that is full
