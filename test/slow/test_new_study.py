@@ -20,7 +20,7 @@ def test_a_new_study_passes_its_own_test(tmp_path, monkeypatch):
     written, tested = (block.text for block in samples("docs/your_own.md") if "run by" in block.marks)
     folders = {name: str(tmp_path / name) for name in ("ROS_TEST_RESULTS_DIR", "ROS_LOG_DIR", "ROS_HOME", "HOME")}
     (tmp_path / "HOME").mkdir()
-    environment = {**os.environ, **folders}
+    environment = {**os.environ, **folders, "NAO_PORT": "0"}
 
     def typed(text):
         return Program([ROS_ENV, *shell(f"set -e\n{text}")], tmp_path, environment).end(LIMIT)

@@ -98,6 +98,7 @@ class RosStack:
         """End it until it is needed again; its master stays."""
         if self.stack:
             self.stack.stop()
+        os.environ.pop("NAO_PORT", None)
         self.broken = True
 
     @property
