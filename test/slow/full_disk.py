@@ -347,9 +347,9 @@ class Node:
 
     def close(self):
         rospy.signal_shutdown("it is over")
-        for process in (self.process, self._master):
-            process.kill()
-            process.wait(LIMIT)
+        self.process.kill()
+        self.process.wait(LIMIT)
+        self._master.stop()
 
 
 def test_a_node_whose_log_is_on_the_full_disk():
