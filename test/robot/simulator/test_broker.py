@@ -140,6 +140,22 @@ def test_modules_of_clients_are_called_in_order_and_one_that_hangs_holds_up_no_o
     assert stuck.calls.get(timeout=PATIENCE) == 3  # the one that waited was dropped
 
 
+def test_a_module_whose_first_connection_is_refused_is_asked_again(listening, connect, monkeypatch):
+    broker, echo = listening(), Echo()
+    client = connect(broker.port)
+    client.listen("tcp://127.0.0.1:0")
+    client.registerService("Echo", echo)
+    refusals = [RuntimeError("The call request could not be handled.")]
+    real = module.answer
+    monkeypatch.setattr(module, "answer", lambda *asked: real(*asked) if not refusals else raised(refusals.pop()))
+    broker.call("Echo", "hear", [1])
+    assert echo.calls.get(timeout=PATIENCE) == 1
+
+
+def raised(error):
+    raise error
+
+
 def test_of_too_many_calls_that_wait_for_a_module_the_oldest_are_lost_and_counted(listening, connect, caplog):
     broker, stuck = listening(), Echo(held_up=True)
     client = connect(broker.port)
