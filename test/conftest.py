@@ -17,8 +17,7 @@ RESULTS = HERE.parent / ".ws" / "test_results"
 DURATIONS = RESULTS / "durations.json"
 """How long each file took when it last ran, in s: what takes longest starts first."""
 SLOWEST = 20
-ALONE = "alone"
-STACK = f"{ALONE} ros"
+STACK = "ros"
 LIMITS = {"ros": 900, "slow": 1800}
 """s that a case of a level may take, where not as pyproject.toml says; the first one starts the stack."""
 
@@ -46,7 +45,6 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "alone: nothing else runs meanwhile")
     for level in LEVELS:
         config.addinivalue_line("markers", f"{level}: a test of the level {level}")
     if not hasattr(config, "workerinput"):
@@ -83,28 +81,23 @@ def pytest_collection_modifyitems(config, items):
         items.sort(key=lambda item: place[item.cls] if item.cls else 0)  # what a class sets up is set up once
     items.sort(key=lambda item: getattr(item.cls, "world", ""))  # the running stack starts once in each world
     for item in items:
-        # The cases of the running stack share it, and those of a file what takes long to start. Whatever has processes
-        # of its own, which go on in their own time, has the machine for itself.
+        # The cases of the running stack share it, and those of a file what takes long to start.
         file = item.path.relative_to(HERE).as_posix()
         limit = LIMITS.get(file.split("/")[0])
         if limit and item.get_closest_marker("timeout") is None:
             item.add_marker(pytest.mark.timeout(limit))
         if item.get_closest_marker("xdist_group") is None:
-            alone = f"{ALONE} {file}" if item.get_closest_marker("alone") else file
-            item.add_marker(pytest.mark.xdist_group(STACK if "stack" in item.fixturenames else alone))
+            item.add_marker(pytest.mark.xdist_group(STACK if "stack" in item.fixturenames else file))
 
 
 class LongestFirst(LoadGroupScheduling):
-    """Hands out what must be alone, then the files that took longest when they last ran, or in random order."""
+    """Hands out the running stack's cases, then the files that took longest when they last ran, or in random order."""
 
     def _assign_work_unit(self, node):
-        if any(self._alone_on(other) for other in self.nodes if other is not node):
-            return
         seed, took = self.config.getoption("--shuffle"), _durations()
 
         def rank(group):
             return (
-                not group.startswith(ALONE),
                 group != STACK,
                 random.Random(seed + group).random() if seed else -took.get(group, 0.0),
             )
@@ -117,18 +110,6 @@ class LongestFirst(LoadGroupScheduling):
     def _reschedule(self, node):
         if node in self.registered_collections:  # one that replaces a lost worker may still be reading the tests
             super()._reschedule(node)
-
-    def _alone_on(self, node):
-        return any(
-            group.startswith(ALONE) and not all(unit.values()) for group, unit in self.assigned_work[node].items()
-        )
-
-    def mark_test_complete(self, node, item_index, duration=0):
-        waiting = self._alone_on(node)
-        super().mark_test_complete(node, item_index, duration)
-        if waiting and not self._alone_on(node):
-            for other in self.nodes:
-                self._reschedule(other)
 
     def remove_node(self, node):
         """A case that ends its worker is not run again: it would end the next one as well."""
@@ -187,7 +168,7 @@ def pytest_report_header(config):
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_teardown(item, nextitem):
-    """Whoever runs after the cases of the running stack has the machine for itself."""
+    """The stack takes no time of the processor when its cases are over."""
     stack = item.funcargs.get("stack")
     yield
     if stack and "stack" not in getattr(nextitem, "fixturenames", ()):

@@ -11,7 +11,6 @@ from selenium.webdriver.common.keys import Keys
 from nao_library_modules.processes.own_stack import OwnStack
 from nao_sim_bridge.testing import wait_until
 
-pytestmark = pytest.mark.alone
 TEXT = "ALTextToSpeech/CurrentSentence"
 
 

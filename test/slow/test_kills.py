@@ -18,7 +18,7 @@ from nao_library_modules.processes.own_master import OwnMaster
 from nao_library_modules.processes.own_stack import OwnStack, StackFailed
 from nao_sim_bridge.testing import wait_until
 
-pytestmark = [pytest.mark.alone, pytest.mark.timeout(1800)]
+pytestmark = pytest.mark.timeout(1800)
 SCRIPT = Path(__file__).resolve().parents[1] / "soak/kills.py"
 LIMIT = 60.0
 KILLS = 18

@@ -13,7 +13,6 @@ from named_port import named_port
 from nao_library_modules.processes.own_stack import OwnStack
 from nao_library_modules.ros.master_watch import LOOKS, PERIOD
 
-pytestmark = pytest.mark.alone  # it starts a stack and a master of its own
 LIMIT = 60.0
 STOPPED = 60.0
 """s for which it hangs."""

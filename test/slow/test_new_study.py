@@ -12,7 +12,6 @@ from samples import samples
 SCRIPTS = Path(__file__).parents[2] / "scripts"
 ROS_ENV = str(SCRIPTS / "ros-env")
 LIMIT = 900.0
-pytestmark = pytest.mark.alone
 
 
 @pytest.mark.timeout(LIMIT + 40.0)

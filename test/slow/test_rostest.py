@@ -15,7 +15,6 @@ FOLDER = Path(__file__).parents[1] / "rostest"
 ROSTEST = (sys.executable, "-c", "import rostest; rostest.rostestmain()")
 """rostest, but with the interpreter that runs this file: its program would put another one first."""
 LIMIT = 1500.0
-pytestmark = pytest.mark.alone
 
 
 @pytest.mark.timeout(LIMIT + 60.0)

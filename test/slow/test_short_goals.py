@@ -5,11 +5,8 @@ import signal
 import subprocess
 import sys
 
-import pytest
-
 from nao_library_modules.processes.own_master import OwnMaster
 
-pytestmark = pytest.mark.alone
 SERVER = """
 import rospy
 from actionlib.msg import TestAction

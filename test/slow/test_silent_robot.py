@@ -14,7 +14,7 @@ import rosgraph
 
 from nao_library_modules.processes.own_stack import OwnStack
 
-pytestmark = [pytest.mark.alone, pytest.mark.timeout(300)]
+pytestmark = pytest.mark.timeout(300)
 USER = Path(__file__).resolve().parents[1] / "support/every_goal.py"
 KINDS = {"lights", "audio out", "audio in", "motion", "vision", "behaviour and touch", "joints"}
 SILENCES = 1.0, 3.0, 8.0

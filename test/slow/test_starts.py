@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-pytestmark = [pytest.mark.alone, pytest.mark.timeout(1200)]
+pytestmark = pytest.mark.timeout(1200)
 SCRIPT = Path(__file__).resolve().parents[1] / "soak/starts.py"
 STARTS = 3
 

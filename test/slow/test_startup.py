@@ -9,7 +9,6 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib.util import cache_from_source
 from pathlib import Path
 
-import pytest
 import rospkg
 from waits import hold
 
@@ -17,7 +16,6 @@ import nao_library_actions
 import nao_library_msgs
 from nao_library_modules.processes.own_master import OwnMaster
 
-pytestmark = pytest.mark.alone  # it starts a stack of its own
 CLIENT = """
 import rospy
 from nao_library_actions.msg import NaoLedAction

@@ -7,12 +7,9 @@ import os
 import subprocess
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.alone
 def test_falls_are_counted_and_what_is_in_the_file_is_not_run_again(tmp_path):
     file, passing = tmp_path / "falls.csv", tmp_path / "passing"
     passing.mkdir()
