@@ -44,8 +44,8 @@ GREETING = "Hello! I am a NAO that lives in a simulator. Welcome to the laborato
 BALL, BALL_RADIUS = (0.30, -0.55), 0.05
 # What its own camera sees of it.
 EYES_PICTURE = "own_eyes.png"
-# What the robot listens for while it greets, and the word of its own that it should hear.
-WORDS, OWN_WORD = ("hello", "goodbye", "laboratory", "elephant", "umbrella"), "laboratory"
+# What the robot listens for while it greets, and its own words of these, one of which it should hear.
+WORDS, OWN_WORDS = ("hello", "goodbye", "laboratory", "elephant", "umbrella"), ("hello", "laboratory")
 # How long the greeting lasts at least, s.
 GREETING_TIME = 2.0
 # Of the ten that are bundled; `make film` shows all.
@@ -111,7 +111,9 @@ class Demonstration:
         words = [word.strip("<.> ") for word in result.words] if result else []
         seconds = loud_time(self._output / SOUND)
         report = f"{seconds:.1f} s of speech in {SOUND}; it heard {', '.join(words[:1]) or 'nothing'}"
-        self._report("greet, and hear itself", report, seconds > GREETING_TIME and words[:1] == [OWN_WORD])
+        self._report(
+            "greet, and hear itself", report, seconds > GREETING_TIME and bool(words) and words[0] in OWN_WORDS
+        )
 
     def find_ball(self) -> None:
         """Look for the ball that lies in the room, and take a picture with its own eyes when it sees it."""
