@@ -12,7 +12,7 @@ import rospy
 from actionlib.msg import TestAction
 from nao_library_modules.ros.action_server import PromptActionServer
 rospy.init_node("server")
-server = PromptActionServer("short", TestAction, lambda goal: server.set_succeeded(), auto_start=False)
+server = PromptActionServer("short", TestAction, lambda goal: server.set_succeeded())
 server.start()
 rospy.spin()
 """
@@ -25,11 +25,13 @@ rospy.init_node("client")
 client, lengths = SimpleActionClient("short", TestAction), []
 assert client.wait_for_server(rospy.Duration(30))
 rospy.Subscriber("short/status", GoalStatusArray, lambda told: lengths.append(len(told.status_list)))
-lost = 0
+lost, red = 0, []
+rospy.logerr = lambda text, *_: red.append(text)
 for _ in range(2000):
     client.send_goal(TestGoal())
     lost += not client.wait_for_result(rospy.Duration(60))
 assert lost <= 1, f"{lost} of 2000 lost"
+assert len(red) < 40, f"{len(red)} times news of a goal that the client does not track"
 assert 0 < max(lengths) < 20, f"{max(lengths)} goals in the status"
 """
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import queue
+import time
 from contextlib import nullcontext
 
+import actionlib.msg
 import pytest
 import rospy
 import tf2_ros
@@ -13,7 +15,7 @@ from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import TransformStamped
 
 from nao_library_modules.ros import diagnostics, robot_frames, server_node
-from nao_library_modules.ros.action_server import publish_status
+from nao_library_modules.ros.action_server import ActionServer, publish_status
 from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
 
@@ -70,6 +72,21 @@ def test_the_status_of_goals_that_comes_when_the_topics_are_closed_is_no_error(m
     monkeypatch.setattr(rospy.core, "is_shutdown_requested", lambda: ends)
     with nullcontext() if ends else pytest.raises(rospy.ROSException):
         publish_status(publish)
+
+
+def test_the_status_waits_until_the_client_of_the_newest_goal_can_have_noted_it(monkeypatch):
+    published = queue.Queue()
+    monkeypatch.setattr(actionlib.ActionServer, "publish_status", lambda _: published.put(time.monotonic()))
+    server = ActionServer("test", actionlib.msg.TestAction, lambda goal: None, auto_start=False, soonest_status=0.04)
+    server.publish_status()
+    assert published.qsize() == 1, "with no goal there is nothing to wait for"
+    published.get()
+    came = time.monotonic()
+    server.internal_goal_callback(actionlib.msg.TestActionGoal())
+    for _ in range(3):
+        server.publish_status()
+    assert published.get(timeout=60.0) >= came + 0.04
+    assert published.empty(), "three that came in the meantime are one"
 
 
 # Frames

@@ -1,11 +1,17 @@
-"""actionlib's servers: SimpleActionServer without its stall between goals, and both without a traceback at the end."""
+"""actionlib's servers, for actionlib's own clients: they tell of a goal when its client can have noted which one it is.
+
+SimpleActionClient notes which goal it sent after it has sent it (ros/actionlib #206). What comes before is of a goal
+"that we're not tracking" to it: of an acknowledgement it says so in red, an end it drops, and waits for ever. So a
+server here keeps its status to itself, and its ends, until the newest goal is `SOONEST_END` old.
+"""
 
 from __future__ import annotations
 
 import logging
+import math
+import threading
 import time
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import actionlib
@@ -17,7 +23,9 @@ from ..processes.heap import Heap
 log = logging.getLogger(__name__)
 
 SOONEST_END = 0.005
-"""s from when a goal is taken up to its end, at least; docs/functions.md has what it costs and what it saves."""
+"""s from when a goal comes to the first status with it, and to its end; docs/functions.md has what it costs."""
+LONGEST_SILENCE = 0.05
+"""s that a status waits at most, where one goal follows the other."""
 SHUTDOWN_POLL = 0.1
 """s between two looks whether the node has ended, for nothing wakes the waiting thread then."""
 REMEMBERED = 10
@@ -30,16 +38,49 @@ OVER = frozenset(
 
 
 class ActionServer(actionlib.ActionServer):
-    """actionlib's, whose timer does not raise when the node closes its topics while it tells of its goals."""
+    """actionlib's, whose status waits until the clients can have noted their goals.
+
+    And whose timer does not raise when the node closes its topics while it tells of its goals.
+    """
+
+    def __init__(self, *arguments: Any, soonest_status: float = SOONEST_END, **options: Any) -> None:
+        """As actionlib's. `soonest_status`: s of wall time from when a goal comes to the first status with it."""
+        self._soonest_status = soonest_status
+        self._newest = -math.inf  # when the last goal came, by time.monotonic
+        self._waits_since: float | None = None  # when there was a first status that waits
+        self._later: threading.Timer | None = None
+        super().__init__(*arguments, **options)
+
+    def internal_goal_callback(self, goal: Any) -> None:
+        with self.lock:
+            self._newest = time.monotonic()
+            super().internal_goal_callback(goal)
 
     def publish_status(self) -> None:
-        publish_status(super().publish_status)
+        """Publish the status of all goals, or have it published in a moment: one without the newest would be wrong."""
+        with self.lock:
+            now = time.monotonic()
+            since = now if self._waits_since is None else self._waits_since
+            wait = min(self._newest + self._soonest_status, since + LONGEST_SILENCE) - now
+            if wait <= 0.0:
+                self._waits_since = None
+                publish_status(super().publish_status)
+                return
+            self._waits_since = since
+            if self._later is None:
+                self._later = threading.Timer(wait, self._publish_late)
+                self._later.daemon = True
+                self._later.start()
+
+    def _publish_late(self) -> None:
+        with self.lock:
+            self._later = None
+            self.publish_status()
 
 
 def let_the_client_note_the_goal(taken_up: float, soonest_end: float = SOONEST_END) -> None:
     """Wait until a goal may be over, so that actionlib's SimpleActionClient can note which goal it sent.
 
-    That client drops an end that comes before its `send_goal` has returned, and waits for ever (ros/actionlib #206).
     `taken_up`: when it was taken up, by `time.monotonic`. `soonest_end`: s after which it may be over.
     """
     left = taken_up + soonest_end - time.monotonic()
@@ -83,8 +124,15 @@ class PromptActionServer(actionlib.SimpleActionServer):
         self._taken_up = 0.0
         self._no_goal = type(action().action_goal)()
         self._heap = Heap()
-        super().__init__(name, action, *arguments, **options)
-        self.action_server.publish_status = partial(publish_status, self.action_server.publish_status)
+        super().__init__(name, action, *arguments, auto_start=False, **options)
+        self.action_server = ActionServer(
+            name,
+            action,
+            self.internal_goal_callback,
+            self.internal_preempt_callback,
+            auto_start=False,
+            soonest_status=self._soonest_end,
+        )
 
     # The name is actionlib's: the constructor starts a thread with it.
     def executeLoop(self) -> None:  # noqa: N802

@@ -75,7 +75,7 @@ class ServerNode:
         do no more than set a flag.
         """
         server = PromptActionServer(
-            name, action, execute_cb=execute, auto_start=False, soonest_end=self.seconds("soonest_end", SOONEST_END)
+            name, action, execute_cb=execute, soonest_end=self.seconds("soonest_end", SOONEST_END)
         )
         server.register_preempt_callback(on_preempt)
         return server
