@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -84,6 +84,8 @@ class NaoAudioInput(NaoBasic):
         sounds = SoundFunctions(self, self.hearing, self._node.frame_prefix())
         self.add_parts(self.hearing, self.left, self.recogniser, self.card)
         self.add_parts(self.recordings, self.recognition, contexts, sounds, self.energies)
+        left = (self.recordings.drop, self.recognition.drop, self.energies.drop)
+        self.at_end(*map(self.with_robot, left))
         self._unrestored: dict[str, Any] | None = self.kept.load(dict)  # what goals had left going, not taken up yet
         self.serve("nao_audio_in", NaoAudioInAction)
         if self._unrestored:
@@ -127,11 +129,6 @@ class NaoAudioInput(NaoBasic):
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
         super().fill_result(result, outcomes)
         self.hearing.heard.fill(result)
-
-    def shutdown_steps(self) -> list[Callable[[], Any]]:
-        """As NaoBasic has them; what goals have left going ends."""
-        left = (self.recordings.drop, self.recognition.drop, self.energies.drop)
-        return [*super().shutdown_steps(), *map(self.with_robot, left)]
 
     # After the death of the node
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from nao_library_actions.msg import NaoAudioOutAction
@@ -51,6 +51,7 @@ class NaoAudioOutput(NaoBasic):
         speech = SpeechFunctions(self, self.synthesiser, self.sounds, self.words)
         voice = VoiceFunctions(self, self.synthesiser, card)
         self.add_parts(self.sounds, self.synthesiser, speech, voice, self.player, card)
+        self.at_end(self.words.close, self.with_robot(self.sounds.silence))
         self.serve("nao_audio_out", NaoAudioOutAction)
 
     # Functions: parameters are fields of AudioOutFunction
@@ -90,10 +91,6 @@ class NaoAudioOutput(NaoBasic):
                 result.volume = float(self.call_now(self.robot.proxy(DEVICE), "getOutputVolume"))
             except NaoError as error:
                 log.debug("the output volume is not known: %s", error)  # the chain is done all the same
-
-    def shutdown_steps(self) -> list[Callable[[], Any]]:
-        """As NaoBasic has them; and nothing sounds any more that goals have left in the background."""
-        return [*super().shutdown_steps(), self.words.close, self.with_robot(self.sounds.silence)]
 
     def connected(self, again: bool) -> None:
         if again:

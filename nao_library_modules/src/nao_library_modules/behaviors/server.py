@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -74,6 +74,7 @@ class NaoBehavior(NaoBasic):
         self.runs = RunningFunctions(self, self.store, self.tables, clients or Clients(self.tables.server))
         self.recordings = BehaviorRecordingFunctions(self, self.store, self.tables, goals)
         self.add_parts(self.runs, LibraryFunctions(self, self.store, self.tables, goals), self.recordings)
+        self.at_end(self.recordings.keep_recording)
         self._node.serve("NaoBehavior/list", ListBehaviors, self.answer_list)
         self.serve("NaoBehavior", NaoBehaviorAction)
 
@@ -89,10 +90,6 @@ class NaoBehavior(NaoBasic):
         result.results += self.recordings.cut_short
         result.steps = [step_message(record) for record in self.runs.steps]
         result.behaviors = [info_message(facts, self._is_shipped(facts.name)) for facts in self.runs.shown]
-
-    def shutdown_steps(self) -> list[Callable[[], Any]]:
-        """As NaoBasic has them; a recording that goes on is stored."""
-        return [*super().shutdown_steps(), self.recordings.keep_recording]
 
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
         """Names of the behaviours, for the description of the functions."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -123,6 +123,7 @@ class NaoMotion(NaoBasic):
         )
         self._dry_run = False
         self._mishaps = EventRelay(lambda: self.robot.proxy(MEMORY), self._told)
+        self.at_end(self.with_robot(self._stop_left_walk), self._mishaps.close)
         self.serve("NaoMotion", NaoMotionAction)
 
     def begin_goal_check(self, now: bool) -> None:
@@ -177,10 +178,6 @@ class NaoMotion(NaoBasic):
         else:
             result.position = list(self.body.motion_now("getAngles", joints, True))
         result.name = joints
-
-    def shutdown_steps(self) -> list[Callable[[], Any]]:
-        """As NaoBasic has them; a walk that a goal left going is stopped, and nothing is watched any more."""
-        return [*super().shutdown_steps(), self.with_robot(self._stop_left_walk), self._mishaps.close]
 
     def _stop_left_walk(self) -> None:
         if self.walks.left_walking:

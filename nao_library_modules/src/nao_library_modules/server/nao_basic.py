@@ -168,6 +168,8 @@ class NaoBasic(FunctionRunner):
         self._launch: Supervisor | None = None
         self._launched: LaunchPath | None = None
         self._diagnostics: Any = None
+        self._first_ends: list[Callable[[], Any]] = []
+        self._last_ends: list[Callable[[], Any]] = []
         self.robot.connection.add_listener(self._on_connection)
         node.on_shutdown(self.shut_down)
         if autostart:
@@ -248,17 +250,29 @@ class NaoBasic(FunctionRunner):
         if self._launch is not None:
             self._launch.stop()
 
+    def at_end(self, *steps: Callable[[], Any], first: bool = False) -> None:
+        """Have the end of the node do something more.
+
+        To be called as soon as there is what is to be ended: a node may be ended while its module is being made. A step
+        that needs the robot is made `with_robot`. `first`: before the function that runs is interrupted.
+        """
+        (self._first_ends if first else self._last_ends).extend(steps)
+
     def shut_down(self) -> None:
-        """End: make all steps of the end, whatever becomes of each."""
-        close_all(*self.shutdown_steps())
+        """Run every step of the end, even if one fails."""
+        try:
+            steps = self.shutdown_steps()
+        except Exception:  # of a module of a user's own, which is still being made
+            log.exception("%s.shutdown_steps failed: the module ends without what it adds", type(self).__name__)
+            steps = NaoBasic.shutdown_steps(self)
+        close_all(*steps)
 
     def shutdown_steps(self) -> list[Callable[[], Any]]:
-        """What the end of the node does, in order, beginning with the function that runs.
-
-        For modules with more to end; a step that needs the robot is made `with_robot`.
-        """
+        """What the end of the node does, in order. Modules add to it by `at_end`."""
         steps = [self.end_function, self.kept.forget, self._stop_listening, self.events.close, self.stop_launch]
-        return steps if self._diagnostics is None else [*steps, self._diagnostics.close]
+        if self._diagnostics is not None:
+            steps.append(self._diagnostics.close)
+        return [*self._first_ends, *steps, *self._last_ends]
 
     def with_robot(self, step: Callable[[], Any]) -> Callable[[], Any]:
         """A step of the end that is left out when there is no connection to the robot."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from nao_library_actions.msg import NaoTactileAction
@@ -63,6 +63,7 @@ class NaoTactile(NaoBasic):
         self.binding_functions = BindingFunctions(self.robot, self.senses, bindings, self.kept)
         self.add_parts(self.senses, self.binding_functions)
         self.add_parts(WaitingFunctions(self, self.senses), ReadingFunctions(self, self.senses))
+        self.at_end(bindings.close, self.with_robot(self.senses.drop_sonar))
         self.serve("NaoTactile", NaoTactileAction)
         if self.binding_functions.unrestored:
             self.robot.connection.in_background(self.binding_functions.restore)
@@ -77,14 +78,6 @@ class NaoTactile(NaoBasic):
     def argument_choices(self, function: str, field: str) -> Sequence[str]:
         """Names of the links that can be removed, for the description of the functions."""
         return self.binding_functions.bindings.names if (function, field) == ("removeOnTouch", "str_param") else ()
-
-    def shutdown_steps(self) -> list[Callable[[], Any]]:
-        """As NaoBasic has them; touches start nothing any more, and the sonars are let go."""
-        return [
-            *super().shutdown_steps(),
-            self.binding_functions.bindings.close,
-            self.with_robot(self.senses.drop_sonar),
-        ]
 
     def connected(self, again: bool) -> None:
         self.binding_functions.restore()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from nao_library_actions.msg import NaoVisionAction
@@ -102,6 +102,9 @@ class NaoVision(NaoBasic):
         self.cameras = Cameras(self, topics, {"top": camera_top, "bottom": camera_bottom}, namespace)
         self.files = VisionFiles(record_dir)
         self.jobs = CaptureJobs()
+        # First, so that files are complete whatever else takes long; and last, for a goal that was about to start one.
+        self.at_end(self.interrupt.stop, self.jobs.close, first=True)
+        self.at_end(self.jobs.close)
         self._results = ChainResults()
         self.detectors = Detectors(
             self, self.cameras, self._results, subscriber_name("NaoVision", namespace), self._node.frame_prefix()
@@ -133,10 +136,3 @@ class NaoVision(NaoBasic):
         """Add what the chain has seen and taken."""
         super().fill_result(result, outcomes)
         self._results.fill(result)
-
-    def shutdown_steps(self) -> list[Callable[[], Any]]:
-        """As NaoBasic has them; streams and recordings end first, so that files are complete whatever else takes long.
-
-        They end once more for a goal that was just about to start one.
-        """
-        return [self.interrupt.stop, self.jobs.close, *super().shutdown_steps(), self.jobs.close]
