@@ -10,6 +10,7 @@ FORMER = {
     "field_checks": "base.field_checks",
     "function_chain": "functions.chain",
     "light_checks": "lights.checks",
+    "nao_audio": "audio.sound_card",
     "nao_basic": "server.nao_basic",
     "new_functions": "server.new_functions",
     "node": "ros.node",

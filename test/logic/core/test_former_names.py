@@ -17,6 +17,7 @@ SERVERS = {
     "audio_in": "NaoAudioInput",
     "vision": "NaoVision",
     "tactile": "NaoTactile",
+    "nao_audio": "NaoAudio",
     "nao_basic": "NaoBasic",
 }
 
@@ -31,6 +32,14 @@ def test_a_module_with_a_former_name_is_the_same_module():
 @pytest.mark.parametrize("module", SERVERS)
 def test_servers_are_imported_from_their_folders(module):
     assert getattr(import_module(f"{LIBRARY}.{module}"), SERVERS[module]).__name__ == SERVERS[module]
+
+
+def test_both_modules_for_sound_inherit_nao_audio_and_have_its_functions():
+    nao_audio = import_module(f"{LIBRARY}.nao_audio").NaoAudio
+    for module in (import_module(f"{LIBRARY}.{name}") for name in ("audio_out", "audio_in")):
+        kind = getattr(module, SERVERS[module.__name__.rpartition(".")[2]])
+        assert issubclass(kind, nao_audio)
+        assert kind.declared_functions().items() >= nao_audio.functions.items()
 
 
 def test_what_packages_load_when_it_is_asked_for_is_there():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..functions.parts import Part
 from ..server.nao_basic import NaoBasic
 from .fields import DeviceParameter, DeviceSetting, Mute, OutputRate, OutputVolume, Revert
 
@@ -28,21 +27,19 @@ def put_back(module: NaoBasic, name: str, method: str, *args: Any) -> None:
     module.after_wait(lambda: module.call_now(module.robot.proxy(name), method, *args))
 
 
-class NaoAudio(Part):
-    """Functions of ALAudioDevice. Parameters are fields of the function message; it need not have those with defaults.
+class NaoAudio(NaoBasic):
+    """Base of the modules for sound: wraps ALAudioDevice.
 
-    `revert` puts back what a function has changed, after the wait that follows it, however the goal ends.
+    Parameters of functions are fields of the function message; it need not have those with defaults. `revert` puts back
+    what a function has changed, after the wait that follows it, however the goal ends.
     """
-
-    def __init__(self, module: NaoBasic) -> None:
-        self._module = module
 
     # Volume
 
     def set_output_volume(self, volume: OutputVolume, revert: Revert = False) -> None:
         """Set the volume of everything that sounds, 0..100."""
         if revert:
-            put_back(self._module, DEVICE, "setOutputVolume", int(self.device("getOutputVolume")))
+            put_back(self, DEVICE, "setOutputVolume", int(self.device("getOutputVolume")))
         self.device("setOutputVolume", int(volume))
 
     def get_output_volume(self) -> int:
@@ -52,7 +49,7 @@ class NaoAudio(Part):
     def mute_audio_out(self, enable: Mute, revert: Revert = False) -> None:
         """Silence the loudspeakers (`enable` true), or let them sound again."""
         if revert:
-            put_back(self._module, DEVICE, "muteAudioOut", bool(self.device("isAudioOutMuted")))
+            put_back(self, DEVICE, "muteAudioOut", bool(self.device("isAudioOutMuted")))
         self.device("muteAudioOut", bool(enable))
 
     def is_audio_out_muted(self) -> bool:
@@ -103,7 +100,7 @@ class NaoAudio(Part):
         """Set a parameter of the sound card named in `str_param`: outputSampleRate, Hz."""
         name = str_param.strip()
         if revert:
-            put_back(self._module, DEVICE, "setParameter", name, int(self.device("getParameter", name)))
+            put_back(self, DEVICE, "setParameter", name, int(self.device("getParameter", name)))
         self.device("setParameter", name, int(values[0]))
 
     def get_device_parameter(self, str_param: DeviceParameter) -> int:
@@ -112,9 +109,9 @@ class NaoAudio(Part):
 
     def device(self, method: str, *args: Any) -> Any:
         """Call ALAudioDevice; preemption ends the call."""
-        return self._module.call(self._module.robot.proxy(DEVICE), method, *args)
+        return self.call(self.robot.proxy(DEVICE), method, *args)
 
-    functions = {
+    function_table = {
         "setOutputVolume": set_output_volume,
         "getOutputVolume": get_output_volume,
         "muteAudioOut": mute_audio_out,

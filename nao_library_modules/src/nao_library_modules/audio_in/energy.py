@@ -10,7 +10,6 @@ from naoqi.errors import NaoError
 
 from ..audio.sound_card import DEVICE, NaoAudio
 from ..functions.parts import Part
-from ..server.nao_basic import NaoBasic
 from .fields import MICROPHONES, MeanTime
 from .hearing import Hearing, LeftGoing
 
@@ -28,11 +27,10 @@ class EnergyFunctions(Part):
     The robot computes them on demand only; what a function switches on for itself, it switches off again.
     """
 
-    def __init__(self, module: NaoBasic, hearing: Hearing, left: LeftGoing, card: NaoAudio) -> None:
+    def __init__(self, module: NaoAudio, hearing: Hearing, left: LeftGoing) -> None:
         self._module = module
         self._hearing = hearing
         self._left = left
-        self._card = card
 
     def get_energy(self, duration: MeanTime) -> list[float]:
         """How loud it is: left, right, front, rear."""
@@ -64,7 +62,7 @@ class EnergyFunctions(Part):
         """Have energies computed no longer."""
         self._left.computing = False
         self._left.keep()
-        self._card.device("disableEnergyComputation")
+        self._module.device("disableEnergyComputation")
 
     def renew(self) -> None:
         """Have energies computed again. Raises NaoError if the robot does not answer."""
@@ -117,7 +115,7 @@ class EnergyFunctions(Part):
         return False
 
     def _read(self, microphones: Sequence[str]) -> list[float]:
-        return [float(self._card.device(f"get{name.capitalize()}MicEnergy")) for name in microphones]
+        return [float(self._module.device(f"get{name.capitalize()}MicEnergy")) for name in microphones]
 
     def _call_now(self, method: str) -> None:
         self._module.call_now(self._module.robot.proxy(DEVICE), method)

@@ -20,7 +20,6 @@ from ..base.errors import BadGoal
 from ..functions.chain import checked_by
 from ..functions.parts import Part
 from ..nao.robot_files import HOME, full_path, is_in
-from ..server.nao_basic import NaoBasic
 from .fields import (
     MICROPHONES,
     Channels,
@@ -63,13 +62,10 @@ def length_of(file: Path) -> float | None:
 
 
 class SoundRecordingFunctions(Part):
-    def __init__(
-        self, module: NaoBasic, hearing: Hearing, left: LeftGoing, card: NaoAudio, robot_home: Path | None
-    ) -> None:
+    def __init__(self, module: NaoAudio, hearing: Hearing, left: LeftGoing, robot_home: Path | None) -> None:
         self._module = module
         self._hearing = hearing
         self._left = left
-        self._card = card
         self._robot_home = robot_home  # a folder of this computer; None: it is on the robot alone
 
     def _check_recording_begin(
@@ -137,7 +133,7 @@ class SoundRecordingFunctions(Part):
 
     def set_file_as_input(self, str_param: HeardFile) -> None:
         """Have the robot hear a file instead of its microphones."""
-        self._card.device("setFileAsInput", full_path(str_param.strip()))
+        self._module.device("setFileAsInput", full_path(str_param.strip()))
 
     def drop(self) -> None:
         """End the recording that runs, if one does; raises nothing."""

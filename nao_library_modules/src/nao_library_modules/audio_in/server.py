@@ -16,7 +16,6 @@ from ..audio.sound_card import NaoAudio, put_back
 from ..base.answers import Outcome
 from ..functions.chain import checked_by
 from ..processes.launcher import LaunchPath
-from ..server.nao_basic import NaoBasic
 from .contexts import ContextFunctions
 from .energy import EnergyFunctions
 from .fields import SENSES, Parameter, SetParameter, Value
@@ -29,7 +28,7 @@ from .sounds import SoundFunctions
 log = logging.getLogger(__name__)
 
 
-class NaoAudioInput(NaoBasic):
+class NaoAudioInput(NaoAudio):
     """Hearing goals: recordings, words, sounds and where they come from, and NAOqi's sound card.
 
     What a function begins ends with it, however it ends; only what startRecording, startRecognition,
@@ -46,7 +45,6 @@ class NaoAudioInput(NaoBasic):
         "getEnergy getLeftMicEnergy getRightMicEnergy getFrontMicEnergy getRearMicEnergy".split()
     )
     part_types = (
-        NaoAudio,
         SoundRecordingFunctions,
         RecognitionFunctions,
         ContextFunctions,
@@ -75,14 +73,13 @@ class NaoAudioInput(NaoBasic):
         delays = [self._node.seconds(name, 0.0) for name in ("speech_onset_delay", "speech_end_delay")]
         self.hearing = Hearing(self, str(self._node.namespace))
         self.left = LeftGoing(self.kept)
-        self.card = NaoAudio(self)
         self.recogniser = Recogniser(self, self.hearing, *delays)
-        self.recordings = SoundRecordingFunctions(self, self.hearing, self.left, self.card, home)
+        self.recordings = SoundRecordingFunctions(self, self.hearing, self.left, home)
         self.recognition = RecognitionFunctions(self, self.hearing, self.left, self.recogniser)
-        self.energies = EnergyFunctions(self, self.hearing, self.left, self.card)
+        self.energies = EnergyFunctions(self, self.hearing, self.left)
         contexts = ContextFunctions(self.recogniser, self.recordings)
         sounds = SoundFunctions(self, self.hearing, self._node.frame_prefix())
-        self.add_parts(self.hearing, self.left, self.recogniser, self.card)
+        self.add_parts(self.hearing, self.left, self.recogniser)
         self.add_parts(self.recordings, self.recognition, contexts, sounds, self.energies)
         left = (self.recordings.drop, self.recognition.drop, self.energies.drop)
         self.at_end(*map(self.with_robot, left))
@@ -103,7 +100,7 @@ class NaoAudioInput(NaoBasic):
         """Set a parameter of the speech recognition (Sensitivity, NbHypotheses, ...) or of the sound card."""
         name = str_param.strip()
         if name in DEVICE_PARAMETERS:
-            self.card.set_device_parameter(name, list(values), revert)
+            self.set_device_parameter(name, list(values), revert)
             return
         if revert:
             put_back(self, RECOGNITION, "setParameter", name, float(self.recogniser.call("getParameter", name)))
@@ -113,7 +110,7 @@ class NaoAudioInput(NaoBasic):
         """A parameter of the speech recognition (Sensitivity, NbHypotheses, ...) or of the sound card."""
         name = str_param.strip()
         if name in DEVICE_PARAMETERS:
-            return self.card.get_device_parameter(name)
+            return self.get_device_parameter(name)
         return float(self.recogniser.call("getParameter", name))
 
     function_table = {"setParameter": set_parameter, "getParameter": get_parameter}

@@ -13,7 +13,6 @@ from ..audio.sound_card import DEVICE, NaoAudio
 from ..base.answers import Outcome
 from ..functions.memory_functions import MemoryFunctions
 from ..processes.launcher import LaunchPath
-from ..server.nao_basic import NaoBasic
 from .player import PlayerFunctions
 from .settings import VoiceFunctions
 from .sounds import Sounds
@@ -26,7 +25,7 @@ log = logging.getLogger(__name__)
 UNKNOWN_VOLUME = -1.0
 
 
-class NaoAudioOutput(NaoBasic):
+class NaoAudioOutput(NaoAudio):
     """Audio goals: ALTextToSpeech, ALAnimatedSpeech, ALAudioPlayer, and of ALAudioDevice what NaoAudio offers.
 
     A function ends when what it plays has ended, unless it is in the `background`. A goal that fails or is preempted
@@ -36,7 +35,7 @@ class NaoAudioOutput(NaoBasic):
         Action `nao_audio_out` (nao_library_actions/NaoAudioOutAction) and what NaoBasic offers.
     """
 
-    part_types = (SpeechFunctions, VoiceFunctions, PlayerFunctions, NaoAudio)
+    part_types = (SpeechFunctions, VoiceFunctions, PlayerFunctions)
 
     def __init__(
         self, ip: str, port: int, autostart: bool = False, launchpath: LaunchPath | None = None, **options: Any
@@ -47,10 +46,9 @@ class NaoAudioOutput(NaoBasic):
         self.synthesiser = Synthesiser(self)
         self.words = SpokenWords(self)
         self.player = PlayerFunctions(self, self.sounds)
-        card = NaoAudio(self)
         speech = SpeechFunctions(self, self.synthesiser, self.sounds, self.words)
-        voice = VoiceFunctions(self, self.synthesiser, card)
-        self.add_parts(self.sounds, self.synthesiser, speech, voice, self.player, card)
+        voice = VoiceFunctions(self, self.synthesiser)
+        self.add_parts(self.sounds, self.synthesiser, speech, voice, self.player)
         self.at_end(self.words.close, self.with_robot(self.sounds.silence))
         self.serve("nao_audio_out", NaoAudioOutAction)
 

@@ -11,7 +11,6 @@ from ..base.errors import BadGoal
 from ..base.field_checks import require_known
 from ..functions.chain import checked_by
 from ..functions.parts import Part
-from ..server.nao_basic import NaoBasic
 from .fields import (
     ALL_PARAMETERS,
     EFFECTS,
@@ -36,10 +35,9 @@ from .synthesiser import SPEECH, Synthesiser
 class VoiceFunctions(Part):
     """Settings of ALTextToSpeech. Parameters are fields of AudioOutFunction."""
 
-    def __init__(self, module: NaoBasic, synthesiser: Synthesiser, card: NaoAudio) -> None:
+    def __init__(self, module: NaoAudio, synthesiser: Synthesiser) -> None:
         self._module = module
         self._synthesiser = synthesiser
-        self._card = card
 
     # Voices and languages
 
@@ -118,7 +116,7 @@ class VoiceFunctions(Part):
     ) -> None:
         """Set parameters of the voice; or outputSampleRate of the sound card, named in `str_param`."""
         if not names:
-            self._card.set_device_parameter(str_param, values, revert)
+            self._module.set_device_parameter(str_param, values, revert)
             return
         for name, value in zip(map(str.strip, names), values):
             if revert:
@@ -136,7 +134,7 @@ class VoiceFunctions(Part):
     def get_parameter(self, str_param: ReadParameter, names: ParameterNames) -> list[float]:
         """Parameters of the voice; or one, also of the sound card, named in `str_param`."""
         if not names and str_param.strip() in DEVICE_PARAMETERS:
-            return [self._card.get_device_parameter(str_param)]
+            return [self._module.get_device_parameter(str_param)]
         return [self._parameter(name.strip()) for name in names or [str_param]]
 
     def reset_speed(self) -> None:
