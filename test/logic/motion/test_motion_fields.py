@@ -23,7 +23,7 @@ def field(function, name):
 
 
 def points(*velocities):
-    return SimpleNamespace(points=[SimpleNamespace(velocities=each) for each in velocities])
+    return SimpleNamespace(points=[SimpleNamespace(velocities=each, accelerations=()) for each in velocities])
 
 
 FIELDS = [
@@ -37,6 +37,7 @@ FIELDS = [
     ("setStiffnesses", "angles", [[0.0, 1.0]], [[0.5, 1.5], [NAN]], r"is no stiffness: stiffnesses from 0 \(limp\)"),
     ("angleInterpolationBezier", "trajectory", [points((1.0,))], [points((1.0,), ())], "field trajectory.points: "),
     ("setPose", "trajectory", [points(), points(())], [points((), ())], "one point; setTrajectory takes more"),
+    ("setPose", "trajectory", [points((0.0,))], [points((0.5,))], "setTrajectory moves with them"),
     ("setPose", "duration", [0.0, 1.0], [-1.0, NAN, 1e6], r"0.001\.\.86400 s, or 0"),
     ("setMaxTryNumber", "values", [[1.0], [20.0]], [[], [0.0], [21.0], [1.5], [NAN], [1, 2]], "one whole number"),
     ("lookAt", "values", [[1.0, 0.0, 0.0]], [[1.0, 0.0]], "x, y, z of a point in m"),

@@ -65,6 +65,12 @@ def test_accelerations_bend_the_way_between_points():
     assert frames.velocities[0] == pytest.approx((0.527344, 0.9375, 0.527344, 0.0), abs=1e-6)
     bent = read(["HeadYaw"], point(1, [0.0], [0.0], [2.0]), point(2, [1.0], [2.0], [2.0]))
     assert bent.values[0] == pytest.approx([t**2 for t in (0.0, 0.25, 0.5, 0.75, 1.0)]), "a constant acceleration"
+    only = read(["HeadYaw"], point(2, [1.0], [0.0], [0.0]))
+    with pytest.raises(ValueError, match="absolute"):
+        only.bezier_arguments()
+    assert only.absolute([0.0]) == frames, "also to a first or only point, from where the joint rests"
+    further = read(["HeadYaw"], point(2, [0.5], [0.0], [0.0]), point(3, [0.5], [0.0], [0.0]), relative=True)
+    assert further.absolute([0.5]).values[0][:4] == pytest.approx((0.551758, 0.75, 0.948242, 1.0), abs=1e-6)
     for points, text in (
         ([point(1, [0.0], (), [0.0])], "accelerations alone"),
         ([point(1, [0.0], [0.0], [0.0]), point(2, [0.0], [0.0])], "point 1 has no accelerations, others have"),

@@ -8,7 +8,7 @@ The message is read by its fields, so anything that has them will do. What nao_r
 - points with velocities are joined by cubic Hermite segments with these velocities, points without by ALMotion's own
   interpolation;
 - points with accelerations as well are joined by quintic segments. ALMotion knows only cubic ones, so each is cut into
-  PIECES of them. The way to the first point stays cubic: where it starts is not known here.
+  PIECES of them: the way to the first point by `KeyFrames.absolute`, for where it starts is not known before.
 
 Efforts are not looked at: ALMotion does not know them.
 """
@@ -52,6 +52,8 @@ class KeyFrames:
         values: Of each joint its values at the times, in rad (hands and stiffnesses: 0..1).
         velocities: Of each joint its velocities at the times, in rad/s; None leaves them to the robot.
         relative: Whether the values are added to those at the start.
+        bend: Of each joint its acceleration in the first key frame, rad/s2, where the way there is to be cut into
+            pieces; None where it is as it is to be.
     """
 
     joints: tuple[str, ...]
@@ -59,6 +61,12 @@ class KeyFrames:
     values: tuple[tuple[float, ...], ...]
     velocities: tuple[tuple[float, ...], ...] | None = None
     relative: bool = False
+    bend: tuple[float, ...] | None = None
+
+    @property
+    def needs_start(self) -> bool:
+        """Whether the robot takes them only as `absolute` gives them."""
+        return self.bend is not None or (self.relative and self.velocities is not None)
 
     @property
     def duration(self) -> float:
@@ -71,14 +79,30 @@ class KeyFrames:
         return {joint: values[-1] for joint, values in zip(self.joints, self.values)}
 
     def absolute(self, start: Sequence[float]) -> KeyFrames:
-        """The same frames with values that are not relative.
+        """The same frames with values that are not relative, and with the pieces of the way to the first one.
 
-        `start`: values of the joints at the start, in their order.
+        `start`: values of the joints at the start, in their order. They rest there.
         """
-        if not self.relative:
-            return self
-        moved = tuple(tuple(first + value for value in values) for first, values in zip(start, self.values))
-        return replace(self, values=moved, relative=False)
+        frames = self
+        if frames.relative:
+            moved = tuple(tuple(first + value for value in values) for first, values in zip(start, frames.values))
+            frames = replace(frames, values=moved, relative=False)
+        return frames if frames.bend is None else frames._bent_from(start)
+
+    def _bent_from(self, start: Sequence[float]) -> KeyFrames:
+        assert self.velocities is not None and self.bend is not None
+        rest = (0.0,) * len(self.joints)
+        values, velocities = ([each[0] for each in rows] for rows in (self.values, self.velocities))
+        times, values, velocities = _quintic_pieces(
+            [0.0, self.times[0]], [tuple(start), values], [rest, velocities], [rest, self.bend]
+        )
+        return replace(
+            self,
+            times=(*times[1:-1], *self.times),
+            values=tuple((*before, *after) for before, after in zip(zip(*values[1:-1]), self.values)),
+            velocities=tuple((*before, *after) for before, after in zip(zip(*velocities[1:-1]), self.velocities)),
+            bend=None,
+        )
 
     def interpolation_arguments(self) -> tuple[list[str], list[list[float]], list[list[float]], bool]:
         """Arguments of ALMotion.angleInterpolation: names, angleLists, timeLists, isAbsolute."""
@@ -89,9 +113,9 @@ class KeyFrames:
         """Arguments of ALMotion.angleInterpolationBezier: jointNames, times, controlPoints.
 
         A Bezier segment whose tangents reach a third of its time is the cubic Hermite segment of these velocities.
-        Raises ValueError if there are no velocities, or the values are relative, which this method of the robot is not.
+        Raises ValueError if there are no velocities, or the frames are not yet `absolute`.
         """
-        if self.velocities is None or self.relative:
+        if self.velocities is None or self.needs_start:
             raise ValueError("Bezier curves need velocities and absolute values")
         starts = (0.0, *self.times[:-1])
         before = [time - start for start, time in zip(starts, self.times)]
@@ -128,12 +152,13 @@ def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False) -> 
     values = [
         _row(point.positions, source, joints, f"trajectory.points[{i}].positions") for i, point in enumerate(points)
     ]
-    velocities = _slopes("velocities", points, source, joints)
+    velocities, bend = _slopes("velocities", points, source, joints), None
     accelerations = _slopes("accelerations", points, source, joints)
     if accelerations is not None:
         if velocities is None:
             name = "trajectory.points[0].velocities"
             raise BadGoal(name, [], "velocities beside accelerations", problem="there are accelerations alone")
+        bend = None if times[0] == 0.0 else accelerations[0]
         times, values, velocities = _quintic_pieces(times, values, velocities, accelerations)
     first = 1 if times[0] == 0.0 else 0
     return KeyFrames(
@@ -142,6 +167,7 @@ def read_trajectory(trajectory: Any, chains: Chains, relative: bool = False) -> 
         tuple(zip(*values[first:])),
         None if velocities is None else tuple(zip(*velocities[first:])),
         bool(relative),
+        bend,
     )
 
 

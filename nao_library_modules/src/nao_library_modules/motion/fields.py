@@ -58,9 +58,14 @@ def _require_velocities(name: str, trajectory: Any) -> None:
         raise BadGoal(f"{name}.points", "no velocities", "velocities in every point; setTrajectory needs none")
 
 
-def _require_one_point(name: str, trajectory: Any) -> None:
+def _require_pose(name: str, trajectory: Any) -> None:
     if len(trajectory.points) > 1:
         raise BadGoal(f"{name}.points", len(trajectory.points), "one point; setTrajectory takes more")
+    for what in ("velocities", "accelerations"):
+        given = list(getattr(trajectory.points[0], what)) if trajectory.points else []
+        if any(given):
+            allowed = "none, or zeros, for joints rest in a pose; setTrajectory moves with them"
+            raise BadGoal(f"{name}.points[0].{what}", given, allowed)
 
 
 def _require_tries(name: str, values: Sequence[float]) -> None:
@@ -147,7 +152,9 @@ SmoothTrajectory = Annotated[
         help="key frames: positions and velocities", allowed="velocities in every point", check=_require_velocities
     ),
 ]
-PosePoint = Annotated[Any, free("pose as a point", allowed="one point, or none", check=_require_one_point)]
+PosePoint = Annotated[
+    Any, free("pose as a point", allowed="one point without velocities, or none", check=_require_pose)
+]
 TrajectoryJoints = Annotated[
     List[str],
     _SOME_NAMES.but(

@@ -173,9 +173,14 @@ class JointMotion(BodyPart):
         plan = self.body.plan
         frames = _key_frames(plan.facts, names, trajectory, relative)
         plan.require_stiff(frames.joints, stiffness)
-        if frames.relative and frames.velocities is not None and any(plan.angles[j] is None for j in frames.joints):
-            allowed = "false, where the trajectory has velocities and an earlier function moves"
-            raise BadGoal("relative", relative, allowed)
+        if frames.needs_start:
+            start = [plan.angles[joint] for joint in frames.joints]
+            known = [angle for angle in start if angle is not None]
+            if len(known) == len(start):
+                frames = frames.absolute(known)
+            elif frames.relative:
+                allowed = "false, where the trajectory has velocities and an earlier function moves"
+                raise BadGoal("relative", relative, allowed)
         plan.follow(dict(zip(frames.joints, frames.values)), frames.times, frames.relative, "trajectory.points")
 
     @checked_by(_check_trajectory)
@@ -185,7 +190,7 @@ class JointMotion(BodyPart):
         """Move joints along a trajectory: through its positions, with its velocities where it has some."""
         frames = _key_frames(self.body.facts, names, trajectory, relative)
         self.body.stiffen(frames.joints, stiffness)
-        if frames.relative:
+        if frames.needs_start:
             frames = frames.absolute(self.motion("getAngles", list(frames.joints), False))
         if frames.velocities is None:
             self.motion("angleInterpolation", *frames.interpolation_arguments())

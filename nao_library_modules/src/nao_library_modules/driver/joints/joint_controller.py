@@ -93,7 +93,7 @@ class JointController:
             call = motion.call_async("angleInterpolation", *frames.interpolation_arguments())
         else:
             # From the commands, as the robot counts relative angles, and not from what a loaded joint sags to.
-            start = self._quick("getAngles", joints, False) if frames.relative else ()
+            start = self._quick("getAngles", joints, False) if frames.needs_start else ()
             call = motion.call_async("angleInterpolationBezier", *frames.absolute(start).bezier_arguments())
         if report is not None:
             self._report_until_over(call, joints, interrupt, report)
