@@ -6,7 +6,6 @@ import sys
 import actionlib
 import rospy
 from rospy import Duration
-from trajectory_msgs.msg import JointTrajectory
 
 import nao_library_actions.msg
 from nao_library_modules.new_functions import JointTrajectoryPoint, newMotionFunction
@@ -32,8 +31,7 @@ for name, angle in zip(result.name, result.position):
 point_1 = JointTrajectoryPoint(time_from_start, new_pose)
 
 # "Now the point can be called again in a setPose() function to return to the pose"
-trajectory = JointTrajectory(joint_names=result.name, points=[point_1])
-setPose = newMotionFunction("setPose", trajectory, stiffness=1.0)
+setPose = newMotionFunction("setPose", ["RArm"], point_1, stiffness=1.0)
 motion_client.send_goal(nao_library_actions.msg.NaoMotionGoal([setPose]))
 motion_client.wait_for_result(LIMIT) or sys.exit("setPose: no result within 60 s")
 print("setPose:", motion_client.get_goal_status_text() or "done")

@@ -7,6 +7,7 @@ import sys
 
 import pytest
 from genpy import Duration
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 import nao_library_msgs.msg
 import nao_library_msgs.srv
@@ -35,6 +36,16 @@ def test_values_go_to_the_next_fields_of_their_kind():
     ):
         with pytest.raises(TypeError, match=text):
             new.newLedFunction("on", *values, **fields)
+
+
+def test_a_point_or_several_are_a_trajectory_for_the_joints_of_names():
+    first, second = (JointTrajectoryPoint(positions=[angle]) for angle in (0.5, 1.0))
+    pose = MotionFunction(function="setPose", names=["RArm"], trajectory=JointTrajectory(points=[first]))
+    assert new.newMotionFunction("setPose", ["RArm"], first) == pose
+    assert new.newMotionFunction("setPose", names=["RArm"], trajectory=first) == pose
+    assert new.newMotionFunction("setTrajectory", ["RArm"], [first, second]).trajectory.points == [first, second]
+    with pytest.raises(TypeError, match="no field left for"):
+        new.newMotionFunction("setTrajectory", [first, "second"])
 
 
 def test_a_point_of_a_trajectory_has_its_time_first():

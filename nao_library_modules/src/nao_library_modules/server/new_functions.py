@@ -1,8 +1,9 @@
 """Function messages written as calls: newMotionFunction("getAngles", ["RArm"]), newLedFunction("off", ["Brain0"]).
 
 Each value goes to the next field of its kind in the order of the message: a text to `str_param`, a list of texts to
-`lights` or `names`, a list of numbers to the first list of numbers, a duration to `time`. What has no value has its
-default; fields may also be named, as in the messages themselves, and `on_error` has to be.
+`lights` or `names`, a list of numbers to the first list of numbers, a duration to `time`, a trajectory, one point or a
+list of points to `trajectory`. What has no value has its default; fields may also be named, as in the messages
+themselves, and `on_error` has to be.
 """
 
 from __future__ import annotations
@@ -27,13 +28,14 @@ from nao_library_msgs.msg import (
 
 Message = TypeVar("Message")
 
+TRAJECTORY = "trajectory_msgs/JointTrajectory"
 FITS: dict[str, Callable[[Any], bool]] = {
     "bool": lambda value: isinstance(value, bool),
     "string": lambda value: isinstance(value, str),
     "duration": lambda value: isinstance(value, genpy.Duration),
     "int32": lambda value: isinstance(value, int) and not isinstance(value, bool),
     "float64": lambda value: isinstance(value, Real) and not isinstance(value, bool),
-    "trajectory_msgs/JointTrajectory": lambda value: isinstance(value, JointTrajectory),
+    TRAJECTORY: lambda value: isinstance(_as_field(TRAJECTORY, value), JointTrajectory),
 }
 """Type of a field -> whether a value is one for it; of a list each member has to be."""
 
@@ -45,19 +47,21 @@ def new_function(kind: type, function: str, *values: Any, **fields: Any) -> Any:
     value.
     """
     message = kind(function=function)
+    types = dict(zip(message.__slots__, message._slot_types))
     for name, value in fields.items():
-        if name not in message.__slots__:
-            raise TypeError(f"{kind.__name__} has no field {name!r}, it has {', '.join(message.__slots__)}")
-        setattr(message, name, value)
+        if name not in types:
+            raise TypeError(f"{kind.__name__} has no field {name!r}, it has {', '.join(types)}")
+        setattr(message, name, _as_field(types[name], value))
     taken = ("function", "on_error", *fields)
-    left = [pair for pair in zip(message.__slots__, message._slot_types) if pair[0] not in taken]
+    left = [pair for pair in types.items() if pair[0] not in taken]
     for value in values:
         place = next((place for place, (_, type_) in enumerate(left) if _fits(type_, value)), None)
         if place is None:
             raise TypeError(
                 f"{kind.__name__} has no field left for {value!r}, after {function!r} and the values before"
             )
-        setattr(message, left[place][0], value)
+        name, type_ = left[place]
+        setattr(message, name, _as_field(type_, value))
         del left[: place + 1]
     return message
 
@@ -66,6 +70,14 @@ def _fits(type_: str, value: Any) -> bool:
     if type_.endswith("[]"):
         return isinstance(value, (list, tuple)) and all(FITS[type_[:-2]](member) for member in value)
     return FITS[type_](value)
+
+
+def _as_field(type_: str, value: Any) -> Any:
+    """A value as its field holds it: points alone are a trajectory whose joints the field `names` has."""
+    points = [value] if isinstance(value, _JointTrajectoryPoint) else value
+    if type_ != TRAJECTORY or not isinstance(points, (list, tuple)) or not points:
+        return value
+    return JointTrajectory(points=points) if all(isinstance(each, _JointTrajectoryPoint) for each in points) else value
 
 
 def _maker(kind: Type[Message], server: str, example: str) -> Callable[..., Message]:
