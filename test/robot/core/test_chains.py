@@ -303,12 +303,13 @@ def test_a_function_with_args_gets_the_other_fields_in_the_order_of_the_message(
 
 
 class Paper(ChainModule):
-    """A module with an execute_cb of its own."""
+    """A module with an execute_cb of its own: the parameters but name and time are a list, as the paper has it."""
 
     def execute_cb(self, goal):
         result = self.server.get_default_result()
         for message in goal.functions:
-            result.memList.append(self.run(message.function, self.args_of(message), message.time))
+            args = [getattr(message, field) for field in message.__slots__ if field not in ("function", "time")]
+            result.memList.append(str(self.run(message.function, args, message.time)))
         self.server.set_succeeded(result)
 
 
@@ -320,6 +321,7 @@ def test_an_execute_cb_of_ones_own_runs_functions_and_is_preempted_and_refuses(r
     assert goal.cancel().state == "preempted" and goals.module.done == ["one", "two", "three"]
     assert "unknown function 'sya'" in goals.refused(f("sya"))
     assert "field str_param: 'x'" in goals.refused(f("fail", "x"))
+    assert goals.succeed(f("insertData", "Test/Key=7"), f("getData", "Test/Key")).memList == ["None", "[7]"]
     with pytest.raises(BadGoal, match=r"too many positional arguments.*`args_of\(message\)` gives what"):
         goals.module.run("getData", ["Test/Key", [], []], 0)
 

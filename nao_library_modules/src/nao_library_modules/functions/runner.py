@@ -15,7 +15,7 @@ from naoqi.limits import CLEAN_UP_LIMIT
 from ..base.cancellation import CancellationToken
 from ..base.errors import BadGoal
 from ..robot.robot import wait_for_calls
-from .chain import FunctionChain, seconds
+from .chain import OF_THE_SERVER, FunctionChain, seconds
 
 log = logging.getLogger(__name__)
 
@@ -27,7 +27,10 @@ class FunctionRunner:
         clock: Time for waits.
         interrupt: Ends whatever is waited for. Any thread may trigger it.
         chain: Reads chains for the function table.
+        message_type: Type of the function messages, None where it is not known.
     """
+
+    message_type: type | None = None
 
     def __init__(self, function_table: Mapping[str, Callable[..., Any]], clock: Any) -> None:
         """Keep table and clock.
@@ -98,14 +101,21 @@ class FunctionRunner:
     def before_run(self) -> None:
         """Called before each function."""
 
-    @staticmethod
-    def _require_arguments(function: Callable[..., Any], args: Sequence[Any]) -> None:
-        signature = inspect.signature(function)
-        try:
-            signature.bind(*args)
-        except TypeError as error:
-            taken = f"{signature}: `args_of(message)` gives what the function takes of a message"
-            raise BadGoal("args", list(args), taken, problem=str(error)) from None
+    def _args_of_fields(self, name: str, args: Sequence[Any], error: TypeError) -> list[Any]:
+        """What a function takes of all the fields of its message but `function` and `time`, given in their order.
+
+        `error`: the reason why it does not take `args` themselves. Raises BadGoal if they are not all fields, or one
+        will not do.
+        """
+        fields = [] if self.message_type is None else self.message_type.__slots__
+        for left_out in (("function", "time"), OF_THE_SERVER):  # on_error may be among them
+            names = [field for field in fields if field not in left_out]
+            if names and len(names) == len(args):
+                return self.args_of(self.message_type(function=name, **dict(zip(names, args))))
+        taken = f"{inspect.signature(self.chain.look_up(name))}: `args_of(message)` gives what it takes of a message"
+        if names:
+            taken += f"; or all fields: {', '.join(names)}"
+        raise BadGoal("args", list(args), taken, problem=str(error)) from None
 
     def run(
         self,
@@ -121,7 +131,8 @@ class FunctionRunner:
 
         Args:
             function: Name in the function table.
-            args: Arguments, in the order of its parameters.
+            args: Arguments, in the order of its parameters; or all fields of a function message but `function` and
+                `time`, in their order, of which it gets what it takes.
             sleep_time: Wait afterwards, in s or as a ROS duration.
             on_answer: Told the answer as soon as it is there, before the wait.
         """
@@ -134,8 +145,10 @@ class FunctionRunner:
             try:
                 answer = callable_(*args)
             except TypeError:
-                self._require_arguments(callable_, args)
-                raise
+                problem = _misfit(callable_, args)
+                if problem is None:
+                    raise
+                answer = callable_(*self._args_of_fields(function, args, problem))
             if on_answer is not None:
                 on_answer(answer)
             self.wait(seconds(sleep_time))
@@ -163,3 +176,12 @@ class FunctionRunner:
                 if not quietly:
                     raise
                 log.warning("clean-up failed: %s", error)
+
+
+def _misfit(function: Callable[..., Any], args: Sequence[Any]) -> TypeError | None:
+    """Why a function does not take these arguments; None if it does."""
+    try:
+        inspect.signature(function).bind(*args)
+    except TypeError as error:
+        return error
+    return None

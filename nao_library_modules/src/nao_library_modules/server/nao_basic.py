@@ -9,6 +9,7 @@ from functools import wraps
 from typing import Any, ClassVar
 
 from genpy import Duration, Time
+from roslib.message import get_message_class
 
 from nao_library_msgs.msg import FunctionResult
 from nao_library_msgs.srv import CheckGoals
@@ -210,7 +211,7 @@ class NaoBasic(FunctionRunner):
         messages.
         """
         self.chain.server = name
-        self._feedback_type = type(action().action_feedback.feedback)
+        self._take_types(action)
         self.server = self._served = self._node.action_server(name, action, self._execute, self.interrupt.trigger)
         self.server.start()
         reports = {
@@ -227,6 +228,11 @@ class NaoBasic(FunctionRunner):
         self._node.serve_description(name, description.answer)
         self._node.serve(name + CHECK, CheckGoals, CheckService(self, action).answer)
         self._tell_ready()
+
+    def _take_types(self, action: type) -> None:
+        spec = action()
+        self._feedback_type = type(spec.action_feedback.feedback)
+        self.message_type = get_message_class(spec.action_goal.goal._slot_types[0].partition("[")[0])
 
     def _tell_ready(self) -> None:
         """Say once that goals are carried out from now on: the server is there, and the robot."""
@@ -351,7 +357,7 @@ class NaoBasic(FunctionRunner):
                     theirs()
 
             server.register_preempt_callback(preempt)
-            self._feedback_type = type(server.action_server.ActionSpec().action_feedback.feedback)
+            self._take_types(server.action_server.ActionSpec)
             self._heeded = server
         self._heed(server)
 
