@@ -36,15 +36,18 @@ def at(angle):
     return check
 
 
-def test_angles_go_out_change_and_come_back(stiff_robot, motion, at):
+def test_angles_go_out_change_and_come_back(stiff_robot, motion, at, angle):
     result = motion.succeed(f("setAngles", 1.0, names=["Head"], angles=[0.5, 0.2]), f("getAngles", names=["HeadPitch"]))
     at(result, HeadYaw=0.5, HeadPitch=0.2)
     at(motion.succeed(f("changeAngles", 1.0, names=["HeadYaw"], angles=[-0.2])), HeadYaw=0.3)
     at(motion.succeed(f("setAngles", 1.0, names=["Head"], angles=[0.1], relative=True)), HeadYaw=0.4, HeadPitch=0.3)
     at(motion.succeed(f("setAngles", 1.0, names=["HeadPitch", "HeadYaw"], angles=[0.0])), HeadYaw=0.0, HeadPitch=0.0)
     motion.succeed(f("setAngles", names=["HeadYaw"], angles=[1.0], speed=0.05))
-    told = motion.succeed(f("getAngles", names=["HeadYaw"], commanded=True), f("getAngles", names=["HeadPitch"]))
-    assert 0.0 <= told.position[0] < 0.9
+    told = motion.succeed(f("getAngles", 1.0, names=["HeadYaw"], commanded=True), f("getAngles", names=["HeadPitch"]))
+    assert told.position == pytest.approx([float(result.values[0]) for result in told.results])
+    assert 0.0 <= told.position[0] < angle("HeadYaw") - 0.2, "as it was told when it was asked, a second ago"
+    after = motion.succeed(f("getAngles", names=["HeadYaw"]), f("setAngles", 1.0, names=["HeadYaw"], angles=[0.0]))
+    at(after, HeadYaw=0.0)
 
 
 def test_joints_turn_at_shares_of_their_top_speeds(stiff_robot, motion, angle):

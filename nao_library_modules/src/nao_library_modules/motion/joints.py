@@ -96,12 +96,15 @@ class JointMotion(BodyPart):
         self._driver = driver  # its pose_manager knows more poses
 
     def _check_joints(self, names: Sequence[str]) -> None:
-        self.body.plan.touch(self.body.joints(names))
+        self.body.plan.ask(self.body.joints(names))
 
     @checked_by(_check_joints)
     def get_angles(self, names: Joints, commanded: Commanded) -> list[float]:
         """Angles of joints and chains now, measured or as told; the result has them in `name` and `position`."""
-        return list(self.motion("getAngles", self.body.joints(names), not commanded))
+        joints = self.body.joints(names)
+        angles = list(self.motion("getAngles", joints, not commanded))
+        self.body.plan.answers.update(zip(joints, angles))
+        return angles
 
     def _check_angles(
         self, names: Sequence[str], angles: Sequence[float], speeds: Sequence[float], stiffness: float, relative: bool
@@ -190,7 +193,7 @@ class JointMotion(BodyPart):
         """Move joints along a trajectory: through its positions, with its velocities where it has some."""
         frames = _key_frames(self.body.facts, names, trajectory, relative)
         self.body.stiffen(frames.joints, stiffness)
-        if frames.needs_start:
+        if frames.relative or frames.needs_start:
             frames = frames.absolute(self.motion("getAngles", list(frames.joints), False))
         if frames.velocities is None:
             self.motion("angleInterpolation", *frames.interpolation_arguments())

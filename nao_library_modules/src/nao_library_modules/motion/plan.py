@@ -31,6 +31,8 @@ class MotionPlan:
 
     Attributes:
         touched: Joints that the chain moves or asks for, in order, each once.
+        asked: Those of them that it only asks for after its last motion of them.
+        answers: Joint -> angle that was last answered of it, rad (hands 0..1); filled while the chain runs.
         aimed: Those that the chain gives targets without waiting for them.
         moves: Whether the chain moves anything.
         moved: Joints that it moves; replaced as a whole, for other threads read it.
@@ -51,6 +53,8 @@ class MotionPlan:
         read_health: Callable[[], Health] = Health,
     ) -> None:
         self.touched: dict[str, None] = {}
+        self.asked: set[str] = set()
+        self.answers: dict[str, float] = {}
         self.aimed: dict[str, None] = {}
         self.moves = False
         self.moved: frozenset[str] = frozenset()
@@ -97,6 +101,11 @@ class MotionPlan:
     def touch(self, joints: Iterable[str]) -> None:
         self.touched.update(dict.fromkeys(joints))
 
+    def ask(self, joints: Iterable[str]) -> None:
+        """The result has joints as they are at this place of the chain."""
+        self.touch(joints)
+        self.asked.update(joints)
+
     def aim(self, joints: Iterable[str]) -> None:
         """Joints get targets that nobody waits for."""
         self.aimed.update(dict.fromkeys(joints))
@@ -119,6 +128,7 @@ class MotionPlan:
     def _goes(self, goals: Mapping[str, float | None]) -> None:
         self.moves = True
         self.angles.update(goals)
+        self.asked.difference_update(goals)
         self.moved |= frozenset(goals)
 
     def limp(self, joints: Iterable[str]) -> list[str]:

@@ -163,20 +163,28 @@ class NaoMotion(NaoBasic):
         return []
 
     def fill_result(self, result: Any, outcomes: Sequence[Outcome]) -> None:
-        """Add the joints that the chain moved or asked for; what an interrupted chain has set going is stopped."""
+        """Add the joints that the chain moved, as they are now, and those that it asked for, as they were then.
+
+        What an interrupted chain has set going is stopped.
+        """
         super().fill_result(result, outcomes)
         result.results += self.recordings.cut_short
-        joints = list(self.body.plan.touched)
+        plan = self.body.plan
+        joints = list(plan.touched)
         if self.interrupt.is_set():
             self.body.halt()
         if not joints:
             return
         if self._dry_run:
-            angles = self.body.plan.angles
+            angles = plan.angles
             joints = [joint for joint in joints if angles[joint] is not None]
             result.position = [angles[joint] for joint in joints]
         else:
-            result.position = list(self.body.motion_now("getAngles", joints, True))
+            answers = {joint: angle for joint, angle in plan.answers.items() if joint in plan.asked}
+            now = [joint for joint in joints if joint not in answers]
+            if now:
+                answers.update(zip(now, self.body.motion_now("getAngles", now, True)))
+            result.position = [answers[joint] for joint in joints]
         result.name = joints
 
     def _stop_left_walk(self) -> None:

@@ -102,9 +102,10 @@ class NaoBasic(FunctionRunner):
 
     @classmethod
     def declared_functions(cls) -> dict[str, Callable[..., Any]]:
-        """The functions of the class and of its parts, without those of the robot's memory."""
+        """The functions of the class, of its parts, and of classes above it; without those of the robot's memory."""
         own = cls.own_functions()
-        return {**own, **{name: each for name, each in joined(cls.part_types).items() if name not in own}}
+        here = {name: own[name] for name in vars(cls).get("functions", ())}
+        return {**here, **joined(cls.part_types), **own}
 
     def __init__(
         self,
