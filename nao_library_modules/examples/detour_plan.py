@@ -64,7 +64,7 @@ def get_there(goal: Place) -> None:
 
     def blocked(failure: NavigationLowLevelFailure) -> None:
         stopped = this_robot().place("odom")
-        perform(an(action, type="saying", text="Something is in my way.", wait=False))
+        perform(an(action, type="saying", text="Something is in my way."))
         step_back()
         try:
             try_each_in_order(lambda side: around(goal, stopped, side), [-1.0, 1.0])

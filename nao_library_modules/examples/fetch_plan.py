@@ -46,7 +46,7 @@ def find_ball(ball: Designator) -> Designator:
     return try_in_order(
         do(perceive, ball, timeout=2.0),
         lambda: seq(
-            do(perform, an(action, type="saying", text="Where is the ball?", wait=False)),
+            do(perform, an(action, type="saying", text="Where is the ball?")),
             do(turn_and_look, ball, -math.pi / 2.0),
         ),
         do(turn_and_look, ball, math.pi),

@@ -31,15 +31,15 @@ from nao_library_modules.process_modules.language.flow import wait_until as wait
 from nao_library_modules.process_modules.language.tasks import TaskState
 from nao_library_modules.process_modules.language.trace import trace_of
 from nao_library_modules.process_modules.low_level import (
-    close_gripper,
-    go_stable,
+    closeGripper,
+    goStable,
     make_process_modules,
-    move_arm,
-    move_head,
-    open_gripper,
-    text_to_speech,
+    moveArm,
+    moveHead,
+    openGripper,
+    textToSpeech,
     this_robot,
-    walk_to,
+    walkTo,
 )
 from nao_library_modules.process_modules.robot.plan_topic import PlanTopic
 from nao_library_msgs.msg import PlanTree
@@ -126,32 +126,32 @@ class ProcessModules(unittest.TestCase):
         self.assert_stands()
 
     def test_low_level_functions_by_name(self):
-        open_gripper("left")
+        openGripper("left")
         self.assertGreater(self.angle("LHand"), 0.9)
-        close_gripper("left")
+        closeGripper("left")
         self.assertLess(self.angle("LHand"), 0.1)
-        move_head(1.0, 0.5)
+        moveHead(1.0, 0.5)
         self.assertAlmostEqual(self.angle("HeadYaw"), math.atan2(0.5, 1.0), delta=0.03)
-        go_stable()
+        goStable()
         self.assertAlmostEqual(self.angle("LShoulderPitch"), 1.4, delta=0.05)
         with self.assertRaises(GripperClosedCompletely):
-            close_gripper("right", grasp=True)
+            closeGripper("right", grasp=True)
 
     def test_hands_get_to_their_targets(self):
         for side, y in (("left", 0.13), ("right", -0.13)):
             target = (0.16, y, 0.08)
-            move_arm(target, side)
+            moveArm(target, side)
             hand = self.motion.getPosition(f"{side[0].upper()}Arm", FRAME_TORSO, True)[:3]
             self.assertLess(math.dist(hand, target), 0.02, f"{side} hand at {hand}")
         with self.assertRaises(ManipulationPoseUnreachable) as caught:
-            move_arm((0.6, 0.13, 0.08), "left")
+            moveArm((0.6, 0.13, 0.08), "left")
         nearest = caught.exception.nearest
-        move_arm(nearest, "left")
+        moveArm(nearest, "left")
         self.assertLess(math.dist(self.motion.getPosition("LArm", FRAME_TORSO, True)[:3], nearest[:3]), 0.02)
 
     def test_the_robot_walks_to_its_target(self):
         start = self.robot.true_pose().position
-        reached = walk_to((0.3, 0.1, 0.3))
+        reached = walkTo((0.3, 0.1, 0.3))
         end = self.robot.true_pose().position
         self.assertLess(math.hypot(end.x - start.x - 0.3, end.y - start.y - 0.1), 0.05)
         self.assertLess(reached.distance_to(Place(0.3, 0.1, 0.3)), 0.05)
@@ -180,7 +180,7 @@ class ProcessModules(unittest.TestCase):
         self.link.topic("speech", String)
         news, heard = News(), self.heard()
         with news.messages("speech", String) as said:
-            text_to_speech("I am here.")
+            textToSpeech("I am here.")
             news.wait(lambda: String("I am here.") in said, "the sentence on the topic")
         wait_until(lambda: "I am here." in heard, 60.0, "the sentence on the robot")
 

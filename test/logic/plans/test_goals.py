@@ -15,6 +15,7 @@ from nao_library_modules.process_modules.language.failures import (
     NavigationHighLevelFailure,
     PerceptionObjectNotFound,
 )
+from nao_library_modules.process_modules.language.goals import achieved_by
 from nao_library_modules.process_modules.modules.vision import SeenThing
 
 
@@ -84,13 +85,36 @@ def test_a_plan_that_does_not_reach_its_goal_fails_and_can_be_tried_again(is_ope
     assert len(tries) == 4
 
 
+def test_a_goal_or_an_action_that_is_made_and_dropped_says_so(is_open, grippers, recwarn):
+    p.def_goal(is_open)(opens(grippers))
+    desig = p.an(p.action, type="opening", gripper="left")
+    p.holds(is_open("left")), p.do(p.achieve, is_open("left")), p.top_level(p.do(p.achieve, is_open("left")))
+    p.do(p.perform, desig), p.an(p.action, type="trying", what=[p.an(p.action, type="waving")]).get("what")
+    del desig
+    assert not recwarn.list
+    with pytest.warns(RuntimeWarning, match=r"is_open\('left', 1.0\) was made, and .*: achieve\(is_open") as told:
+        is_open("left")
+    assert told[0].filename == __file__
+    with pytest.warns(RuntimeWarning, match="an action .type='opening'. was made, and .*: perform"):
+        p.an(p.action, type="opening")
+
+
+def test_a_function_that_acts_when_it_is_called_means_a_goal(is_open, grippers):
+    opened = []
+    act = opens(grippers)
+    achieved_by(act, is_open)
+    p.def_goal(act)(opens(grippers, opened))
+    p.top_level(p.do(p.achieve, act, "left"))
+    assert opened == ["left"] and p.holds(act, "left") and is_open.plans
+
+
 def test_mistakes_about_goals_are_told(is_open):
     for arguments, named in ((("left", 1.0, 2.0), {}), ((), {"sid": "left"})):
         with pytest.raises(p.PlanError, match=r"is_open takes \(side, share\)"):
             is_open(*arguments, **named)
     told = r"no plan achieves is_open\('left', 1.0\): there are plans for nothing"
     fails(p.PlanError, told, p.do(p.achieve, is_open("left")))
-    fails(p.PlanError, "'open' is no occasion", p.do(p.achieve, "open"))
+    fails(p.PlanError, "'open' is no goal with its arguments", p.do(p.achieve, "open"))
 
 
 class Eyes(p.ProcessModule):

@@ -87,6 +87,9 @@ class Link:
 
         return SimpleNamespace(call=call)
 
+    def topic(self, name, kind):
+        return SimpleNamespace(tell=lambda message, limit: self.goals.setdefault(name, []).append(message) or True)
+
     def _trajectory(self, goal, interrupt, on_feedback):
         frames = self._joints.trajectory(goal.trajectory, relative=False)
         reached = self._joints.follow(frames, interrupt)
@@ -209,6 +212,15 @@ def test_goals_have_the_names_of_the_thesis(begin, robot, link, angle):
     begin(lambda: p.achieve(goals.opened_gripper("left"))).ended()  # it is
     assert len(link.goals["joint_trajectory"]) == sent == 3
     assert begin(lambda: p.achieve(goals.closeGripper, "left")).ended() == pytest.approx(0.0, abs=0.05)
+
+
+def test_procedures_of_the_thesis_act_when_they_are_called(begin, robot, link, angle):
+    begin(lambda: p.openGripper("left")).ended()
+    assert angle("LHand") > 0.9
+    begin(lambda: p.moveHead(p.Position(2, 3))).ended()
+    assert angle("HeadYaw") == pytest.approx(math.atan2(3, 2), abs=0.03)
+    begin(lambda: p.moveHead("right")).ended()
+    assert angle("HeadYaw") < -0.5
 
 
 def test_hands_close_around_what_is_there_and_tell_what_did_not_move(perform, robot, link):
@@ -353,13 +365,17 @@ def test_lights_have_a_colour_and_an_intensity_and_are_told_wrong_names(perform,
         perform(to(type="lighting", color="grene"))
 
 
-def test_saying_waits_for_the_end_of_the_text(perform, link):
+def test_a_text_goes_to_the_topic_or_is_waited_for(begin, perform, link):
+    perform(to(type="saying", text="Hi."))
+    begin(lambda: goals.textToSpeech("There.")).ended()
+    assert [message.data for message in link.goals.pop("speech")] == ["Hi.", "There."] and not link.goals
     link.answers["speech_action"] = ActionEnd(GoalStatus.SUCCEEDED, "", None)
-    perform(to(type="saying", text="Hello."))
-    assert link.goals["speech_action"][0].say == "Hello."
+    perform(to(type="saying", text="Hello.", wait=True))
+    begin(lambda: p.achieve(goals.textToSpeech, "I said it.")).ended()
+    assert [goal.say for goal in link.goals["speech_action"]] == ["Hello.", "I said it."]
     link.answers["speech_action"] = ActionEnd(GoalStatus.ABORTED, "no voice", None)
     with pytest.raises(SpeechLowLevelFailure, match="'Hello.' was not said: no voice"):
-        perform(to(type="saying", text="Hello."))
+        perform(to(type="saying", text="Hello.", wait=True))
 
 
 def found(kind, x, confidence=0.5, located=True):

@@ -85,6 +85,8 @@ from .language.trace import Trace, trace_of
 _LATER = {
     "start_process_modules": "low_level",
     "StartProcessModules": "low_level:start_process_modules",
+    # By way of the goals, so that `achieve` knows which of them each means.
+    **{name: "nao_goals" for name in "openGripper closeGripper moveHead moveArm goStable walkTo textToSpeech".split()},
     "ManipulationProcessModule": "modules.manipulation:Manipulation",
     "NavigationProcessModule": "modules.navigation:Navigation",
     "SpeechProcessModule": "modules.speech:Speech",

@@ -1,7 +1,8 @@
 """The functions under the process modules, by name: one call, one thing that the robot does.
 
 They may be called in plans, and outside of them. All take the robot of this node's namespace, unless `use_robot` names
-another one.
+another one. A program that is no node yet becomes one. Each is there in the spelling of the thesis as well: algorithms
+5.7 to 5.13.
 """
 
 from __future__ import annotations
@@ -10,14 +11,18 @@ import threading
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import rospy
+
 from ..base.places import Place
+from ..ros.ros_clock import RosClock
 from .action_rules.values import a_place, a_point, a_position
 from .core.process_module import ProcessModule
 from .core.registry import start_process_modules as start_modules
 from .designators.patterns import Mismatch, Pattern
 from .language.failures import PlanError
 from .language.plans import def_top_level_plan
-from .language.space import Point3
+from .language.settings import numbers_of_nao
+from .language.space import Point3, Position
 from .modules.lights import Lights
 from .modules.manipulation import Grip, Manipulation
 from .modules.navigation import Navigation
@@ -25,6 +30,8 @@ from .modules.speech import Speech
 from .modules.vision import Vision
 from .robot.robot_link import RobotLink
 
+CLIENT = "NaoActionClient"
+"""Node that a program becomes here, with a number behind it."""
 _lock = threading.Lock()
 _robots: list[RobotLink] = []
 
@@ -37,9 +44,13 @@ def use_robot(robot: RobotLink) -> RobotLink:
 
 
 def this_robot() -> RobotLink:
-    """The robot of `use_robot`, else that of this node's namespace."""
+    """The robot of `use_robot`, else that of this node's namespace; a program that is no node yet becomes one."""
     with _lock:
         if not _robots:
+            if not rospy.core.is_initialized():
+                main = threading.current_thread() is threading.main_thread()
+                rospy.init_node(CLIENT, anonymous=True, disable_signals=not main)
+                RosClock.wait_for_start()
             _robots.append(RobotLink())
         return _robots[0]
 
@@ -73,13 +84,17 @@ def close_gripper(side: str, grasp: bool = False) -> Grip:
 
 
 @def_top_level_plan
-def move_head(x: float, y: float, z: float | None = None) -> tuple[float, float]:
+def move_head(
+    x: float | Position | Sequence[float] | str, y: float | None = None, z: float | None = None
+) -> tuple[float, float]:
     """Look at a point: x m ahead and y m to the left of the torso, at the height of the eyes or z m over the torso.
 
-    Returns HeadYaw and HeadPitch, rad.
+    `x` alone: the point, `Position(2, 3)`, or the word of a direction. Returns HeadYaw and HeadPitch, rad.
     """
-    point = [x, y] if z is None else [x, y, z]
-    return Manipulation(this_robot()).move_head(_taken(a_position(), point))
+    head, words = Manipulation(this_robot()), numbers_of_nao().head
+    if y is None and isinstance(x, str) and x in words:
+        return head.turn_head(*words[x])
+    return head.move_head(_taken(a_position(), x if y is None else [x, y] if z is None else [x, y, z]))
 
 
 @def_top_level_plan
@@ -111,6 +126,11 @@ def walk_to(target: Place | Sequence[float]) -> Place:
 def text_to_speech(sentence: str) -> None:
     """Say a sentence, without waiting for its end."""
     Speech(this_robot()).text_to_speech(sentence)
+
+
+openGripper, closeGripper = open_gripper, close_gripper  # noqa: N816  names of the thesis, here and below
+moveHead, moveArm, goStable = move_head, move_arm, go_stable  # noqa: N816
+walkTo, textToSpeech = walk_to, text_to_speech  # noqa: N816
 
 
 def _taken(pattern: Pattern, value: Any) -> Any:

@@ -1,13 +1,13 @@
-"""What the process modules of a NAO can achieve, as goals, each under CRAM's name and under its action's. In ROS.
+"""What the process modules of a NAO can achieve, as goals, and the functions of `low_level` that mean them. In ROS.
 
 These are the same:
 
     achieve(opened_gripper("left"))
     achieve(open_gripper, "left")
     achieve(openGripper, "left")
-    achieve(low_level.open_gripper, "left")
 
-The process modules have to run: `run_and_tell` and `start_process_modules` run them.
+The process modules have to run: `run_and_tell` and `start_process_modules` run them. `openGripper("left")` alone opens
+the hand without them.
 """
 
 from __future__ import annotations
@@ -17,13 +17,28 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..base.places import ODOM, wrapped
-from . import low_level
 from .action_rules.values import a_place
 from .core.registry import perform
 from .designators.designator import action, an
 from .designators.patterns import Mismatch
 from .language.goals import Goal, achieved_by, declare_goal, def_goal
-from .low_level import this_robot
+from .low_level import (  # noqa: F401  with the names of the thesis
+    close_gripper,
+    closeGripper,
+    go_stable,
+    goStable,
+    move_arm,
+    move_head,
+    moveArm,
+    moveHead,
+    open_gripper,
+    openGripper,
+    text_to_speech,
+    textToSpeech,
+    this_robot,
+    walk_to,
+    walkTo,
+)
 
 
 def _there(reached: bool) -> bool | None:
@@ -109,9 +124,13 @@ for _goal, _kind, _values in (
     (moved_arm, "reaching", {"side": "side", "target": "target"}),
     (stable, "standing", {}),
     (at_place, "going", {"target": "target"}),
-    (said, "saying", {"text": "sentence"}),
 ):
     def_goal(_goal)(_by_action(_goal, _kind, _values))
+
+
+@def_goal(said)
+def _say(sentence: str) -> Any:
+    return perform(an(action, type="saying", text=sentence, wait=True))
 
 
 @def_goal(looking_at)
@@ -121,21 +140,15 @@ def _look(target: Any, y: float | None, z: float | None) -> Any:
     return perform(an(action, type="looking", target=target))
 
 
-open_gripper = openGripper = opened_gripper  # noqa: N816  names of the thesis, here and below
-close_gripper = closeGripper = closed_gripper  # noqa: N816
-move_arm = moveArm = moved_arm  # noqa: N816
-move_head = moveHead = turn_head = turnHead = looking_at  # noqa: N816
-go_stable = goStable = stable  # noqa: N816
-walk_to = walkTo = at_place  # noqa: N816
-text_to_speech = textToSpeech = said  # noqa: N816
+turn_head = turnHead = move_head  # noqa: N816
 
 for _function, _goal in (
-    (low_level.open_gripper, opened_gripper),
-    (low_level.close_gripper, closed_gripper),
-    (low_level.move_arm, moved_arm),
-    (low_level.move_head, looking_at),
-    (low_level.go_stable, stable),
-    (low_level.walk_to, at_place),
-    (low_level.text_to_speech, said),
+    (open_gripper, opened_gripper),
+    (close_gripper, closed_gripper),
+    (move_arm, moved_arm),
+    (move_head, looking_at),
+    (go_stable, stable),
+    (walk_to, at_place),
+    (text_to_speech, said),
 ):
     achieved_by(_function, _goal)

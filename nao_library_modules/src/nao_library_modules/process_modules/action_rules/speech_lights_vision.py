@@ -11,11 +11,13 @@ from ..designators.rules import Command, command, rule
 from .values import BOTH
 
 SPEECH, LIGHTS, VISION = "speech", "lights", "vision"
+WAIT = one_of(True, False).or_else(False)
+"""Whether to wait for the end of a text, by the action; else it goes to the topic /speech, and that is all."""
 
 
-@rule(BOTH, type=one_of("saying", "speaking"), text=text(), wait=one_of(True, False).or_else(True))
+@rule(BOTH, type=one_of("saying", "speaking"), text=text(), wait=WAIT)
 def saying(desig: Designator, wait: bool) -> Command:
-    return command(SPEECH, "say" if wait else "text_to_speech", text=desig["text"])
+    return _saying(desig["text"], wait)
 
 
 @rule(BOTH, type=one_of("lighting", "colouring"), color=text(), lights=anything().or_else(("FaceLeds",)))
@@ -34,11 +36,15 @@ def detecting(object: Designator, timeout: float, desig: Designator) -> Command:
     return command(VISION, "detect", type=object["type"], timeout=timeout, search=bool(desig.get("search")), **looked)
 
 
-@rule(action, name=one_of("to say", "text to speech"), text=text())
-def to_say(desig: Designator) -> Command:
-    return command(SPEECH, "say", text=desig["text"])
+@rule(action, name=one_of("to say", "text to speech"), text=text(), wait=WAIT)
+def to_say(desig: Designator, wait: bool) -> Command:
+    return _saying(desig["text"], wait)
 
 
-@rule(action, name=one_of("to say", "text to speech"), sentence=text())
-def to_say_a_sentence(sentence: str) -> Command:
-    return command(SPEECH, "say", text=sentence)
+@rule(action, name=one_of("to say", "text to speech"), sentence=text(), wait=WAIT)
+def to_say_a_sentence(sentence: str, wait: bool) -> Command:
+    return _saying(sentence, wait)
+
+
+def _saying(sentence: str, wait: bool) -> Command:
+    return command(SPEECH, "say" if wait else "text_to_speech", text=sentence)

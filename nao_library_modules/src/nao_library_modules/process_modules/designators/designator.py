@@ -23,6 +23,7 @@ from ...base.limits import limit
 from ...base.yaml_values import Budget, load_within
 from ..language.failures import DesignatorError, PlanError
 from ..language.short_text import short_repr
+from ..language.unused import MadeToBeUsed, use_all
 from .lisp import read_lisp
 
 KINDS = ("action", "motion", "location", "object")
@@ -35,7 +36,7 @@ BITS = 64
 Description = Union[Mapping[str, Any], Iterable[Any], str]
 
 
-class Designator:
+class Designator(MadeToBeUsed):
     """A description of one kind of thing.
 
     Designators do not change: copies, merges and next solutions are new ones. Two designate the same thing if they were
@@ -68,6 +69,7 @@ class Designator:
             raise PlanError(f"a designator with quantifier {quantifier!r}: {', '.join(QUANTIFIERS)}")
         self.kind = kind
         self.description = {plain_key(key): value for key, value in description.items()}
+        use_all([*self.description.values()])
         self.quantifier = quantifier
         self.parent: Designator | None = None
         self.successor: Designator | None = None
@@ -82,18 +84,22 @@ class Designator:
     # --- description --------------------------------------------------------------------------------------------------
 
     def __getitem__(self, key: str) -> Any:
+        self.use()
         if plain_key(key) not in self.description:
             raise DesignatorError(self, f"no key {key!r}: it has {', '.join(self.description) or 'none'}")
         return self.description[plain_key(key)]
 
     def get(self, key: str, default: Any = None) -> Any:
+        self.use()
         return self.description.get(plain_key(key), default)
 
     def __contains__(self, key: object) -> bool:
+        self.use()
         return isinstance(key, str) and plain_key(key) in self.description
 
     def copy(self, **changes: Any) -> Designator:
         """A copy with some keys changed; None removes a key. It is not equated."""
+        self.use()
         merged = {**self.description, **changes}
         kept = {key: value for key, value in merged.items() if value is not None}
         return type(self)(self.kind, kept, self.quantifier, self._resolve)
@@ -103,6 +109,7 @@ class Designator:
 
         Raises DesignatorError if the kinds differ, or the values of a common key.
         """
+        other.use()
         if other.kind != self.kind:
             raise DesignatorError(self, f"cannot be merged with {other}: the kinds differ")
         for key in self.description.keys() & other.description.keys():
@@ -155,6 +162,7 @@ class Designator:
         return self.timestamp is not None
 
     def _has(self, place: int) -> bool:
+        self.use()
         if self._solutions is None:
             resolve = self._resolve or Designator.by_rules
             self._solutions = itertools.islice(resolve(self), len(self._found), None)
@@ -170,12 +178,19 @@ class Designator:
 
     # --- text ---------------------------------------------------------------------------------------------------------
 
+    def unused(self) -> str:
+        if "_found" not in vars(self) or self.kind not in (action, motion):  # without the first: it was refused
+            return ""
+        return f"{self!r} was made, and nothing was done with it: perform(...) carries it out"
+
     def __str__(self) -> str:
+        self.use()
+        return repr(self)
+
+    def __repr__(self) -> str:
         inside = ", ".join(f"{key}={_shown(value)}" for key, value in self.description.items())
         quantifier = "an" if self.quantifier == "a" and self.kind[0] in "ao" else self.quantifier
         return f"{quantifier} {self.kind} ({inside})"
-
-    __repr__ = __str__
 
 
 # --- making them ------------------------------------------------------------------------------------------------------
@@ -295,6 +310,7 @@ _chains = threading.Lock()
 
 def equate(parent: Designator, successor: Designator) -> Designator:
     """Declare that two designators stand for the same thing, and that the second is newer; returns the second."""
+    use_all([parent, successor])
     if parent.kind != successor.kind:
         raise DesignatorError(successor, f"cannot be equated to {parent}: the kinds differ")
     with _chains:
@@ -306,6 +322,7 @@ def equate(parent: Designator, successor: Designator) -> Designator:
 
 
 def current_desig(desig: Designator) -> Designator:
+    desig.use()
     with _chains:
         return _newest(desig)
 
@@ -325,6 +342,7 @@ def newest_effective_designator(desig: Designator) -> Designator | None:
 
 
 def desig_equal(one: Designator, other: Designator) -> bool:
+    use_all([one, other])
     with _chains:
         return _first(one) is _first(other)
 

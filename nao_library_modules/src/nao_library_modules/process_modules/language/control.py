@@ -24,6 +24,7 @@ from .flow import Flow, checkpoint, here, set_here, uninterrupted, wait_until
 from .fluents import AnyFluent, Pulsed
 from .short_text import short_repr
 from .tasks import Task, TaskState, TaskTree, current_task, failed, failure_of
+from .unused import use_all
 
 log = logging.getLogger(__name__)
 
@@ -47,6 +48,7 @@ Branch = Union[Step, Callable[[], Any]]
 
 def do(function: Callable[..., Any], *arguments: Any, name: str = "", **keywords: Any) -> Step:
     """A branch: a function or a plan with its arguments, called when its turn comes. `name` is that of the task."""
+    use_all([*arguments, *keywords.values()])
     given = [short_repr(value, LONGEST) for value in arguments]
     given += [f"{key}={short_repr(value, LONGEST)}" for key, value in keywords.items()]
     # A plan makes a task of its own when it is called; the branch is that task already.

@@ -23,6 +23,7 @@ from typing import Any, Callable
 
 from .control import Step, name_of, subtask
 from .failures import GoalNotAchieved, PlanError
+from .unused import MadeToBeUsed
 
 Plan = Callable[..., Any]
 
@@ -38,11 +39,14 @@ ANY = _Anything()
 
 
 @dataclass(frozen=True)
-class Occasion:
+class Occasion(MadeToBeUsed):
     """A goal with its arguments: a condition that can be true of the world."""
 
     goal: Goal
     arguments: tuple[Any, ...]
+
+    def unused(self) -> str:
+        return f"the goal {self} was made, and nothing was done about it: achieve({self}) does it"
 
     def __str__(self) -> str:
         return f"{self.goal.name}({', '.join(map(repr, self.arguments))})"
@@ -92,13 +96,14 @@ def declare_goal(check: Callable[..., Any]) -> Goal:
     return Goal(name_of(check), check, names, defaults)
 
 
-def def_goal(goal: Goal, *pattern: Any) -> Callable[[Plan], Plan]:
+def def_goal(goal: Goal | Plan, *pattern: Any) -> Callable[[Plan], Plan]:
     """Decorator: a plan for a goal, for arguments that match a pattern.
 
     Args:
         *pattern: For each argument a value to be equal to, ANY, or a predicate; missing ones at the end are ANY. The
             plan receives the arguments without a value in the pattern.
     """
+    goal = _goal_of(goal)
     if not isinstance(goal, Goal):
         raise PlanError(f"def_goal: {goal!r} is no goal: declare it with declare_goal")
     if len(pattern) > len(goal.parameters):
@@ -118,17 +123,17 @@ _achieved_by: dict[Plan, Goal] = {}
 
 
 def achieved_by(function: Plan, goal: Goal) -> None:
-    """Let `achieve(function, ...)` mean a goal."""
+    """Let a function, which acts when it is called, mean a goal in `achieve`, `holds`, `perceive_state`, `def_goal`."""
     _achieved_by[function] = goal
 
 
-def holds(goal: Occasion | Goal, *arguments: Any) -> bool:
+def holds(goal: Occasion | Goal | Plan, *arguments: Any) -> bool:
     """Whether an occasion is true now; False if unknown."""
     occasion = _occasion(goal, arguments)
     return bool(occasion.goal.check(*occasion.arguments))
 
 
-def perceive_state(goal: Occasion | Goal, *arguments: Any) -> dict[str, Any] | None:
+def perceive_state(goal: Occasion | Goal | Plan, *arguments: Any) -> dict[str, Any] | None:
     """The arguments of an occasion by name, if it is true now; None if it is not, or unknown."""
     occasion = _occasion(goal, arguments)
 
@@ -138,7 +143,7 @@ def perceive_state(goal: Occasion | Goal, *arguments: Any) -> dict[str, Any] | N
     return subtask(Step(f"perceive {occasion}", body))
 
 
-def achieve(goal: Occasion | Goal, *arguments: Any) -> Any:
+def achieve(goal: Occasion | Goal | Plan, *arguments: Any) -> Any:
     """Make an occasion true: nothing is done when it holds already. The answer of its plan, or None.
 
     Raises GoalNotAchieved if the plan succeeded, and the occasion does not hold; PlanError if there is no plan for
@@ -158,14 +163,19 @@ def achieve(goal: Occasion | Goal, *arguments: Any) -> Any:
     return subtask(Step(f"achieve {occasion}", body))
 
 
-def _occasion(goal: Occasion | Goal, arguments: tuple[Any, ...]) -> Occasion:
-    if callable(goal) and not isinstance(goal, (Goal, Occasion)):
-        goal = _achieved_by.get(goal, goal)
-    if isinstance(goal, Goal):
-        return goal(*arguments)
-    if not isinstance(goal, Occasion) or arguments:
-        raise PlanError(f"{goal!r}{arguments or ''} is no occasion: call a goal with its arguments")
-    return goal
+def _occasion(goal: Occasion | Goal | Plan, arguments: tuple[Any, ...]) -> Occasion:
+    goal = _goal_of(goal)
+    occasion = goal(*arguments) if isinstance(goal, Goal) else goal
+    if not isinstance(occasion, Occasion) or (arguments and occasion is goal):
+        allowed = "achieve(goal(arguments...)), or achieve(goal_or_function, arguments...)"
+        raise PlanError(f"{goal!r}{arguments or ''} is no goal with its arguments: {allowed}")
+    occasion.use()
+    return occasion
+
+
+def _goal_of(thing: Any) -> Any:
+    """The goal that a function means, or the thing itself."""
+    return _achieved_by.get(thing, thing) if callable(thing) and not isinstance(thing, Goal) else thing
 
 
 def _plan_for(occasion: Occasion) -> Callable[[], Any]:
