@@ -157,7 +157,7 @@ def test_a_launch_file_is_started_at_once_or_when_asked_for_and_stopped_with_the
     path = ("nao_library", "nao.launch")
     module = Module(Connection("connected", 1), autostart=True, launchpath=path)
     assert (made, done) == ([(path, "10.0.0.7", 9559, "/robot1/")], ["start"])
-    assert set(module.node.reports) == {"Module robot", "Module goals", "Module launch file"}
+    assert set(module.node.reports) == {"Module robot", "Module NAO", "Module goals", "Module launch file"}
     for action in module.node.shutdown_actions:
         action()
     assert done == ["start", "stop"]

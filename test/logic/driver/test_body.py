@@ -15,12 +15,12 @@ from nao_library_modules.driver.base.robot_facts import KEYS, facts_of, info_fie
 from nao_library_modules.driver.joints.joint_sensors import JointSensors, read_motors, torque_per_ampere
 from nao_library_modules.driver.life.blinking import Blinks
 from nao_library_modules.driver.life.led_states import joined, shown
-from nao_library_modules.driver.sensors import body_reports as reports
-from nao_library_modules.driver.sensors.body_reports import BATTERY_FLAGS, Thresholds, battery_report, network_reports
 from nao_library_modules.driver.sensors.foot_pressure import keys_of, read_foot
 from nao_library_modules.driver.sensors.sonars import range_of
 from nao_library_modules.functions.joint_trajectory import H25_BODY
 from nao_library_modules.nao.pose_tables import BadPose, Pose, UnknownPose, built_in, library, pose_table
+from nao_library_modules.ros import body_reports as reports
+from nao_library_modules.ros.body_reports import BATTERY_FLAGS, Thresholds, battery_report, network_reports
 from nao_library_modules.ros.health import Level
 from nao_library_msgs.msg import RobotInfo
 from naoqi.errors import NaoError
@@ -70,6 +70,17 @@ def test_every_part_of_the_body_has_a_report():
     assert found["nao_joint: RHipYawPitch"].message == "No temperature sensor"
     assert found["nao_power: Current"].message == "-1.20 A (discharging)"
     assert [reports.part_of(name) for name in found][2:] == ["RHipYawPitch", "battery", "power", "cpu"]
+
+
+def test_all_parts_are_one_report_as_bad_as_the_worst():
+    joints = ("HeadYaw", "LHipYawPitch", "LKneePitch")
+    values = {key: 40.0 for key in reports.keys_of(joints)}
+    values.update({reports.CHARGE: 0.8, reports.BATTERY_STATUS: 0, reports.temperature_key("LKneePitch"): 50.0})
+    well = reports.summary(reports.body_reports(joints, values, LIMITS))
+    assert (well.level, well.message, well.values["LKneePitch"]) == (Level.OK, "well", "Normal: 50.0 C")
+    values.update({reports.CHARGE: 0.2, reports.temperature_key("LKneePitch"): 90.0})
+    bad = reports.summary(reports.body_reports(joints, values, LIMITS))
+    assert (bad.level, bad.message) == (Level.ERROR, "LKneePitch (Too hot), battery (Low)")
 
 
 def test_a_robot_that_does_not_tell_is_unknown_a_head_gets_hot_and_networks_are_told_by_their_kind():

@@ -74,6 +74,8 @@ def test_what_a_lost_robot_ends_and_one_that_comes_back_is_told(mortal, tmp_path
     )
     goal = lights.send(LedFunction(function="on", lights=["Brain0"], time=Duration(1000)))
     mortal.advance(0.5)
+    nao = lights.node.reports["NaoLights NAO"]
+    assert nao().message == "well" and {"battery", "power", "cpu"} < set(nao().values)
     mortal.server.stop()
     comes(lambda: not goal.active, "the end of the goal")
     goal.over()
@@ -82,6 +84,7 @@ def test_what_a_lost_robot_ends_and_one_that_comes_back_is_told(mortal, tmp_path
     assert " went away: " in server.text
     report = lights.node.reports["NaoLights robot"]()
     assert report.message.startswith("lost: ")
+    assert nao().message == "well", "as it was when it answered"
 
     connection = lights.module.robot.connection
     replace_server(mortal, tmp_path / "second")

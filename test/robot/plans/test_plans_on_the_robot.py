@@ -24,6 +24,7 @@ from nao_library_modules.process_modules.language.failures import (
     GripperClosedCompletely,
     GripperGoalNotReached,
     LightsLowLevelFailure,
+    ManipulationGoalNotReached,
     ManipulationPoseUnreachable,
     NavigationGoalNotReached,
     NavigationPoseUnreachable,
@@ -256,6 +257,8 @@ def test_the_head_turns_by_words_but_not_backwards(perform, robot, link, angle):
     limp(robot, "HeadYaw")
     with pytest.raises(PtuGoalNotReached, match="the head is at yaw .* instead of yaw 0.00"):
         perform(to(type="looking", direction="forward"))
+    with pytest.raises(ManipulationGoalNotReached, match="HeadYaw is at .* instead of 0.00 rad: a limp robot moves"):
+        perform(to(type="standing"))
 
 
 @pytest.mark.parametrize("side, sign", [("left", 1.0), ("right", -1.0)])

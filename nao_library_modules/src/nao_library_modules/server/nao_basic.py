@@ -33,6 +33,7 @@ from ..processes.supervisor import Supervisor
 from ..robot.event_relay import EventRelay
 from ..robot.robot import Robot
 from ..robot.robot_clock import RobotClock
+from ..ros.body_reports import BodyReporter
 from ..ros.health import GoalCounter, connection_report, launch_report
 from ..ros.startup_grace import StartupGrace
 
@@ -217,6 +218,7 @@ class NaoBasic(FunctionRunner):
         self.server.start()
         reports = {
             f"{name} robot": lambda: connection_report(self.robot.address, self.robot.connection),
+            f"{name} NAO": BodyReporter(self.robot).report,
             f"{name} goals": self._goals.report,
         }
         if self.launchpath is not None:

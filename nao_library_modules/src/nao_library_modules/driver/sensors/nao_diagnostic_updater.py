@@ -18,11 +18,11 @@ from naoqi.limits import ANSWER_LIMIT
 from ...base.answers import json_of
 from ...base.cancellation import CancellationToken
 from ...nao.joint_names import JointNames
+from ...ros.body_reports import Thresholds, body_reports, keys_of, network_reports, part_of
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ..base.node import number, publish
 from ..base.robot_facts import KEYS, facts_of, info_fields
-from .body_reports import Thresholds, body_reports, keys_of, network_reports, part_of
 
 log = logging.getLogger(__name__)
 

@@ -30,6 +30,9 @@ MARGIN = 5.0
 """s that a motion may take longer than it says."""
 SIDES = {"left": "L", "right": "R"}
 HEAD = ("HeadYaw", "HeadPitch")
+JOINT_TOLERANCE = 0.1
+"""rad that a joint under load may be off where it was to go."""
+LIMP = "a limp robot moves nothing, `wake_up` or NaoMotion's wakeUp stiffens it"
 STIRRED = 0.02
 """A hand that has moved by less, of its way from closed to open, has not moved."""
 
@@ -121,7 +124,7 @@ class Manipulation(RobotModule):
 
     @staticmethod
     def _not_reached(side: str, reached: float, wanted: float) -> GripperGoalNotReached:
-        text = f"the {side} hand is {reached:.2f} open instead of {wanted:.2f}"
+        text = f"the {side} hand is {reached:.2f} open instead of {wanted:.2f}: {LIMP}"
         return GripperGoalNotReached(text, side=side, reached=reached, wanted=wanted)
 
     # --- head ---------------------------------------------------------------------------------------------------------
@@ -150,7 +153,7 @@ class Manipulation(RobotModule):
         reached = self._move(goal, self._time(goal, settings.head_speed), PtuGoalNotReached)
         got = (reached[HEAD[0]], reached[HEAD[1]])
         if max(abs(a - b) for a, b in zip(got, nearest)) > settings.head_tolerance:
-            text = f"the head is at {_angles(got)} instead of {_angles(nearest)}"
+            text = f"the head is at {_angles(got)} instead of {_angles(nearest)}: {LIMP}"
             raise PtuGoalNotReached(text, wanted=nearest, reached=got)
         return got
 
@@ -181,7 +184,7 @@ class Manipulation(RobotModule):
         x, y, z = map(float, chain.tip({**now, **reached})[:3, 3])
         hand = Point3(x, y, z, TORSO)
         if hand.distance_to(point) > settings.arm_tolerance:
-            text = f"the {side} hand is at {hand} instead of {point}"
+            text = f"the {side} hand is at {hand} instead of {point}: {LIMP}"
             raise ManipulationGoalNotReached(text, target=target, reached=hand, side=side)
         return hand
 
@@ -204,12 +207,28 @@ class Manipulation(RobotModule):
         Raises ManipulationGoalNotReached if they did not get there.
         """
         wanted = {name: float(angle) for name, angle in angles.items()}
-        return self._move(wanted, time or self._time(wanted, self.robot.settings.arm_speed), ManipulationGoalNotReached)
+        return self._move_all(wanted, time or self._time(wanted, self.robot.settings.arm_speed))
 
     def go_stable(self) -> Mapping[str, float]:
-        """Take the pose from which everything else can begin; returns the angles, rad by name."""
+        """Take the pose from which everything else can begin; returns the angles, rad by name.
+
+        Raises ManipulationGoalNotReached if the joints did not get there.
+        """
         settings = self.robot.settings
-        return self._move(dict(settings.stable), settings.stable_time, ManipulationGoalNotReached)
+        return self._move_all(dict(settings.stable), settings.stable_time)
+
+    def _move_all(self, wanted: Mapping[str, float], time: float) -> Mapping[str, float]:
+        reached = self._move(wanted, time, ManipulationGoalNotReached)
+        # A hand stays open as far as there is something in it.
+        off = {
+            name: f"{name} is at {reached[name]:.2f} instead of {angle:.2f} rad"
+            for name, angle in wanted.items()
+            if not name.endswith("Hand") and abs(reached[name] - angle) > JOINT_TOLERANCE
+        }
+        if off:
+            text = f"{', '.join(list(off.values())[:3])}{' and more' if len(off) > 3 else ''}: {LIMP}"
+            raise ManipulationGoalNotReached(text, wanted=wanted, reached=reached)
+        return reached
 
     def _time(self, goal: Mapping[str, float], speed: float) -> float:
         now = self.robot.angles()

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
+import re
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ...nao.body_devices import (
+from naoqi.errors import NaoError
+
+from ..nao.body_devices import (
     BATTERY_STATUS,
     CHARGE,
     CHARGING_BIT,
@@ -17,8 +21,9 @@ from ...nao.body_devices import (
     TOO_HOT_MOTOR,
     temperature_key,
 )
-from ...nao.body_devices import CURRENT as AMPERES
-from ...ros.health import Level, Report
+from ..nao.body_devices import CURRENT as AMPERES
+from ..nao.joint_names import JointNames
+from .health import Level, Report
 
 JOINT = "nao_joint: {}"
 BATTERY, CURRENT, HEAD = "nao_power: Battery", "nao_power: Current", "nao_cpu: Head Temperature"
@@ -33,6 +38,11 @@ HEAD_TEMPERATURE = temperature_key("Head")
 # The motor of both hips has its sensor under the name of the left one.
 WITHOUT_SENSOR = frozenset({"RHipYawPitch"})
 UNKNOWN = "unknown"
+MEMORY = "ALMemory"
+LOOK_PERIOD = 5.0
+"""s between two looks at the body: heat and charge change slowly."""
+LOOK_LIMIT = 1.0
+"""s that the robot may take to answer."""
 
 BATTERY_FLAGS = (
     "End off Discharge flag",
@@ -88,6 +98,45 @@ def body_reports(joints: Sequence[str], values: Mapping[str, Any], limits: Thres
     reports[CURRENT] = current_report(_number(values.get(AMPERES)))
     reports[HEAD] = head_report(_number(values.get(HEAD_TEMPERATURE)), limits)
     return reports
+
+
+class BodyReporter:
+    """Asks a robot how its body is, for one report of each module. `robot`: its proxies and connection."""
+
+    def __init__(self, robot: Any) -> None:
+        self._robot = robot
+        self._joints = JointNames(robot)
+        self._last: Report | None = None
+        self._looked = -math.inf
+
+    def report(self) -> Report:
+        """The NAO as a whole, as it was at the last look; what of it is amiss has its place in the message."""
+        connection = self._robot.connection
+        if connection.state != "connected" or connection.silent:
+            return self._last or Report(Level.OK, UNKNOWN)  # that it does not answer is for another report
+        if self._last is None or time.monotonic() - self._looked > LOOK_PERIOD:
+            self._looked = time.monotonic()
+            try:
+                joints = self._joints.body
+                keys = keys_of(joints)
+                values = self._robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=LOOK_LIMIT)
+            except NaoError as error:
+                return Report(Level.OK, f"{UNKNOWN}: {error}")
+            self._last = summary(body_reports(joints, dict(zip(keys, values)), Thresholds()))
+        return self._last
+
+
+def summary(reports: Mapping[str, Report]) -> Report:
+    """One report of all, as bad as the worst. Its message has no numbers: modules that look at other times agree."""
+    amiss = sorted((name for name in reports if reports[name].level > Level.OK), key=lambda name: -reports[name].level)
+    heat = {name: report.values.get("Temperature", "None") for name, report in reports.items()}
+    measured = {name: float(value) for name, value in heat.items() if value != "None"}
+    told = [BATTERY, CURRENT, HEAD, *sorted(measured, key=measured.__getitem__)[-1:], *amiss]
+    values = {part_of(name): reports[name].message for name in told if name in reports}
+    if not amiss:
+        return Report(Level.OK, "well", values)
+    words = [f"{part_of(name)} ({re.split(': | [(]', reports[name].message)[0]})" for name in amiss]
+    return Report(reports[amiss[0]].level, ", ".join(words), values)
 
 
 def joint_report(joint: str, values: Mapping[str, Any], limits: Thresholds) -> Report:
