@@ -30,8 +30,8 @@ MARGIN = 5.0
 """s that a motion may take longer than it says."""
 SIDES = {"left": "L", "right": "R"}
 HEAD = ("HeadYaw", "HeadPitch")
-JOINT_TOLERANCE = 0.1
-"""rad that a joint under load may be off where it was to go."""
+JOINT_TOLERANCE = 0.3
+"""rad that a joint may be off where it was to go: soles that stick to the ground hold legs by 0.1 rad after a walk."""
 LIMP = "a limp robot moves nothing, `wake_up` or NaoMotion's wakeUp stiffens it"
 STIRRED = 0.02
 """A hand that has moved by less, of its way from closed to open, has not moved."""
