@@ -104,3 +104,12 @@ def test_a_launch_path_that_leads_nowhere_is_refused_and_making_a_supervisor_sta
         with pytest.raises(BadLaunchPath, match=r"it is \(package, launchfile\)"):
             launch_supervisor(path, "10.0.0.7", 9559, "/")
     assert launch_supervisor(PATH, "10.0.0.7", 9559, "/robot1/").status.state is SupervisorState.STOPPED
+
+
+@pytest.mark.parametrize("ended", [True, False])
+def test_what_fails_because_the_node_is_ended_while_it_is_made_is_one_line(monkeypatch, ended):
+    monkeypatch.setattr(node.rospy.core, "is_shutdown_requested", lambda: ended)
+    interrupted = node.rospy.ROSInitException("init_node interrupted")
+    with pytest.raises(SystemExit if ended else node.rospy.ROSInitException, match="interrupted"):
+        with node.being_made("NaoLights"):
+            raise interrupted

@@ -6,7 +6,8 @@ import argparse
 import os
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import rosgraph
@@ -146,14 +147,15 @@ def run_module(
     options = start_node(name, description, argv)
     try:
         ip, port = robot_address(options, rospy.get_param)
-        made = module(
-            ip,
-            port,
-            autostart=bool(rospy.get_param("~autostart", False)),
-            launchpath=launch_path(rospy.get_param("~launchpath", "")),
-            **{name: rospy.get_param(f"~{name}", default) for name, default in (parameters or {}).items()},
-            **_start_patience(),
-        )
+        with being_made(name):
+            made = module(
+                ip,
+                port,
+                autostart=bool(rospy.get_param("~autostart", False)),
+                launchpath=launch_path(rospy.get_param("~launchpath", "")),
+                **{name: rospy.get_param(f"~{name}", default) for name, default in (parameters or {}).items()},
+                **_start_patience(),
+            )
         take_patience(made.robot)
     except NaoError as error:
         rospy.logfatal("%s", error)
@@ -174,11 +176,23 @@ def start_node(name: str, description: str, argv: Sequence[str] | None) -> argpa
     options = robot_parser(description).parse_args(rospy.myargv(argv)[1:])
     waited_for = wait_for_name()
     end_in_time()  # before rospy's own hook, which hangs where Ctrl-C comes while the node talks to the master
-    rospy.init_node(name)
+    with being_made(name):
+        rospy.init_node(name)
     if waited_for:
         rospy.logwarn("the name %s is free again: this node is back", waited_for)
     forward_logs(*FORWARDED_LOGGERS)
     return options
+
+
+@contextmanager
+def being_made(name: str) -> Iterator[None]:
+    """End the process in a word where something fails for the one reason that the node is ended meanwhile."""
+    try:
+        yield
+    except Exception as error:
+        if not rospy.core.is_shutdown_requested():
+            raise
+        raise SystemExit(f"{name}: the node was ended while it was being made ({error})") from None
 
 
 def own_as_node(robot: Any, watches: bool) -> None:

@@ -19,7 +19,7 @@ from ...ros.concurrent_action_server import ConcurrentActionServer
 from ...ros.diagnostics import DiagnosticsPublisher, Reports
 from ...ros.driver_types import require_types
 from ...ros.health import connection_report
-from ...ros.node import own_as_node, robot_address, start_node, take_patience
+from ...ros.node import being_made, own_as_node, robot_address, start_node, take_patience
 from ...ros.node_interface import AlreadyOffered, NodeInterface
 from ...ros.node_place import NodePlace
 from ...ros.robot_frames import tf_prefix
@@ -57,7 +57,8 @@ def run_driver(
         ip, port = robot_address(options, rospy.get_param)
         robot = Robot(ip, port)
         take_patience(robot)
-        node = _made(make, robot)
+        with being_made(name):
+            node = _made(make, robot)
     except NaoError as error:
         rospy.logfatal("%s", error)
         return 1
