@@ -7,7 +7,6 @@ import threading
 
 import numpy as np
 import pytest
-import qi
 from simulator import PATIENCE, connected
 from sounds import RATE, frequency, loudness, played, tone, write
 
@@ -141,7 +140,6 @@ class Hearing:
         self.may_return = threading.Event()
         self.may_return.set()
 
-    @qi.bind(qi.Void, [qi.Int32, qi.Int32, qi.Dynamic, "r"])
     def processRemote(self, channels, frames, time, buffer):
         self.heard.put((channels, frames, time[0] + 1e-6 * time[1], np.frombuffer(bytes(buffer), "<i2")))
         self.may_return.wait(PATIENCE)

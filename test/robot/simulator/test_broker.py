@@ -140,6 +140,37 @@ def test_modules_of_clients_are_called_in_order_and_one_that_hangs_holds_up_no_o
     assert stuck.calls.get(timeout=PATIENCE) == 3  # the one that waited was dropped
 
 
+def test_bytes_that_a_module_is_called_with_stay_bytes(listening, connect):
+    broker, echo = listening(), Echo()
+    client = connect(broker.port)
+    client.listen("tcp://127.0.0.1:0")
+    client.registerService("Echo", echo)
+    broker.call("Echo", "hear", [[b"\x02\xff", {"picture": (1, 2.5, bytearray(b"text"))}, None, True, "ä", 2**40]])
+    assert echo.calls.get(timeout=PATIENCE) == [b"\x02\xff", {"picture": (1, 2.5, b"text")}, None, True, "ä", 2**40]
+
+
+def test_a_call_with_bytes_fails_as_its_method_does_and_when_its_program_has_ended(listening, connect):
+    broker = listening()
+    client = connect(broker.port)
+    client.listen("tcp://127.0.0.1:0")
+    client.registerService("Picky", Picky())
+    picky = broker.service("Picky")
+    with pytest.raises(RuntimeError, match="ValueError: too short"):
+        picky.call("hear", b"\xff")
+    assert picky.call("hear", b"\xff\xff") is None
+    client.close()
+    with pytest.raises(RuntimeError):
+        picky.call("hear", b"\xff\xff")
+
+
+class Picky:
+    """Wants two bytes."""
+
+    def hear(self, value):
+        if len(value) < 2:
+            raise ValueError("too short")
+
+
 def test_a_module_whose_first_connection_is_refused_is_asked_again(listening, connect, monkeypatch):
     broker, echo = listening(), Echo()
     client = connect(broker.port)

@@ -14,6 +14,7 @@ from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import WorkThreads
 from nao_sim_bridge.naoqi.binding.client_calls import NoAnswer, answer, worth_telling
 from nao_sim_bridge.server.own_sockets import StuckClients, free_port_on_exit, has_clients, is_listened_on
+from nao_sim_bridge.server.wire import Wires, has_bytes, packed_arguments
 
 log = logging.getLogger("nao_sim.broker")
 
@@ -48,6 +49,7 @@ class Broker:
         self._session = qi.Session()
         self._services: dict[str, tuple[int, Any]] = {}
         self._callers: dict[str, _Caller] = {}
+        self._wires = Wires()
         self._gone: Callable[[str], None] = lambda module: None
         self._telling = WorkThreads("modules that have left")
         self._lost = 0
@@ -119,13 +121,16 @@ class Broker:
         return has_clients(self.port)
 
     def service(self, module: str) -> Any:
-        """The service of that name, of the simulator or of a client.
+        """The service of that name, of the simulator or of a client; bytes that it is called with stay bytes.
 
         A RuntimeError when there is none, or its program does not answer.
         """
         for further in reversed(range(ASKED)):
             try:
-                return answer(self._session.service(module, _async=True), threading.Condition(), lambda: True, FOUND)
+                found = self._session.service(module, _async=True)
+                return _Module(
+                    module, answer(found, threading.Condition(), lambda: True, FOUND), self._session, self._wires
+                )
             except NoAnswer:
                 raise
             except RuntimeError:
@@ -198,7 +203,36 @@ class Broker:
             caller.end()
         if self._watch is not None:
             self._watch.close()
+        self._wires.close()
         self._session.close()
+
+
+class _Module:
+    """A service as libqi has it, but for bytes: its Python binding makes text of them where any value is taken."""
+
+    def __init__(self, name: str, remote: Any, session: Any, wires: Wires) -> None:
+        self._name, self._remote, self._session, self._wires = name, remote, session, wires
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._remote, name)
+
+    def call(self, method: str, *arguments: Any, _async: bool = False) -> Any:
+        """As libqi's `call`."""
+        future = self._call_with_bytes(method, arguments) if has_bytes(arguments) else None
+        if future is None:
+            return self._remote.call(method, *arguments, _async=_async)
+        return future if _async else future.value()
+
+    def _call_with_bytes(self, method: str, arguments: tuple) -> Any:
+        """The future of a call; None if libqi makes it as well as this, or says what is wrong with it."""
+        served = next((each for each in self._session.services() if each["name"] == self._name), None)
+        if served is None:
+            return None
+        for number, declared in self._remote.metaObject()["methods"].items():
+            content = declared["name"] == method and packed_arguments(declared["parametersSignature"], arguments)
+            if content:
+                return self._wires.call(served["endpoints"], served["serviceId"], number, content)
+        return None
 
 
 class _Caller:

@@ -284,25 +284,11 @@ def _joined(blocks: Sequence[Any]) -> Any:
 
 
 def _receiver(module: str, remote: Any) -> str:
-    """The method that takes the sound.
-
-    Says it when a module would get its bytes as text: libqi's Python binding makes it of what is not declared raw.
-    """
+    """The method that takes the sound."""
     try:
-        methods = remote.metaObject()["methods"].values()
+        names = {method["name"] for method in remote.metaObject()["methods"].values()}
     except RuntimeError:
         return METHOD  # it is gone again; the first call finds out
-    found = {name: [m["parametersSignature"] for m in methods if m["name"] == name] for name in (METHOD, OLDER_METHOD)}
-    method = next((name for name, signatures in found.items() if signatures), METHOD)
-    if not found[method]:
+    if not names & {METHOD, OLDER_METHOD}:
         log.warning("%s has no method %s to send sound to", module, METHOD)
-    elif not any("r" in signature for signature in found[method]):
-        time_type = "" if method == OLDER_METHOD else "qi.Dynamic, "
-        log.warning(
-            "%s.%s does not declare its buffer as raw: a Python module gets text for it. Declare it with "
-            '@qi.bind(qi.Void, [qi.Int32, qi.Int32, %s"r"]), or take ast.literal_eval(buffer)',
-            module,
-            method,
-            time_type,
-        )
-    return method
+    return OLDER_METHOD if OLDER_METHOD in names and METHOD not in names else METHOD
