@@ -9,6 +9,7 @@ from nao_sim_bridge.walk.courses import Course
 from nao_sim_bridge.walk.footsteps import FootPose
 from nao_sim_bridge.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.walk.plan import WalkPlan
+from nao_sim_bridge.walk.settings import WalkSettings
 from nao_sim_bridge.walk.steps_course import StepsCourse
 
 SIDES = {"LLeg": LEFT, "RLeg": RIGHT}
@@ -36,12 +37,18 @@ class FootstepPlan:
     clearable: Tuple[PlannedStep, ...] = ()
 
 
-def steps_to_come(plan: WalkPlan, course: Course | None) -> tuple[list[PlannedStep], list[PlannedStep]]:
-    """The step that is made, and those after it."""
-    made = plan.step
-    if made is None:
-        return [], []
-    time = made.period - plan.time
+def steps_to_come(
+    plan: WalkPlan | None, course: Course | None, settings: WalkSettings
+) -> tuple[list[PlannedStep], list[PlannedStep]]:
+    """The step that is made, and those after it; before the first one, those that were asked for."""
+    made, time = (None, settings.lead) if plan is None else (plan.step, plan.lead)
+    if plan is None or made is None:
+        further = []
+        for step in course.left if isinstance(course, StepsCourse) else ():
+            time += step.period
+            further.append(PlannedStep(LEGS[step.side], time, step.beside))
+        return [], further
+    time += made.period
     fixed = PlannedStep(LEGS[made.side], time, made.landing.seen_from(plan.feet[plan.support]))
     further, support = [], made.landing
     for step in plan.further(len(course.left) if isinstance(course, StepsCourse) else SHOWN_STEPS):

@@ -169,15 +169,17 @@ class Locomotion:
         course.begin_towards(here)
         return self._set_goal("moveTo", course)
 
-    def set_steps(self, steps: Sequence[Placement], gait: FeetGait, clear: bool) -> Task:
+    def set_steps(self, steps: Sequence[Placement], gait: FeetGait, clear: bool, on_the_clock: bool = False) -> Task:
         """Make planned steps, after those planned or instead; ends when the robot stands, with whether all are made.
+
+        With `on_the_clock` the first period counts from the walk's begin, as in `StepsCourse.add`.
 
         Raises:
             MoveRefused: The robot cannot walk now.
         """
         course = self._course
         if self.active and isinstance(course, StepsCourse) and self._waits.goal is not None and not course.reached:
-            course.add(steps, clear)
+            course.add(steps, clear, on_the_clock)
             return self._waits.goal
         return self._set_goal("setFootSteps", StepsCourse(self._settings, gait, steps))
 
@@ -215,18 +217,17 @@ class Locomotion:
         walker, course = self._walker, self._course
         if walker is None or course is None or walker.plan.step is None:
             return (0.0, 0.0, 0.0)
-        x, y, yaw = course.rate
-        period = walker.plan.step.period
-        heading = FootPose(0.0, 0.0, course.frame.yaw + walker.plan.robot.yaw).moved(x / period, y / period)
+        plan, period = walker.plan, walker.plan.step.period
+        x, y, yaw = plan.way if isinstance(course, StepsCourse) else course.rate
+        heading = FootPose(0.0, 0.0, course.frame.yaw + plan.robot.yaw).moved(x / period, y / period)
         return (heading.x, heading.y, yaw / period)
 
     def steps(self) -> FootstepPlan:
         """Feet in the world, and the steps to come."""
         now = self._now()
         left, right = (foot_on_ground(self.body, now.odometry, now.positions, side) for side in (LEFT, RIGHT))
-        if self._walker is None:
-            return FootstepPlan(left, right)
-        fixed, clearable = steps_to_come(self._walker.plan, self._course)
+        plan = None if self._walker is None else self._walker.plan
+        fixed, clearable = steps_to_come(plan, self._course, self._settings)
         return FootstepPlan(left, right, tuple(fixed), tuple(clearable))
 
     # --- the tick -------------------------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from enum import Enum
 from math import exp, sqrt
 from typing import Mapping, Sequence
 
-from nao_sim_bridge.walk.courses import Course, Step
+from nao_sim_bridge.walk.courses import Course, Rate, Step
 from nao_sim_bridge.walk.footsteps import FootInAir, FootPose, middle, swing
 from nao_sim_bridge.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.walk.pattern import Point, Segment, divergent_component
@@ -25,6 +25,9 @@ from nao_sim_bridge.walk.settings import WalkSettings
 
 # A foot is in the air for this at most, s: longer steps stand on both feet the longer.
 LONGEST_SWING = 0.48
+# A foot leaves the ground when this much of the time is left in which the weight goes to the other one, s, and lands as
+# much before the weight comes to it; of shorter times half of it.
+LEAVES_BEFORE = 0.06
 ROUNDING = 1e-9
 
 
@@ -85,7 +88,8 @@ class WalkPlan:
         if self.phase is not Phase.STEP or self.step is None:
             return 0.0
         double = self._double(self.step)
-        return min(max((self.time - 0.5 * double) / (self.step.period - double), 0.0), 1.0)
+        leaves = double - min(0.5 * double, LEAVES_BEFORE)
+        return min(max((self.time - leaves) / (self.step.period - double), 0.0), 1.0)
 
     def foot(self, side: int) -> FootInAir:
         if self.phase is not Phase.STEP or self.step is None or side != self.step.side:
@@ -107,6 +111,19 @@ class WalkPlan:
         if self.step is not None:
             feet = {**feet, self.step.side: self.step.landing}
         return middle(feet[LEFT], feet[RIGHT])
+
+    @property
+    def way(self) -> Rate:
+        """How far the robot goes in this step, as it will be turned then."""
+        x, y, yaw = middle(self.feet[LEFT], self.feet[RIGHT]).seen_from(self.robot)
+        return (-x, -y, -yaw)
+
+    @property
+    def lead(self) -> float:
+        """Time from now to the begin of the step that is made or comes first, s; negative when it has begun."""
+        settings = self._settings
+        before = {Phase.STANCE: settings.lead, Phase.START: settings.lead - settings.stance_time}
+        return before.get(self.phase, 0.0) - self.time
 
     def further(self, count: int) -> list[Step]:
         """Steps after the one that is made, as they are planned now."""

@@ -126,6 +126,11 @@ class WalkSettings:
         """Least between the ankles, m."""
         return parameters()["MinFootSeparation"].default
 
+    @property
+    def lead(self) -> float:
+        """From the begin of a walk to that of its first step, s."""
+        return self.stance_time + self.push_time + self.shift_time
+
 
 @lru_cache(maxsize=1)
 def load_walk_settings() -> WalkSettings:

@@ -25,6 +25,7 @@ class StepsCourse(Course):
 
     def __init__(self, settings: WalkSettings, gait: FeetGait, placements: Sequence[Placement]) -> None:
         self._queue = list(placements)  # steps that are not begun; states count from its begin
+        self._planned = 0.0  # s from the begin of the first step to the landing of the last one that is begun
         self._robot: FootPose | None = None
         super().__init__(settings, gait)
 
@@ -37,15 +38,24 @@ class StepsCourse(Course):
         """Steps that are not begun."""
         return tuple(self._queue)
 
-    def add(self, placements: Sequence[Placement], clear: bool) -> None:
+    def add(self, placements: Sequence[Placement], clear: bool, on_the_clock: bool) -> None:
         """More steps, after those that are not begun or instead of them.
+
+        Args:
+            placements: The steps.
+            clear: Whether those that are not begun are forgotten.
+            on_the_clock: Whether the first period counts from the walk's begin, where it goes beyond what is planned.
 
         Raises:
             BadValue: Together they are too many.
         """
         kept = [] if clear else self._queue
         require_few("footSteps", len(kept) + len(placements), "steps")
-        self._queue = [*kept, *placements]
+        first, *others = placements
+        planned = self._planned + sum(each.period for each in kept)
+        if on_the_clock and first.period > planned:
+            first = first._replace(period=first.period - planned)
+        self._queue = [*kept, first, *others]
 
     def first_side(self, feet: Mapping[int, FootPose]) -> int:
         """The foot of the first step; the other one before it, if that stands in no way from which steps count."""
@@ -58,6 +68,7 @@ class StepsCourse(Course):
     def take(self, support: FootPose, side: int) -> None:
         super().take(support, side)
         self._robot = None
+        self._planned += sum(each.period for each in self._queue[: self._state])
         del self._queue[: self._state]
         self._state = 0
         self.reached = not self._queue

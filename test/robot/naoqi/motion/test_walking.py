@@ -6,6 +6,8 @@ from nao_sim_bridge.naoqi.motion.move_config import gait_list
 
 WITH_SPEED = "setFootStepsWithSpeed"
 MARCH = (["LLeg", "RLeg"] * 6, [[0.04, 0.1, 0.0], [0.04, -0.1, 0.0]] * 6)
+LONGEST = 20.0
+"""No walk of steps here takes longer, s of simulated time."""
 WALL = "{name: wall, box: [0.1, 2.0, 1.0], position: [1.0, 0.0, 0.5]}"
 
 
@@ -89,6 +91,37 @@ def test_steps_that_are_not_begun_can_be_replaced_and_stopped(walker, motion, re
     walker.until_it_stands()
     assert walker.answer(end) is (None if replaced else True) and walker.answer(future) is None
     assert walker.now.torso.position[0] < 0.3
+
+
+def timed(period, since=0, count=6):
+    """Arguments of setFootSteps: steps of 4 cm from number `since` on, each `period` s after the one before."""
+    steps = range(since, count)
+    places = [[0.04, -0.1 if n % 2 else 0.1, 0.0] for n in steps]
+    return ["RLeg" if n % 2 else "LLeg" for n in steps], places, [period * (n + 1) for n in steps]
+
+
+def test_slow_steps_go_as_far_as_fast_ones(walker, motion):
+    motion.setFootSteps(*timed(2.0), False)
+    walker.until_it_stands()
+    assert walker.stands and walker.truth[0] == pytest.approx(0.22, abs=0.02)
+
+
+@pytest.mark.parametrize("clock", ["of the walk", "of each call"])
+def test_steps_that_are_planned_again_and_again_keep_their_pace(walker, motion, clock):
+    motion.setFootSteps(*timed(0.6), False)
+    assert [len(part) for part in motion.getFootSteps()] == [2, 0, 6]
+    begun, plans, speeds = walker.now.time, 0, []
+    while motion.moveIsActive() and walker.now.time < begun + LONGEST:
+        walker.advance(0.1)
+        _, made, further = motion.getFootSteps()
+        speeds.append(motion.getRobotVelocity()[0])
+        if made and further:
+            legs, places, times = timed(0.6, since=6 - len(further))
+            late = 0.0 if clock == "of the walk" else times[0] - 0.6
+            motion.setFootSteps(legs, places, [time - late for time in times], True)
+            plans += 1
+    assert plans > 20 and walker.now.time - begun < 6.0 and max(speeds) == pytest.approx(0.04 / 0.6, rel=0.01)
+    assert walker.stands and walker.truth[0] == pytest.approx(0.22, abs=0.02)
 
 
 def test_limp_legs_do_not_walk_and_that_is_told(walker, motion, caplog):

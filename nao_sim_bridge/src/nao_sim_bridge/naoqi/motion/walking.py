@@ -124,7 +124,11 @@ class Walking(MotionPart):
     # --- steps of one foot after the other, each placed beside the other foot; what legs cannot do is clipped ---------
 
     def setFootSteps(self, legs: list[str], steps: Any, times: list[float], clear: bool) -> Task:
-        """Each time, s from the first step's begin, is that of a landing."""
+        """Each time, s from the first step's begin, is that of a landing.
+
+        On the way, times that go on from those before count from the begin of the first step of all, others from that
+        of the first new one.
+        """
         placed = _placed(legs, steps)
         # A foot that steps twice in a row needs a step of the other one in between, and no time is given for that.
         if any(one == next_ for (one, _), (next_, _) in zip(placed, placed[1:])):
@@ -134,7 +138,7 @@ class Walking(MotionPart):
         steps = _placements(placed, [b - a for a, b in zip([0.0, *landings], landings)])
 
         def start(locomotion: Locomotion) -> None:
-            locomotion.set_steps(steps, FeetGait(), bool(clear))
+            locomotion.set_steps(steps, FeetGait(), bool(clear), on_the_clock=True)
 
         return self._walk("setFootSteps", start)
 
