@@ -4,7 +4,7 @@ import pytest
 
 from nao_sim_bridge.control.balance.fall_manager import FallState
 from nao_sim_bridge.control.balance.posture_recognition import Recognition, recognise
-from nao_sim_bridge.core import sequences
+from nao_sim_bridge.core import posture_change, sequences
 from nao_sim_bridge.core.diagnosis import SAFE_TIME, DiagnosisEffect
 from nao_sim_bridge.core.posture_change import PostureChange
 from nao_sim_bridge.core.posture_moves import KeyFrame, Move, load_moves, play
@@ -20,7 +20,7 @@ STIFF, LIMP = (1.0,) * 26, (0.0,) * 26
 
 
 def test_off_its_feet_it_only_stiffens_and_lets_go(bench):
-    ended, one = [], bench("SitRelax", 0.0)
+    ended, one = [], bench("LyingBack", 0.0)
     one.run(0.5)
     # Where the weight of the body presses limp fingers to is no command they can have.
     before = [one.robot.joints.clamp_alone(i, angle) for i, angle in enumerate(one.now.positions)]
@@ -29,9 +29,19 @@ def test_off_its_feet_it_only_stiffens_and_lets_go(bench):
     commands = one.now.commands
     assert commands == pytest.approx(before, abs=0.03) and one.now.stiffnesses == STIFF
     assert not sequences.is_on_feet(one.robot, one.now)
-    sequences.rest(one.robot, lambda: one.now, lambda: ended.append("asleep"))
+    posture_change.rest(one.robot, lambda: one.now, lambda: ended.append("asleep"))
     one.run(1.0)
     assert one.now.commands == commands and one.now.stiffnesses == LIMP and ended == ["awake", "asleep"]
+
+
+def test_who_sits_leans_on_the_hands_before_it_lets_go(bench):
+    one = bench("Sit")
+    one.run(0.3)
+    resting = posture_change.rest(one.robot, lambda: one.now, lambda: None)
+    while not resting.finished and one.now.time < LONGEST:
+        one.run(0.2)
+    one.run(2.0)
+    assert recognise(MODEL, one.now) == Recognition("SitRelax", "Sitting") and one.now.stiffnesses == LIMP
 
 
 def test_postures_and_key_frames_are_reached_exactly_in_their_time(bench):

@@ -18,7 +18,7 @@ from nao_sim_bridge.body.sensors.snapshot import Snapshot
 from nao_sim_bridge.body.temperatures import CRITICAL, VERY_HOT, heat_status
 from nao_sim_bridge.body.temperatures import HOT as LIMITS
 from nao_sim_bridge.control.joints.idle import chain_indices
-from nao_sim_bridge.core import sequences
+from nao_sim_bridge.core import posture_change, sequences
 from nao_sim_bridge.core.robot import SimulatedRobot
 
 log = logging.getLogger("nao_sim.diagnosis")
@@ -119,7 +119,7 @@ class DiagnosisEffect:
         if at_once:
             robot.motion.set_stiffness_now({i: 0.0 for i in self._chains[name]})
         if name == LEGS:
-            sequences.rest(robot, lambda: robot.snapshot or snapshot, goodbye)
+            posture_change.rest(robot, lambda: robot.snapshot or snapshot, goodbye)
             return
 
         def go_safe() -> Task | None:

@@ -10,12 +10,22 @@ from typing import Callable, Iterator, Sequence
 
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
-from nao_sim_bridge.control.balance.posture_recognition import UNKNOWN, Recognition, nearest_posture, recognise
+from nao_sim_bridge.control.balance.posture_recognition import SITTING, UNKNOWN, Recognition, nearest_posture, recognise
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.core.posture_graph import leaves_feet, path_to
-from nao_sim_bridge.core.posture_moves import Ground, Move, direct, play
+from nao_sim_bridge.core.posture_moves import Ground, Move, direct, load_moves, play
 from nao_sim_bridge.core.robot import SimulatedRobot
-from nao_sim_bridge.core.sequences import Step, run_steps, stiffen, stop_walk
+from nao_sim_bridge.core.sequences import (
+    STIFFEN_TIME,
+    Step,
+    body_is_stiff,
+    is_on_feet,
+    posture_task,
+    run_steps,
+    stiffen,
+    stiffness_task,
+    stop_walk,
+)
 from nao_sim_bridge.model.postures import load_postures, posture
 
 log = logging.getLogger("nao_sim.posture")
@@ -28,6 +38,10 @@ LOOK_TIME, LONGEST_SWAY = 0.2, 2.0
 EXACT = 0.005
 # Straight to a posture, as fast as the joints can, without a thought about the floor.
 STRAIGHT = Ground((), LOOK_TIME)
+# Postures in which limp robots stay, by where they are (who lies stays as well), and the way to the second one: a share
+# of the joints' top speeds, and how many moves may miss.
+ON_FEET, ON_SEAT = "Crouch", "SitRelax"
+REST_SPEED, REST_TRIES = 0.6, 2
 # Moves on one way at most: the graph has no way longer than this, so more is a robot that goes round in circles.
 MOST_MOVES = 12
 
@@ -163,6 +177,27 @@ class PostureChange:
     def _end(self) -> bool:
         self._robot.getting_up = False
         return self.reached
+
+
+def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
+    """Crouch, or lean on the hands when seated, where a stiff robot would fall, then release all motors.
+
+    `on_end` is called after the last step.
+    """
+
+    def settle() -> Task | None:
+        if not body_is_stiff(robot):
+            return None
+        if is_on_feet(robot, snapshot()):
+            return posture_task(robot, "rest", ON_FEET)
+        if recognise(robot.model, snapshot()).family != SITTING:
+            return None
+        return PostureChange(robot, snapshot, ON_SEAT, REST_SPEED, REST_TRIES, load_moves()).start("rest")
+
+    def release() -> Task:
+        return stiffness_task(robot, "rest", range(len(robot.model.joints)), 0.0, STIFFEN_TIME)
+
+    return run_steps(robot, "rest", [lambda: stop_walk(robot), settle, release, on_end])
 
 
 def _arrived(seen: Recognition, move: Move) -> bool:

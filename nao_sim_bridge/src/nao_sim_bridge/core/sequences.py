@@ -14,7 +14,6 @@ from nao_sim_bridge.model.postures import posture
 Step = Callable[[], Optional[Task]]
 
 AWAKE_POSTURE = "Stand"
-REST_POSTURE = "Crouch"
 # Time to stiffen or release the body, s, and to move between standing and crouching.
 STIFFEN_TIME = 0.2
 POSTURE_TIME = 2.0
@@ -77,21 +76,7 @@ def wake_up(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Cal
     return run_steps(robot, "wakeUp", steps)
 
 
-def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callable[[], None]) -> Task:
-    """Crouch when on its feet and stiff, then release all motors; `on_end` is called after the last step."""
-    body = range(len(robot.model.joints))
-
-    def crouch() -> Task | None:
-        standing = is_on_feet(robot, snapshot()) and _body_is_stiff(robot)
-        return posture_task(robot, "rest", REST_POSTURE) if standing else None
-
-    def release() -> Task:
-        return stiffness_task(robot, "rest", body, 0.0, STIFFEN_TIME)
-
-    return run_steps(robot, "rest", [lambda: stop_walk(robot), crouch, release, on_end])
-
-
-def _body_is_stiff(robot: SimulatedRobot) -> bool:
+def body_is_stiff(robot: SimulatedRobot) -> bool:
     """Whether nothing but hands is limp: these often are, and bear nothing."""
     return all(stiff for stiff, joint in zip(robot.joints.stiffnesses, robot.model.joints) if not joint.is_hand)
 

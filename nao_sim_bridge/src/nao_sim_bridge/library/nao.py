@@ -338,10 +338,10 @@ class Nao:
         return self._begin(lambda: sequences.wake_up(self.robot, lambda: self.snapshot, lambda: None), wait)
 
     def rest(self, wait: bool = True) -> Motion:
-        """Crouch when on the feet, and let all joints go limp."""
-        from nao_sim_bridge.core import sequences  # as above
+        """Crouch when on the feet, lean on the hands when seated, and let all joints go limp."""
+        from nao_sim_bridge.core import posture_change  # it begins awake
 
-        return self._begin(lambda: sequences.rest(self.robot, lambda: self.snapshot, lambda: None), wait)
+        return self._begin(lambda: posture_change.rest(self.robot, lambda: self.snapshot, lambda: None), wait)
 
     def walk_to(self, x: float, y: float = 0.0, theta: float = 0.0, wait: bool = True) -> Motion:
         """Walk to a pose as seen from the robot now; the result is whether it is there.

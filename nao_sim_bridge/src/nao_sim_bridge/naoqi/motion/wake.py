@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Callable
 
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.core import sequences
+from nao_sim_bridge.core import posture_change, sequences
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
@@ -40,7 +40,7 @@ class Wake(MotionPart):
             return self._runner.execute(
                 lambda: sequences.stiffness_task(self._robot, "rest", indices, 0.0, sequences.STIFFEN_TIME), "rest"
             )
-        return self._change_state("rest", sequences.rest, awake=False)
+        return self._change_state("rest", posture_change.rest, awake=False)
 
     def robotIsWakeUp(self) -> bool:
         return bool(self._memory.get(AWAKE))
