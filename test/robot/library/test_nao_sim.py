@@ -13,7 +13,9 @@ import pytest
 import qi
 
 from nao_sim_bridge import NaoSim
-from nao_sim_bridge.base.errors import BadValue, MoveRefused, NotAllowed, UnknownName
+from nao_sim_bridge.base.errors import BadValue, MoveRefused, NotAllowed, SimulationError, UnknownName
+
+CRATE = {"name": "crate", "box": [0.1, 0.1, 0.1]}
 
 
 @pytest.fixture
@@ -221,6 +223,113 @@ def test_things_come_move_and_go(nao):
     assert nao.things["ball"][:2] == pytest.approx((1.0, 0.5), abs=0.01)
     nao.remove("ball")
     assert nao.things == {}
+
+
+def test_a_thing_that_is_placed_again_or_moved_goes_and_turns(nao):
+    nao.place(CRATE, at=(1.0, 0.0, 0.05))
+    for again in ("crate", CRATE):
+        nao.place(again, at=(1.0, 0.3, 0.05), heading=0.4)
+        assert nao.things["crate"] == pytest.approx((1.0, 0.3, 0.05, 0.0, 0.0, 0.4))
+        nao.place(again, at=(1.0, 0.0, 0.05), rpy=(0.0, 0.0, -0.4))
+        assert nao.things["crate"] == pytest.approx((1.0, 0.0, 0.05, 0.0, 0.0, -0.4))
+    nao.place("crate", at=(1.0, 0.1, 0.05))
+    began = nao.time
+    nao.move("crate", (1.2, 0.1, 0.05), duration=0.5)
+    assert nao.things["crate"] == pytest.approx((1.2, 0.1, 0.05, 0.0, 0.0, -0.4))
+    assert nao.time - began == pytest.approx(0.5)
+    turning = nao.move("crate", rpy=(0.0, 0.0, 0.6), duration=1.0, wait=False)
+    nao.step(0.5)
+    assert nao.things["crate"] == pytest.approx((1.2, 0.1, 0.05, 0.0, 0.0, 0.1)) and not turning.done
+
+
+@pytest.mark.parametrize(
+    "thing, more, told",
+    [
+        ("box", {"colour": (1, 0, 0)}, "unknown key 'colour': did you mean 'color'"),
+        ("bx", {}, "'bx': did you mean 'box'"),
+        ("landmark", {}, "landmark=..."),
+        ({"box": [1, 1, 1]}, {}, "missing 'name'"),
+        ("crate", {"mass": 1.0}, r"unknown key 'mass' \(allowed: rpy, heading\)"),
+        (CRATE, {"colour": (1, 0, 0)}, "unknown key 'colour'"),
+        (CRATE, {"mass": 1.0}, "'crate' is there already, and not with mass 1.0: .*at, rpy, heading"),
+        (CRATE, {"color": (1, 0, 0)}, r"not with box \[.*\], color \(1, 0, 0\)"),
+        (CRATE, {"position": (1, 0, 0)}, "`at` says where"),
+        (CRATE, {"rpy": (0, 0, 1), "heading": 1.0}, "rpy and heading"),
+    ],
+)
+def test_what_is_said_of_a_thing_and_cannot_be_is_refused(nao, thing, more, told):
+    nao.place(CRATE, at=(1.0, 0.0, 0.05))
+    with pytest.raises(SimulationError, match=told):
+        nao.place(thing, at=(1.0, 1.0, 0.05), **more)
+    assert nao.things == {"crate": pytest.approx((1.0, 0.0, 0.05, 0.0, 0.0, 0.0))}
+
+
+@pytest.fixture
+def lifted():
+    with NaoSim(seed=1, world="platform") as sim:
+        yield sim
+
+
+def test_a_robot_on_a_plate_that_moves_is_carried_along(lifted):
+    lifted.move("plate", (0.1, 0.05, 0.3), rpy=(0.0, 0.0, 0.4), duration=1.0)
+    lifted.step(0.5)
+    assert lifted.pose_on_ground == pytest.approx((0.1, 0.05, 0.4), abs=0.02)
+    assert np.linalg.norm(lifted.snapshot.linear_velocity) < 0.03
+    lifted.move("plate", rpy=(0.0, 0.06, 0.4), duration=0.8)
+    lifted.step(0.4)
+    assert lifted.imu.angles[1] == pytest.approx(0.06, abs=0.02) and not lifted.fallen
+
+
+def test_a_robot_on_a_plate_that_tilts_too_far_falls(lifted):
+    lifted.move("plate", rpy=(0.0, 0.4, 0.0), duration=0.5)
+    lifted.step(2.0)
+    assert lifted.fallen
+
+
+def swing(seconds):
+    return (0.03 * math.sin(3.0 * seconds), 0.0, 0.3, 0.04 * math.sin(2.0 * seconds), 0.0, 0.0)
+
+
+def test_a_plate_goes_along_its_path_until_it_is_told_otherwise(lifted):
+    swinging = lifted.move_along("plate", swing)
+    lifted.step(1.3)
+    assert lifted.things["plate"] == pytest.approx(swing(1.3), abs=1e-6) and not lifted.fallen
+    swinging.cancel()
+    lifted.step(0.5)
+    assert lifted.things["plate"] == pytest.approx(swing(1.3), abs=1e-6)
+    timed = lifted.move_along("plate", lambda seconds: swing(1.3 - seconds), duration=0.7)
+    timed.wait()
+    assert lifted.things["plate"] == pytest.approx(swing(0.6), abs=1e-6)
+    broken = lifted.move_along("plate", lambda seconds: swing(0.6)[: 6 if seconds < 0.1 else 5])
+    with pytest.raises(BadValue, match="roll, pitch, yaw"):
+        broken.wait()
+    lifted.step(0.1)
+    assert lifted.things["plate"] == pytest.approx(swing(0.6), abs=1e-6)
+    lifted.move_along("plate", lambda seconds: swing(0.6 + seconds))
+    lifted.step(0.1)
+    lifted.reset()
+    lifted.step(0.2)
+    assert lifted.things["plate"] == (0.0, 0.0, 0.3, 0.0, 0.0, 0.0)
+
+
+def test_what_follows_a_state_is_the_same_where_a_plate_was_on_its_way_or_has_begun_to_move_since(lifted):
+    def followed():
+        lifted.step(0.7)
+        return felt(lifted), lifted.things
+
+    at_rest = lifted.save_state()
+    still = followed()
+    lifted.restore_state(at_rest)
+    swinging = lifted.move_along("plate", swing, duration=1.5)
+    lifted.step(0.5)
+    under_way = lifted.save_state()
+    once = followed()
+    lifted.step(0.5)
+    assert swinging.done
+    lifted.restore_state(under_way)
+    assert followed() == once
+    lifted.restore_state(at_rest)
+    assert followed() == still
 
 
 @pytest.mark.parametrize("mode, values", [("position", None), ("velocity", 0.0), ("torque", 0.0)])

@@ -69,3 +69,14 @@ def from_roll_pitch_yaw(roll: float, pitch: float, yaw: float) -> Quaternion:
 
 def cross(a: Sequence[float], b: Sequence[float]) -> Vector3:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def angular_velocity(before: Sequence[float], after: Sequence[float], seconds: float) -> Vector3:
+    """Constant angular velocity, rad/s in world, that turns one orientation into another the short way round."""
+    bx, by, bz, bw = before
+    x, y, z, w = multiply(after, (-bx, -by, -bz, bw))
+    sine = math.sqrt(x * x + y * y + z * z)
+    if sine == 0.0:
+        return (0.0, 0.0, 0.0)
+    rate = 2.0 * math.atan2(math.copysign(sine, w), abs(w)) / (sine * seconds)
+    return (rate * x, rate * y, rate * z)

@@ -125,14 +125,14 @@ class Physics:
     def restart(self, angles: Sequence[float], pitch: float | None = None) -> None:
         """Put the robot to where it started, at rest; what its motors were told is forgotten."""
         self._forget_efforts()
-        self.place(angles, self.start.yaw, (self.start.x, self.start.y), pitch)
+        self.place(angles, self.start.yaw, (self.start.x, self.start.y), pitch, above=self.start.z)
 
     def restart_beside_others(self, angles: Sequence[float], pitch: float | None = None) -> None:
         """As `restart`, but where something is there, at the nearest place around that is free, if there is one."""
         self.scale_friction(1.0)
         for x, y in places_around(self.start):
             self._forget_efforts()
-            self.place(angles, self.start.yaw, (x, y), pitch)
+            self.place(angles, self.start.yaw, (x, y), pitch, above=self.start.z)
             if not self.inside():
                 return
         self.restart(angles, pitch)
@@ -154,6 +154,7 @@ class Physics:
         xy: tuple[float, float] = (0.0, 0.0),
         pitch: float | None = None,
         roll: float = 0.0,
+        above: float = 0.0,
     ) -> None:
         """Put the robot at rest on the floor; on a slope it is tilted as the floor is.
 
@@ -164,6 +165,7 @@ class Physics:
             pitch: Of the torso over the floor, rad, positive with the face down; the lowest point of the body touches
                 the floor. Without it the left sole is flat on the floor.
             roll: Of the torso over the floor, rad, positive with the left side up; of no meaning without a pitch.
+            above: How far over the floor what it stands on is, along its normal, m.
         """
         check_finite("angles of the robot", angles)
         for index, angle in zip(self._indices, self._to_engine(angles)):
@@ -171,7 +173,7 @@ class Physics:
         if pitch is not None:
             orientation = self.engine.getQuaternionFromEuler((roll, pitch, yaw))
             self._put_over_floor((0.0, 0.0), REACH, orientation)
-            self._put_over_floor(xy, REACH - self._clearance(), orientation)
+            self._put_over_floor(xy, REACH - self._clearance() + above, orientation)
             return
         self._reset_base((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
         foot_orientation = self.link_pose("l_ankle").orientation
@@ -181,7 +183,7 @@ class Physics:
         orientation = self.engine.multiplyTransforms((0, 0, 0), turn, (0, 0, 0), upright)[1]
         self._reset_base((0.0, 0.0, 0.0), orientation)
         soles = [self.link_pose(f).position[2] - self._model.sole_height for f in ("l_ankle", "r_ankle")]
-        self._put_over_floor(xy, -min(soles), orientation)
+        self._put_over_floor(xy, above - min(soles), orientation)
 
     def drive(self, joints: JointCommands) -> None:
         """Tell the motors commands and stiffnesses; a limp joint has only the friction of its gears.

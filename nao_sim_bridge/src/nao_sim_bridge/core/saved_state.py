@@ -33,7 +33,7 @@ class SavedState:
             left_out += [simulation.model, simulation.led_layout, simulation.scene, simulation.physics]
         self._robots = Memento(robots, left_out)
         self._kept = [(one, one.robot, one.snapshot, one.physics.payload, one.physics.friction) for one in simulations]
-        self._ticks = shared.ticks
+        self._ticks, self._ways = shared.ticks, shared.things.under_way()
         self.restore(shared)  # the engine has forgotten how things touch then, now as at each restore
 
     def restore(self, shared: SharedWorld) -> None:
@@ -57,6 +57,7 @@ class SavedState:
             simulation.robot, simulation.snapshot = robot, snapshot
             robot.tell_motors()
         shared.ticks = self._ticks
+        shared.things.go_on(self._ways)
 
     def drop(self) -> None:
         """Free what the engine keeps of it, a quarter of a megabyte; it cannot be restored any more."""

@@ -103,7 +103,7 @@ class SharedWorld:
         if isinstance(renderer, str):
             require_renderer(renderer)
         self._renderer, self._making = renderer, threading.Lock()
-        self.things = Things(self.world, self.task_ids, lambda: self.time, self._look_again)
+        self.things = Things(self.world, self.task_ids, lambda: self.time, self.settings.tick_s, self._look_again)
 
     @property
     def time(self) -> float:
@@ -215,6 +215,7 @@ class SharedWorld:
         for robot in self.robots:
             pushes += call(robot.act) or ()
         self.physics.step(pushes)
+        call(self.things.arrive)
 
     def _finish(self) -> None:
         """Sound, cameras, watchers."""

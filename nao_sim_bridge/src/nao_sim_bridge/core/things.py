@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Callable, Mapping, Protocol, Sequence
 
 import numpy as np
 
@@ -34,9 +34,13 @@ LARGEST = 10.0
 FURTHEST = 100.0
 """Distance of a place from the origin along each axis, m, at most."""
 LONGEST_GLIDE = 3600.0
+Path = Callable[[float], Sequence[float]]
+"""Where a thing is at a time since its path began, s: x, y, z in m over the floor, roll, pitch, yaw in rad."""
 DEEPEST = 0.002
 """How far a thing may be inside the robot when it appears, m: more would hurl one of both away."""
 NOBODY: frozenset[str] = frozenset()
+ROUNDING = 1e-9
+"""s."""
 
 
 class Things:
@@ -46,16 +50,20 @@ class Things:
 
     Args:
         now: Tells simulated time, s.
+        tick_s: Length of a tick, s.
         changed: Called when something was placed, moved at once or removed.
     """
 
-    def __init__(self, world: World, task_ids: TaskIds, now: Callable[[], float], changed: Callable[[], None]) -> None:
+    def __init__(
+        self, world: World, task_ids: TaskIds, now: Callable[[], float], tick_s: float, changed: Callable[[], None]
+    ) -> None:
         self._world = world
         self._ids = task_ids
         self._now = now
+        self._tick_s = tick_s
         self._changed = changed
         self._physics: PhysicsWorld | None = None
-        self._glides: dict[str, tuple[Glide, Task]] = {}
+        self._ways: dict[str, tuple[Way, Task]] = {}
 
     @property
     def placed(self) -> tuple[WorldObject, ...]:
@@ -77,29 +85,50 @@ class Things:
         self._physics = physics
 
     def stop(self) -> None:
-        glides, self._glides = self._glides, {}
-        for _, task in glides.values():
+        ways, self._ways = self._ways, {}
+        for _, task in ways.values():
             task.kill()
 
     def tick(self) -> None:
-        """Move what is on its way to where it is at the end of this tick."""
-        if not self._glides:
-            return
+        """Give what is on its way the velocity that brings it to where it is at the end of this tick.
+
+        The physics moves it there: whatever stands on it or is pushed by it feels that velocity.
+        """
         now = self._now()
-        for name, (glide, task) in list(self._glides.items()):
-            ended = glide.ended(now)
+        for name, (way, task) in list(self._ways.items()):
             try:
-                if not ended:
-                    self._bodies.put(name, glide.at(now), glide.velocity)
-                    continue
-                self._bodies.put(name, glide.target)
+                before, after = way.at(now - self._tick_s), way.at(now)
+                self._bodies.carry(name, before, after, self._tick_s)
             except Exception as error:
-                self._ids.guard.caught(f"task {task.name}", error)
-                del self._glides[name]
-                task.finish(error=error)
+                self._fail(name, task, error)
+
+    def arrive(self) -> None:
+        """Let what is at the end of its way stand still there; the tick's step of physics has been made."""
+        now = self._now()
+        for name, (way, task) in list(self._ways.items()):
+            if not way.ended(now):
+                continue
+            del self._ways[name]
+            try:
+                self._bodies.put(name, way.at(now))
+            except Exception as error:
+                self._fail(name, task, error)
             else:
-                del self._glides[name]
                 task.finish()
+
+    def under_way(self) -> Mapping[str, tuple[Way, Task]]:
+        """What is on its way, for `go_on`."""
+        return dict(self._ways)
+
+    def go_on(self, ways: Mapping[str, tuple[Way, Task]]) -> None:
+        """Let exactly that be on its way which was so at an earlier time that it is again; the bodies are there."""
+        kept = {name: task for name, (_, task) in ways.items() if self._ways.get(name, (None, None))[1] is task}
+        for name, (_, task) in list(self._ways.items()):
+            if name not in kept:
+                del self._ways[name]
+                task.kill()
+        for name, (way, task) in ways.items():
+            self._ways[name] = (way, task if name in kept else self._task(name))
 
     def place(self, thing: WorldObject) -> None:
         """Add a thing where it says.
@@ -157,18 +186,46 @@ class Things:
         start = self._bodies.pose(name)
         target = self._pose_at(thing, place, rpy, start)
         self._halt(name)
-        task = self._ids.make("moveObject", on_kill=lambda _: self._halt(name))
+        task = self._task(name)
         if duration == 0.0:
-            self._bodies.put(name, target)
-            try:
-                self._refuse_in_robot(name)
-            except NotAllowed:
-                self._bodies.put(name, start)
-                raise
+            self._put_at_once(name, target)
             task.finish()
         else:
-            self._glides[name] = (Glide(start, target, self._now(), duration), task)
+            self._ways[name] = (Glide(start, target, self._now(), duration), task)
         self._changed()
+        return task
+
+    def move_along(self, name: str, path: Path, duration: float = math.inf) -> Task:
+        """Move a thing along a path, from where that begins, which is reached at once.
+
+        Args:
+            name: As for `move`.
+            path: Called twice in each tick, with s since the begin; equal runs need equal answers.
+            duration: How long it takes, s of simulated time.
+
+        Returns:
+            A task that ends with the path, and with an error where `path` raises or has an answer that cannot be; the
+            thing is where it was then. Another move of the thing, its removal and a reset kill it.
+
+        Raises:
+            UnknownName: There is no such thing.
+            BadValue: The path begins at no place, or the duration is out of range.
+            NotAllowed: The robot is where it begins.
+        """
+        thing = self._known(name)
+        if not duration > 0.0:
+            raise BadValue("duration", duration, "above 0 s")
+
+        def pose(seconds: float) -> Pose:
+            values = [float(value) for value in path(seconds)]
+            if len(values) != 6:
+                raise BadValue("path", values, "x, y, z in m, roll, pitch, yaw in rad")
+            return self._pose_at(thing, _checked_place(values[:3]), values[3:])
+
+        self._halt(name)
+        self._put_at_once(name, pose(0.0))
+        task = self._task(name)
+        self._ways[name] = (PathWay(pose, self._now(), duration), task)
         return task
 
     def remove(self, name: str) -> None:
@@ -184,7 +241,20 @@ class Things:
 
     def places(self) -> dict[str, tuple[float, ...]]:
         """Where everything is: x, y, z in m over the floor, roll, pitch, yaw in rad, as `move` takes them, by name."""
-        return {name: self._place_of(thing) for name, thing in self.things.items()}
+        return {name: self.place_of(name) for name in self.things}
+
+    def place_of(self, name: str) -> tuple[float, ...]:
+        """Where a thing is; see `places`.
+
+        Raises:
+            UnknownName: There is no such thing.
+        """
+        thing = self._known(name)
+        floor, pose = self._world.floor.orientation, self._bodies.pose(name)
+        point = (a + b for a, b in zip(pose.position, rotate(pose.orientation, thing.origin)))
+        x, y, z, w = floor
+        turn = multiply((-x, -y, -z, w), pose.orientation)
+        return (*rotate_back(floor, tuple(point)), *roll_pitch_yaw(turn))
 
     @property
     def _bodies(self) -> WorldBodies:
@@ -197,32 +267,79 @@ class Things:
             raise error
         return self.things[name]
 
+    def _task(self, name: str) -> Task:
+        return self._ids.make("moveObject", on_kill=lambda _: self._halt(name))
+
     def _halt(self, name: str) -> None:
         """End the way that a thing is on."""
-        if name in self._glides:
-            glide, task = self._glides.pop(name)
-            self._bodies.put(name, glide.at(self._now()))
+        if name in self._ways:
+            _, task = self._ways.pop(name)
+            self._bodies.put(name, self._bodies.pose(name))
             task.kill()
 
-    def _refuse_in_robot(self, name: str) -> None:
-        depth = max(self._bodies.depth_in(name, robot) for robot in self._physics.robots)
-        if depth > DEEPEST:
+    def _fail(self, name: str, task: Task, error: Exception) -> None:
+        """End a way that cannot go on; the thing stays where it is."""
+        self._ids.guard.caught(f"task {task.name}", error)
+        self._ways.pop(name, None)
+        self._bodies.put(name, self._bodies.pose(name))
+        task.finish(error=error)
+
+    def _put_at_once(self, name: str, pose: Pose) -> None:
+        """Put a thing somewhere; it stays where it was if that is in a robot, and deeper than it is already."""
+        before, touching = self._bodies.pose(name), self._depth_in_robots(name)
+        self._bodies.put(name, pose)
+        try:
+            self._refuse_in_robot(name, max(DEEPEST, touching))
+        except NotAllowed:
+            self._bodies.put(name, before)
+            raise
+
+    def _refuse_in_robot(self, name: str, deepest: float = DEEPEST) -> None:
+        depth = self._depth_in_robots(name)
+        if depth > deepest:
             raise NotAllowed(f"{name!r} cannot be there: it would be {depth:.3f} m inside the robot")
 
-    def _pose_at(self, thing: WorldObject, place: Vector3, rpy: Sequence[float] | None, now: Pose) -> Pose:
-        """In world, of a thing whose point `origin` is at a place over the floor."""
+    def _depth_in_robots(self, name: str) -> float:
+        return max(self._bodies.depth_in(name, robot) for robot in self._physics.robots)
+
+    def _pose_at(self, thing: WorldObject, place: Vector3, rpy: Sequence[float] | None, now: Pose | None = None) -> Pose:
+        """In world, of a thing whose point `origin` is at a place over the floor; without `rpy` as it is turned now."""
         floor = self._world.floor.orientation
         turn = now.orientation if rpy is None else multiply(floor, from_roll_pitch_yaw(*_checked_rpy(rpy)))
         offset = rotate(turn, thing.origin)
         x, y, z = (a - b for a, b in zip(rotate(floor, place), offset))
         return Pose((x, y, z), turn)
 
-    def _place_of(self, thing: WorldObject) -> tuple[float, ...]:
-        floor, pose = self._world.floor.orientation, self._bodies.pose(thing.name)
-        point = (a + b for a, b in zip(pose.position, rotate(pose.orientation, thing.origin)))
-        x, y, z, w = floor
-        turn = multiply((-x, -y, -z, w), pose.orientation)
-        return (*rotate_back(floor, tuple(point)), *roll_pitch_yaw(turn))
+
+class Way(Protocol):
+    """Where a thing is, as long as it is on its way."""
+
+    def ended(self, now: float) -> bool:
+        """Whether the end has been reached at a time in s."""
+
+    def at(self, now: float) -> Pose:
+        """The pose at a time in s; that of the end afterwards, that of the begin before."""
+
+
+@dataclass(frozen=True)
+class PathWay:
+    """A way that a function tells.
+
+    Attributes:
+        pose: By s since the begin.
+        begin: When, s.
+        duration: How long it takes, s.
+    """
+
+    pose: Callable[[float], Pose]
+    begin: float
+    duration: float
+
+    def ended(self, now: float) -> bool:
+        return now >= self.begin + self.duration - ROUNDING
+
+    def at(self, now: float) -> Pose:
+        return self.pose(min(max(now - self.begin, 0.0), self.duration))
 
 
 @dataclass(frozen=True)
@@ -241,18 +358,10 @@ class Glide:
     begin: float
     duration: float
 
-    @property
-    def velocity(self) -> Vector3:
-        """On the way, in m/s."""
-        dx, dy, dz = (b - a for a, b in zip(self.start.position, self.target.position))
-        return (dx / self.duration, dy / self.duration, dz / self.duration)
-
     def ended(self, now: float) -> bool:
-        """Whether the end has been reached at a time in s."""
-        return now >= self.begin + self.duration - 1e-9
+        return now >= self.begin + self.duration - ROUNDING
 
     def at(self, now: float) -> Pose:
-        """The pose at a time in s; that of the end afterwards."""
         if self.ended(now):
             return self.target
         share = max(now - self.begin, 0.0) / self.duration

@@ -474,13 +474,17 @@ def _each(values: float | Sequence[float], count: int, name: str) -> list[float]
     return numbers
 
 
-def finite_numbers(name: str, values: Sequence[float], count: int | None = None) -> tuple[float, ...]:
-    """Values as floats; `count` of them, if it is given.
+def finite_numbers(name: str, values: Sequence[float], *counts: int) -> tuple[float, ...]:
+    """Values as floats; as many as one of `counts`, if there are any.
 
     Raises:
-        BadValue: Their number is another one, or one of them is not finite.
+        BadValue: Their number is another one, or one of them is no finite number.
     """
-    numbers = tuple(float(value) for value in values)
-    if (count is not None and len(numbers) != count) or not all(np.isfinite(numbers)):
-        raise BadValue(name, values, f"{count or len(numbers)} finite numbers")
+    allowed = " or ".join(map(str, counts)) + " finite numbers" if counts else "finite numbers"
+    try:
+        numbers = tuple(float(value) for value in values)
+    except (TypeError, ValueError):
+        raise BadValue(name, values, allowed) from None
+    if (counts and len(numbers) not in counts) or not all(np.isfinite(numbers)):
+        raise BadValue(name, values, allowed)
     return numbers

@@ -14,26 +14,24 @@ or listens has no cameras, no sound and no process beside it.
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 
 import numpy as np
 
 from nao_sim_bridge.base.errors import BadValue, NotAllowed
+from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.core.simulation import SEED_STEP, robots_in
-from nao_sim_bridge.library.nao import Nao, finite_numbers
+from nao_sim_bridge.library.nao import LONGEST, Motion, Nao, finite_numbers
 from nao_sim_bridge.library.session import ENDLESS, Session
 from nao_sim_bridge.world.places import RobotPlace
 
 if TYPE_CHECKING:
     from nao_sim_bridge.core.saved_state import SavedState
-
-SIZES: Mapping[str, Any] = {"ball": 0.03, "box": [0.1, 0.1, 0.1], "cylinder": [0.05, 0.2]}
-"""Of things that are placed by their kind alone, m."""
-
 
 class NaoSim(Nao):
     """A world with one NAO or more, in which time passes when it is told to. It is also its first robot.
@@ -46,7 +44,8 @@ class NaoSim(Nao):
         seed: Of all random numbers: equal seeds and equal calls give equal runs, to the last bit.
         world: Name of a world that comes along, or path of a world file; see docs/worlds.md.
         robots: How many there are.
-        places: Where they stand, (x, y, yaw) each; those of the world, or a circle, if nobody says.
+        places: Where they stand, (x, y, yaw) each, m, m, rad, or (x, y, yaw, z) on something that is z m over the floor;
+            those of the world, or a circle, if nobody says.
         version: Of the robots, "V6" or "V5".
         noise: Scale of the sensors' errors: 0 none, 1 those of a real robot.
         delay: How late joint angles, inertial unit and foot forces arrive, s.
@@ -73,7 +72,7 @@ class NaoSim(Nao):
         gui: bool = False,
     ) -> None:
         scene = Scene(str(world), version, posture or "Crouch", seed, friction, payload, noise, delay)
-        self._places = tuple(RobotPlace(*finite_numbers("place", place, 3)) for place in places)
+        self._places = tuple(RobotPlace(*finite_numbers("place", place, 3, 4)) for place in places)
         session = Session(robots_in(SharedWorld(scene), scene, robots, self._places), gui)
         super().__init__(session, 0)
         self.robots = (self, *(Nao(session, number) for number in range(1, robots)))
@@ -167,37 +166,103 @@ class NaoSim(Nao):
 
     # --- the world --------------------------------------------------------------------------------------------------
 
-    def place(self, thing: str | Mapping[str, Any], at: Sequence[float], **more: Any) -> str:
-        """Put a thing into the world, or elsewhere when there is one of its name already.
+    def place(self, thing: str | Mapping[str, Any], at: Sequence[float] | None = None, **more: Any) -> str:
+        """Put a thing into the world; or move and turn the one of its name that is there already, at once.
 
         Args:
             thing: "ball" (a red one of 6 cm), "box", "cylinder", "person" or another kind of a world file, which then
-                is its name, too; or a whole entry of a world file. See docs/worlds.md.
-            at: [x, y, z] of its centre, m.
-            more: Further fields of the entry: `name`, `color`, `mass`, `ball=0.05` for the radius...
+                is its name, too; the name of a thing that is there; or a whole entry of a world file. See
+                docs/worlds.md.
+            at: [x, y, z], m, of what `position` of its entry means, mostly its centre; None for the `position` of the
+                entry.
+            more: Further fields of the entry: `name`, `rpy` or `heading` in rad, `color`, `mass`, `ball=0.05` for the
+                radius... A thing that is there keeps its orientation if nobody says `rpy` or `heading`, and what it is.
 
         Returns:
             Its name.
 
         Raises:
-            SimulationError: There is no such thing, or a robot is where it should be.
+            SimulationError: There is no such kind or field, what is there is another thing, or a robot is where it
+                should be.
         """
+        from nao_sim_bridge.library.placing import check_same, entry_of, turn_of
         from nao_sim_bridge.world.objects import read_object  # a world without things needs nothing of it
 
-        position = list(finite_numbers("at", at, 3))
-        entry = dict(thing) if isinstance(thing, Mapping) else {"name": thing, thing: SIZES.get(thing, {})}
-        entry.update(more, position=position)
-        name = str(entry["name"])
-
-        def put() -> None:
+        def put() -> str:
             things = self._session.shared.things
-            if name in things.things:
-                things.move(name, position, None)
-            else:
+            entry = entry_of(thing, at, more, things.things)
+            there = things.things.get(entry.get("name"))
+            if there is None:
                 things.place(read_object(entry, "thing", Path))
+            else:
+                check_same(entry, there)
+                things.move(there.name, finite_numbers("at", entry["position"], 3), turn_of(entry))
+            return entry["name"]
 
-        self._session.do(put)
-        return name
+        return self._session.do(put)
+
+    def move(
+        self,
+        name: str,
+        at: Sequence[float] | None = None,
+        rpy: Sequence[float] | None = None,
+        duration: float = 0.0,
+        wait: bool = True,
+    ) -> Motion:
+        """Move and turn a thing, straight and at constant speed; also one that the physics cannot move.
+
+        On its way it is a body with a velocity: what stands on it is carried along or falls, what it meets is pushed.
+
+        Args:
+            name: Of the thing.
+            at: [x, y, z], m, as for `place`; None to stay.
+            rpy: Roll, pitch and yaw, rad; None to keep them.
+            duration: s; 0: it is there at once, as lifted by a hand, and carries nothing along.
+            wait: Let time pass until it is there. A later move of the thing, its removal and `reset` end it.
+
+        Raises:
+            UnknownName: There is no such thing.
+            BadValue: Numbers do not fit.
+            NotAllowed: It would be at once where a robot is.
+        """
+        goal = None if at is None else finite_numbers("at", at, 3)
+        turn = None if rpy is None else finite_numbers("rpy", rpy, 3)
+
+        def start() -> Task:
+            things = self._session.shared.things
+            return things.move(name, things.place_of(name)[:3] if goal is None else goal, turn, duration)
+
+        motion = Motion(self._session, self._session.do(start))
+        if wait:
+            motion.wait(max(LONGEST, 2.0 * duration))
+        return motion
+
+    def move_along(
+        self, name: str, path: Callable[[float], Sequence[float]], duration: float | None = None
+    ) -> Motion:
+        """Move and turn a thing along a path while time passes; as `move`, it carries and pushes what it meets.
+
+            plate = nao.things["plate"]
+            nao.move_along("plate", lambda t: (*plate[:3], 0.1 * math.sin(2.0 * t), 0.0, 0.0))
+
+        Args:
+            name: Of the thing, also one that the physics cannot move. It is put to where the path begins at once.
+            path: Tells from s since its begin x, y, z in m, roll, pitch, yaw in rad, as `things` has them. Equal runs
+                need a path without chance; `save_state` keeps it.
+            duration: s; None: until another move of the thing, its removal, `reset` or `cancel()` of the motion.
+
+        Returns:
+            The motion: `wait()` lets time pass until its end, and raises what `path` has raised.
+
+        Raises:
+            UnknownName: There is no such thing.
+            BadValue: What `path` tells of its begin is no place, or the duration is not above 0.
+            NotAllowed: A robot is where it begins.
+        """
+        lasting = math.inf if duration is None else duration
+        return Motion(
+            self._session, self._session.do(lambda: self._session.shared.things.move_along(name, path, lasting))
+        )
 
     def remove(self, name: str) -> None:
         """Take a thing out of the world.

@@ -8,7 +8,7 @@ from typing import Mapping, Sequence
 from nao_sim_bridge.base.engine import Engine
 from nao_sim_bridge.base.errors import check_finite
 from nao_sim_bridge.base.readings import Pose
-from nao_sim_bridge.base.rotations import Vector3
+from nao_sim_bridge.base.rotations import Vector3, angular_velocity, vector3
 from nao_sim_bridge.world.builder import build_object, build_world, place_of
 from nao_sim_bridge.world.world import World, WorldObject
 
@@ -118,20 +118,36 @@ class WorldBodies:
         elif name in self._of_world:
             self.gone |= {name}
 
-    def put(self, name: str, pose: Pose, velocity: Vector3 = UNMOVED) -> None:
-        """Put a thing somewhere; it has that velocity (m/s, in world) until something changes it.
+    def put(self, name: str, pose: Pose) -> None:
+        """Put a thing somewhere, at rest.
 
         Raises:
             NotFinite: One of the numbers is not.
         """
-        check_finite(f"place of {name}", (*pose.position, *pose.orientation, *velocity))
+        self._put(name, pose, UNMOVED, UNMOVED)
+        if name not in self._loose:
+            self._fixed[name] = pose
+
+    def carry(self, name: str, before: Pose, after: Pose, seconds: float) -> None:
+        """Have the physics move a thing from one pose to another within the coming seconds.
+
+        It does so also with what nothing else moves. What touches the thing meanwhile is carried along or pushed away.
+
+        Raises:
+            NotFinite: One of the numbers is not.
+        """
+        velocity = vector3((b - a) / seconds for a, b in zip(before.position, after.position))
+        self._put(name, before, velocity, angular_velocity(before.orientation, after.orientation, seconds))
+        if name not in self._loose:
+            self._fixed[name] = after
+
+    def _put(self, name: str, pose: Pose, velocity: Vector3, turn: Vector3) -> None:
+        """With a velocity in m/s and an angular velocity in rad/s, both in world, which what is fixed keeps."""
+        check_finite(f"place of {name}", (*pose.position, *pose.orientation, *velocity, *turn))
         body = self.ids[name]
         self._wake(self._around(body))
         self._engine.resetBasePositionAndOrientation(body, pose.position, pose.orientation)
-        if name in self._loose:
-            self._engine.resetBaseVelocity(body, velocity, UNMOVED)
-        else:
-            self._fixed[name] = pose
+        self._engine.resetBaseVelocity(body, velocity, turn)
         self._wake(self._around(body))
 
     def depth_in(self, name: str, other: int) -> float:

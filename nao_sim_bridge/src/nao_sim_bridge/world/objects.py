@@ -30,7 +30,10 @@ from nao_sim_bridge.world.people import PERSON
 from nao_sim_bridge.world.robots import NAO
 from nao_sim_bridge.world.world import MOST_PARTS, Part, WorldError, WorldObject
 
-COMMON = ("rpy", "heading", "mass", "friction", "rolling_friction", "restitution")
+POSE = ("rpy", "heading")
+"""Fields of an entry besides its position that say where a thing is, not what it is."""
+NUMBERS = ("mass", "friction", "rolling_friction", "restitution")
+COMMON = (*POSE, *NUMBERS)
 BALL_RED = (0.85, 0.10, 0.08)
 # Light foam: rolls some steps far when a foot meets it.
 BALL_DEFAULTS = {"mass": 0.03, "friction": 0.6, "rolling_friction": 0.0004, "restitution": 0.4}
@@ -99,7 +102,7 @@ def _read(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
     made = kind.make(entry, where, files)
     values = {**DEFAULTS, **made.defaults}
     position = vector(entry["position"], f"{where}.position", 3, WorldError)
-    rpy = _rpy(entry, where)
+    rpy = orientation_of(entry, where)
     parts, body, middle = _centred(made)
     return WorldObject(
         name=title,
@@ -116,7 +119,8 @@ def _read(entry: Any, where: str, files: Callable[[str], Path]) -> WorldObject:
     )
 
 
-def _rpy(entry: Mapping, where: str) -> np.ndarray:
+def orientation_of(entry: Mapping, where: str) -> np.ndarray:
+    """Roll, pitch and yaw of an entry, rad."""
     if "heading" not in entry:
         return vector(entry.get("rpy", (0.0, 0.0, 0.0)), f"{where}.rpy", 3, WorldError)
     if "rpy" in entry:

@@ -22,12 +22,13 @@ CIRCLE = 1.0
 
 @dataclass(frozen=True)
 class RobotPlace:
-    """A place on the floor.
+    """A place on the floor, or over it on something that stands there.
 
     Attributes:
         x: Of the torso, in world, m.
         y: Of the torso, in world, m.
         yaw: Heading over the floor, rad: 0 looks along X.
+        z: Of what it stands on, over the floor, m.
 
     Raises:
         BadValue: A number is not in its range.
@@ -36,11 +37,12 @@ class RobotPlace:
     x: float = 0.0
     y: float = 0.0
     yaw: float = 0.0
+    z: float = 0.0
 
     def __post_init__(self) -> None:
-        if not (abs(self.x) <= FURTHEST and abs(self.y) <= FURTHEST and math.isfinite(self.yaw)):
-            allowed = f"x and y within {FURTHEST:g} m, yaw finite"
-            raise BadValue("place of a robot", (self.x, self.y, self.yaw), allowed)
+        if not (max(abs(self.x), abs(self.y)) <= FURTHEST and 0.0 <= self.z <= FURTHEST and math.isfinite(self.yaw)):
+            allowed = f"x and y within {FURTHEST:g} m, yaw finite, z 0 to {FURTHEST:g} m"
+            raise BadValue("place of a robot (x, y, yaw, z)", (self.x, self.y, self.yaw, self.z), allowed)
 
 
 ORIGIN = RobotPlace()

@@ -9,7 +9,7 @@ and `ambient`; `background` may have `top`, `horizon` and `haze`.
 
 Objects are read by `objects.py`; on a slope all places count from the floor: z is along its normal.
 `sounds` are read by `sounds.py`. `robots` says where the first, the second... robot starts: a list of `position`,
-[x, y] of its torso, and maybe `yaw`.
+[x, y] of its torso, or [x, y, z] where it stands on something z over the floor, and maybe `yaw`.
 """
 
 from __future__ import annotations
@@ -106,9 +106,12 @@ def _read_sounds(listed: Sequence[Entry], objects: Sequence[str], folder: Path |
 
 def _read_place(entry: Any, where: str) -> RobotPlace:
     check_keys(entry, where, ("position",), ("yaw",), WorldError)
-    x, y = vector(entry["position"], f"{where}.position", 2, WorldError).tolist()
+    position = array(entry["position"], f"{where}.position", (-1,), WorldError).tolist()
+    if len(position) not in (2, 3):
+        raise WorldError(f"{where}.position", f"is {position}, not [x, y] or [x, y, z] in m")
+    x, y, z = (*position, 0.0)[:3]
     try:
-        return RobotPlace(x, y, number(entry, "yaw", where, 0.0, lowest=-math.inf))
+        return RobotPlace(x, y, number(entry, "yaw", where, 0.0, lowest=-math.inf), z)
     except BadValue as error:
         raise WorldError(where, str(error)) from error
 

@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 
 from nao_sim_bridge.base.config import config_file, read_json
 from nao_sim_bridge.base.readings import Pose
-from nao_sim_bridge.base.rotations import cross, from_roll_pitch_yaw, multiply, roll_pitch_yaw, rotate, rotate_back
+from nao_sim_bridge.base.rotations import (
+    angular_velocity,
+    cross,
+    from_roll_pitch_yaw,
+    multiply,
+    roll_pitch_yaw,
+    rotate,
+    rotate_back,
+)
 from nao_sim_bridge.control.balance.stance import StanceReader
 from nao_sim_bridge.control.whole_body.body_kinematics import body_kinematics
 from nao_sim_bridge.control.whole_body.grounded_pose import Footing, GroundedPose
@@ -104,7 +112,6 @@ def test_rotations_follow_the_right_hand_rule(quaternion, vector, turned):
 
 def test_a_way_between_two_poses_is_straight_and_turns_the_short_way_round():
     glide = Glide(Pose((1.0, 0.0, 0.2), UPRIGHT), Pose((1.0, 2.0, 0.2), from_roll_pitch_yaw(0, 0, 1.0)), 10.0, 4.0)
-    assert glide.velocity == pytest.approx((0.0, 0.5, 0.0))
     halfway = glide.at(12.0)
     assert halfway.position == pytest.approx((1.0, 1.0, 0.2))
     assert roll_pitch_yaw(halfway.orientation) == pytest.approx((0.0, 0.0, 0.5))
@@ -116,6 +123,16 @@ def test_a_way_between_two_poses_is_straight_and_turns_the_short_way_round():
         assert abs(yaw) == pytest.approx(math.pi, abs=1e-6)
     turn = from_roll_pitch_yaw(0.1, 0.2, 0.3)
     assert slerp(turn, turn, 0.5) == pytest.approx(turn)
+
+
+def test_an_angular_velocity_turns_one_orientation_into_another_the_short_way_round():
+    first, axis, angle, seconds = from_roll_pitch_yaw(0.3, -0.4, 1.0), (0.6, 0.0, 0.8), 0.5, 0.25
+    turn = (*(math.sin(angle / 2) * part for part in axis), math.cos(angle / 2))
+    second = multiply(turn, first)
+    for sign in (1.0, -1.0):
+        end = tuple(sign * part for part in second)
+        assert angular_velocity(first, end, seconds) == pytest.approx((1.2, 0.0, 1.6))
+    assert angular_velocity(first, first, seconds) == pytest.approx((0.0, 0.0, 0.0))
 
 
 SMALL = 1e-6

@@ -61,6 +61,7 @@ def robot(entry):
         (floor(bumps={**BUMPS, "height": [0.01, 0.005]}), r"bumps\.height: .*smaller one first"),
         (floor(bumps={**BUMPS, "keep_free": 3}), r"keep_free: is 3 m, which leaves no room"),
         (robot({"position": [99, 0]}), r"test.yaml: robots\[0\]"),
+        (robot({"position": [0]}), r"robots\[0\]\.position: is \[0\.0\], not \[x, y\] or \[x, y, z\]"),
     ],
 )
 def test_wrong_worlds_are_refused_with_the_place(content, message):
@@ -69,7 +70,7 @@ def test_wrong_worlds_are_refused_with_the_place(content, message):
 
 
 def test_worlds_are_found_by_name_and_path(tmp_path):
-    names = {"empty", "gallery", "lab", "obstacles", "party", "slope_3deg", "uneven", "wall"}
+    names = {"empty", "gallery", "lab", "obstacles", "party", "platform", "slope_3deg", "uneven", "wall"}
     assert set(world_names()) == names
     assert all(load_world(name).name == name and load_world(name).description for name in names)
     empty = load_world("empty")
@@ -78,12 +79,12 @@ def test_worlds_are_found_by_name_and_path(tmp_path):
     path.write_text(
         "floor: {friction: 0.5}\nobjects:\n- {name: cube, box: [1, 1, 1], position: [0, 0, 2]}\n"
         "sounds:\n- {name: bell, on: cube, tone: 440}\n"  # `on` without quotes
-        "robots: [{position: [1, 2], yaw: 0.5}, {position: [-1, 0]}]\n"
+        "robots: [{position: [1, 2], yaw: 0.5}, {position: [-1, 0, 0.2]}]\n"
     )
     world = load_world(str(path))
     assert (world.name, world.floor.friction) == ("mine", 0.5)
     assert world.objects[0].name == world.sounds[0].on == "cube"
-    assert world.robots == (RobotPlace(1.0, 2.0, 0.5), RobotPlace(-1.0, 0.0, 0.0))
+    assert world.robots == (RobotPlace(1.0, 2.0, 0.5), RobotPlace(-1.0, 0.0, 0.0, 0.2))
     path.write_text("floor: [")
     for wrong, message in (("moon", "'moon'.*empty"), (str(tmp_path / "no.yaml"), r"no\.yaml: cannot be read")):
         with pytest.raises(WorldError, match=message):
