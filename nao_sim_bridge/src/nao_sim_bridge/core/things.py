@@ -302,7 +302,9 @@ class Things:
     def _depth_in_robots(self, name: str) -> float:
         return max(self._bodies.depth_in(name, robot) for robot in self._physics.robots)
 
-    def _pose_at(self, thing: WorldObject, place: Vector3, rpy: Sequence[float] | None, now: Pose | None = None) -> Pose:
+    def _pose_at(
+        self, thing: WorldObject, place: Vector3, rpy: Sequence[float] | None, now: Pose | None = None
+    ) -> Pose:
         """In world, of a thing whose point `origin` is at a place over the floor; without `rpy` as it is turned now."""
         floor = self._world.floor.orientation
         turn = now.orientation if rpy is None else multiply(floor, from_roll_pitch_yaw(*_checked_rpy(rpy)))

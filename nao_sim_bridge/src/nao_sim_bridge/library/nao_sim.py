@@ -33,6 +33,7 @@ from nao_sim_bridge.world.places import RobotPlace
 if TYPE_CHECKING:
     from nao_sim_bridge.core.saved_state import SavedState
 
+
 class NaoSim(Nao):
     """A world with one NAO or more, in which time passes when it is told to. It is also its first robot.
 
@@ -44,8 +45,8 @@ class NaoSim(Nao):
         seed: Of all random numbers: equal seeds and equal calls give equal runs, to the last bit.
         world: Name of a world that comes along, or path of a world file; see docs/worlds.md.
         robots: How many there are.
-        places: Where they stand, (x, y, yaw) each, m, m, rad, or (x, y, yaw, z) on something that is z m over the floor;
-            those of the world, or a circle, if nobody says.
+        places: Where they stand, (x, y, yaw) each in m and rad, or (x, y, yaw, z) on something z m over the floor; those
+            of the world, or a circle, if nobody says.
         version: Of the robots, "V6" or "V5".
         noise: Scale of the sensors' errors: 0 none, 1 those of a real robot.
         delay: How late joint angles, inertial unit and foot forces arrive, s.
@@ -237,9 +238,7 @@ class NaoSim(Nao):
             motion.wait(max(LONGEST, 2.0 * duration))
         return motion
 
-    def move_along(
-        self, name: str, path: Callable[[float], Sequence[float]], duration: float | None = None
-    ) -> Motion:
+    def move_along(self, name: str, path: Callable[[float], Sequence[float]], duration: float | None = None) -> Motion:
         """Move and turn a thing along a path while time passes; as `move`, it carries and pushes what it meets.
 
             plate = nao.things["plate"]
