@@ -10,7 +10,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import nao_sim_bridge.envs
-from nao_sim_bridge.base.errors import BadValue
+from nao_sim_bridge.base.errors import BadValue, SimulationError
+from nao_sim_bridge.envs.walk import NaoWalkEnv
 
 
 @pytest.mark.parametrize("name", nao_sim_bridge.envs.STEPS)
@@ -49,3 +50,33 @@ def test_an_episode_is_about_what_it_is_told(name, word, wanted):
     assert getattr(env.unwrapped, f"_{word}").tolist() != list(wanted)
     with pytest.raises(BadValue, match=word):
         env.reset(options={word: wanted[:2]})
+
+
+@pytest.mark.parametrize(
+    "options, told",
+    [
+        ({"friktion": 1.0}, "'friktion': did you mean 'friction'.*allowed: world"),
+        ({"posture": "Sit"}, "'posture'"),
+        ({"render_mode": "ansi"}, "render_mode"),
+        ({"drive": "velocity"}, "drive"),
+        ({"randomization": {"pushh": 1.0}}, "'pushh': did you mean 'push'"),
+        ({"randomization": {"push": -1.0}}, "randomization: push is -1.0"),
+        ({"randomization": {"friction": 1.5}}, "randomization: friction is 1.5"),
+        ({"randomization": {"payload": np.nan}}, "randomization: payload is nan"),
+    ],
+)
+def test_an_environment_that_cannot_be_is_refused_when_it_is_made(options, told):
+    with pytest.raises(SimulationError, match=told):
+        NaoWalkEnv(**options)
+
+
+@pytest.mark.parametrize("name", ["NaoWalk", "NaoFollowBall"])
+def test_options_of_a_reset_and_actions_that_an_environment_does_not_have_are_refused(name):
+    env = gymnasium.make(f"{name}-v0").unwrapped
+    with pytest.raises(SimulationError, match="comand"):
+        env.reset(options={"comand": (0.1, 0.0, 0.0)})
+    env.reset(seed=1)
+    count = env.action_space.shape[0]
+    for wrong in (0.1, np.zeros(count - 1), np.full(count, np.nan)):
+        with pytest.raises(SimulationError, match="action is"):
+            env.step(wrong)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, ClassVar, Mapping, Sequence
+import inspect
+import math
+from dataclasses import dataclass, fields
+from typing import Any, ClassVar, Collection, Mapping, Sequence
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from nao_sim_bridge.base.errors import BadValue, UnknownName
 from nao_sim_bridge.base.readings import UP
 from nao_sim_bridge.base.rotations import rotate_back
 from nao_sim_bridge.library.nao_sim import NaoSim
@@ -20,6 +23,9 @@ SCALE_OF_SPEED, SCALE_OF_LOAD = 0.1, 0.02
 
 LARGEST = 100.0
 """What is observed is cut at this."""
+
+OWN = ("self", "posture", "seed", "robots", "gui")
+"""Arguments of `NaoSim` that an environment decides itself."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +39,9 @@ class Randomization:
         noise: Scale of the sensors' errors, 1 for those of a real robot.
         push: Momentum of pushes, N s, at most; they come from any side.
         push_every: s between pushes, on average.
+
+    Raises:
+        BadValue: A number is out of range.
     """
 
     payload: float = 0.0
@@ -41,6 +50,29 @@ class Randomization:
     noise: float = 0.0
     push: float = 0.0
     push_every: float = 2.0
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if name == "friction":
+                fits, allowed = 0.0 <= value < 1.0, "0 to below 1"
+            elif name == "push_every":
+                fits, allowed = 0.0 < value < math.inf, "above 0, finite"
+            else:
+                fits, allowed = 0.0 <= value < math.inf, "0 or more, finite"
+            if not fits:
+                raise BadValue(f"randomization: {name}", value, allowed)
+
+    @classmethod
+    def of(cls, given: Randomization | Mapping[str, float] | None) -> Randomization:
+        """From a mapping of some fields; None for nothing random.
+
+        Raises:
+            UnknownName: There is no such field.
+        """
+        if isinstance(given, Randomization):
+            return given
+        check_names("randomization", given or {}, [field.name for field in fields(cls)])
+        return cls(**(given or {}))
 
 
 class NaoEnv(gymnasium.Env):
@@ -53,11 +85,24 @@ class NaoEnv(gymnasium.Env):
     Action (float32, -1..1 each): target of a joint, less its angle in the posture, times `REACH` rad. The other joints
     keep the posture.
 
+    One of your own is a subclass with `JOINTS` and `judge`, and maybe more of what follows: docs/environments.md.
+
+    Attributes:
+        POSTURE: In which episodes begin, and around which actions move the joints.
+        JOINTS: Names of those that actions drive.
+        REACH: Angle of an action of 1, rad.
+        TICKS: Of 1/120 s in a step; 3 are 25 ms.
+        EXTRA: How many numbers `extras` adds to the observation.
+        OPTIONS: What `options` of `reset` may have.
+
     Args:
         render_mode: "rgb_array", "human" or None.
         randomization: What differs from episode to episode, as a `Randomization` or a mapping of its fields.
         drive: What the actions are sent to: "position", as above; "torque": N m, a share of what the motors give.
-        options: Passed on to `NaoSim`.
+        options: Passed on to `NaoSim`: `world`, `places`, `version`, `noise`, `delay`, `friction`, `payload`.
+
+    Raises:
+        SimulationError: There is no such option, or a number is out of range.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "human"], "render_fps": 40}
@@ -65,9 +110,8 @@ class NaoEnv(gymnasium.Env):
     JOINTS: ClassVar[Sequence[str]] = ()
     REACH: ClassVar[float] = 0.5
     TICKS: ClassVar[int] = 3
-    """Ticks in a step: 25 ms."""
     EXTRA: ClassVar[int] = 0
-    """Numbers that an environment adds to the observation."""
+    OPTIONS: ClassVar[Sequence[str]] = ()
 
     def __init__(
         self,
@@ -77,11 +121,10 @@ class NaoEnv(gymnasium.Env):
         **options: Any,
     ) -> None:
         if drive not in ("position", "torque"):
-            raise ValueError(f'drive is {drive!r}, allowed are "position" and "torque"')
-        self.render_mode = render_mode
-        self.randomization = (
-            randomization if isinstance(randomization, Randomization) else Randomization(**(randomization or {}))
-        )
+            raise BadValue("drive", drive, "position or torque")
+        self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])
+        self.randomization = Randomization.of(randomization)
+        check_options(options)
         self._drive = drive
         self._options = options
         self._model = load_model(options.get("version", "V6"))
@@ -112,9 +155,11 @@ class NaoEnv(gymnasium.Env):
                 "point" of NaoReach-v0); what is not given is drawn.
 
         Raises:
+            UnknownName: The environment has no such option.
             BadValue: A number of the options is not finite, or there are too few or too many.
         """
         super().reset(seed=seed)
+        check_names("option of reset", options or {}, self.OPTIONS)
         chance = self.np_random
         wide, number = self.randomization, int(chance.integers(1 << 30))
         drawn = {"payload": wide.payload * chance.uniform(), "delay": wide.delay * chance.uniform()}
@@ -128,13 +173,17 @@ class NaoEnv(gymnasium.Env):
             self._sim.robot.scale_friction(friction)
         self._action[:] = 0.0
         self._plan_push()
-        self._begin(options or {})
+        self.begin(options or {})
         return self._observe(), {}
 
     def step(self, action: np.ndarray) -> tuple[Any, float, bool, bool, dict]:
-        """Drive the joints for 25 ms."""
-        action = np.clip(np.asarray(action, np.float32), -1.0, 1.0)
-        if self._sim.time >= self._next_push:
+        """Drive the joints for 25 ms; what an action has beyond -1..1 is cut.
+
+        Raises:
+            BadValue: The action has not a finite number for each joint.
+        """
+        action = checked_action(action, self.action_space.shape)
+        if self.sim.time >= self._next_push:
             self._push()
         if self._drive == "position":
             values = self._reference.copy()
@@ -143,7 +192,7 @@ class NaoEnv(gymnasium.Env):
             values = np.zeros(len(self._reference))
             values[self._driven] = self._limits * action
         self._sim.drive(values.tolist(), self._drive, self.TICKS)
-        reward, over = self._judge(action)
+        reward, over = self.judge(action)
         self._action = action
         return self._observe(), float(reward), bool(over), False, {}
 
@@ -159,15 +208,20 @@ class NaoEnv(gymnasium.Env):
 
     # --- for the environments -----------------------------------------------------------------------------------------
 
-    def _begin(self, options: Mapping[str, Any]) -> None:
+    @property
+    def last_action(self) -> np.ndarray:
+        """The action of the step before; zeros in the first one."""
+        return self._action
+
+    def begin(self, options: Mapping[str, Any]) -> None:
         """Take from the options of `reset`, or draw, what an episode is about; robot and world are at their start."""
 
-    def _judge(self, action: np.ndarray) -> tuple[float, bool]:
+    def judge(self, action: np.ndarray) -> tuple[float, bool]:
         """Reward of the step that has just been made, and whether the episode has failed."""
         raise NotImplementedError
 
-    def _more(self) -> Sequence[float]:
-        """What is added to the observation."""
+    def extras(self) -> Sequence[float]:
+        """What is added to the observation: `EXTRA` numbers."""
         return ()
 
     # --- inside -------------------------------------------------------------------------------------------------------
@@ -182,7 +236,7 @@ class NaoEnv(gymnasium.Env):
                 np.array(now.velocities) * SCALE_OF_SPEED,
                 np.array(now.foot_loads) * SCALE_OF_LOAD,
                 self._action,
-                self._more(),
+                self.extras(),
             ),
             dtype=np.float32,
         )
@@ -197,6 +251,52 @@ class NaoEnv(gymnasium.Env):
         force = (10.0 * size * np.cos(angle), 10.0 * size * np.sin(angle), 0.0)
         self._sim.push("Torso", force, 0.1)
         self._plan_push()
+
+
+def check_names(kind: str, given: Collection[str], known: Collection[str]) -> None:
+    """Refuse a name that is not known.
+
+    Raises:
+        UnknownName: The error says what there is.
+    """
+    for name in given:
+        if name not in known:
+            error = UnknownName(kind, name, known)
+            error.args = (f"{error} (allowed: {', '.join(known) or 'none'})",)
+            raise error
+
+
+def check_options(given: Collection[str]) -> None:
+    """Refuse what an environment cannot pass on to `NaoSim`.
+
+    Raises:
+        UnknownName: The error says what there is.
+    """
+    known = [name for name in inspect.signature(NaoSim.__init__).parameters if name not in OWN]
+    check_names("option of an environment", given, known)
+
+
+def checked_render_mode(mode: str | None, known: Sequence[str]) -> str | None:
+    """A mode that there is, or None.
+
+    Raises:
+        BadValue: There is no such mode.
+    """
+    if mode is not None and mode not in known:
+        raise BadValue("render_mode", mode, ", ".join(map(repr, known)))
+    return mode
+
+
+def checked_action(action: Any, shape: tuple[int, ...]) -> np.ndarray:
+    """An action as float32, cut at -1 and 1.
+
+    Raises:
+        BadValue: It has another shape, or not only finite numbers.
+    """
+    action = np.asarray(action, np.float32)
+    if action.shape != shape or not np.isfinite(action).all():
+        raise BadValue("action", action, f"finite numbers of shape {shape}")
+    return np.clip(action, -1.0, 1.0)
 
 
 def legs_of(*names: str) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 from gymnasium import spaces
 
 from nao_sim_bridge.base.errors import MoveRefused
+from nao_sim_bridge.envs.base import check_names, check_options, checked_action, checked_render_mode
 from nao_sim_bridge.library.nao_sim import NaoSim
 
 WIDTH, HEIGHT = 80, 60
@@ -30,13 +31,14 @@ class NaoFollowBallEnv(gymnasium.Env):
 
     Args:
         render_mode: "rgb_array" or None.
-        options: Passed on to `NaoSim`.
+        options: Passed on to `NaoSim`, see `NaoEnv`.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 5}
 
     def __init__(self, render_mode: str | None = None, **options: Any) -> None:
-        self.render_mode = render_mode
+        self.render_mode = checked_render_mode(render_mode, self.metadata["render_modes"])
+        check_options(options)
         self._options = options
         self._sim: NaoSim | None = None
         self.action_space = spaces.Box(-1.0, 1.0, (4,), np.float32)
@@ -48,8 +50,9 @@ class NaoFollowBallEnv(gymnasium.Env):
         )
 
     def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None) -> tuple[dict, dict]:
-        """Begin an episode: the ball lies 0.6 to 1.5 m away, up to 1 rad aside."""
+        """Begin an episode: the ball lies 0.6 to 1.5 m away, up to 1 rad aside; there are no `options`."""
         super().reset(seed=seed)
+        check_names("option of reset", options or {}, ())
         number = int(self.np_random.integers(1 << 30))
         if self._sim is None:
             self._sim = NaoSim(seed=number, **self._options)
@@ -58,14 +61,20 @@ class NaoFollowBallEnv(gymnasium.Env):
         far, aside = self.np_random.uniform(0.6, 1.5), self.np_random.uniform(-1.0, 1.0)
         # It lies still: a ball that is kicked away rolls for metres.
         self._ball = np.array((far * np.cos(aside), far * np.sin(aside)))
+        if "ball" in self._sim.things:  # that of the world
+            self._sim.remove("ball")
         self._sim.place("ball", at=(*self._ball, 0.04), ball=0.04, mass=0.0)
         self._head = np.zeros(2)
         self._far = self._distance()
         return self._observe(), {}
 
     def step(self, action: np.ndarray) -> tuple[dict, float, bool, bool, dict]:
-        """Walk and look for 0.2 s."""
-        ahead, turn, *head = (float(value) for value in np.clip(action, -1.0, 1.0))
+        """Walk and look for 0.2 s; what an action has beyond -1..1 is cut.
+
+        Raises:
+            BadValue: The action is not four finite numbers.
+        """
+        ahead, turn, *head = checked_action(action, self.action_space.shape).tolist()
         self._head = np.clip(self._head + HEAD * np.array(head), (-1.5, -0.4), (1.5, 0.4))
         self._sim.set_angles(["HeadYaw", "HeadPitch"], self._head)
         refused = ""

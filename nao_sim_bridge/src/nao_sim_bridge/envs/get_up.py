@@ -28,7 +28,7 @@ class NaoGetUpEnv(NaoEnv):
     )
     REACH = 2.0
 
-    def _judge(self, action: np.ndarray) -> tuple[float, bool]:
-        height = self._sim.snapshot.torso.position[2]
-        upright = (1.0 + np.cos(self._sim.lean)) / 2.0
+    def judge(self, action: np.ndarray) -> tuple[float, bool]:
+        height = self.sim.snapshot.torso.position[2]
+        upright = (1.0 + np.cos(self.sim.lean)) / 2.0
         return height / 0.33 * upright + float(height > HIGH and upright > 0.95), False

@@ -28,22 +28,23 @@ class NaoReachEnv(NaoEnv):
     JOINTS = ("RShoulderPitch", "RShoulderRoll", "RElbowYaw", "RElbowRoll", "RWristYaw")
     REACH = 1.5
     EXTRA = 6
+    OPTIONS = ("point",)
 
     def __init__(self, *arguments, **options) -> None:
         super().__init__(*arguments, **options)
         self._body = body_kinematics(self._model)
         self._frame = frame_of(self._model, "RArm")
 
-    def _begin(self, options: Mapping[str, Any]) -> None:
+    def begin(self, options: Mapping[str, Any]) -> None:
         drawn = CENTER + WIDE * self.np_random.uniform(-1.0, 1.0, 3)
         self._point = np.array(finite_numbers("point", options.get("point", drawn), 3))
 
     def _hand(self) -> np.ndarray:
-        return self._body.at(self._sim.snapshot.positions).pose(self._frame)[:3, 3]
+        return self._body.at(self.sim.snapshot.positions).pose(self._frame)[:3, 3]
 
-    def _judge(self, action: np.ndarray) -> tuple[float, bool]:
+    def judge(self, action: np.ndarray) -> tuple[float, bool]:
         distance = float(np.linalg.norm(self._hand() - self._point))
-        return -distance / 0.1 + float(distance < NEAR), self._sim.fallen
+        return -distance / 0.1 + float(distance < NEAR), self.sim.fallen
 
-    def _more(self) -> np.ndarray:
+    def extras(self) -> np.ndarray:
         return np.concatenate((self._point, self._hand()))

@@ -25,7 +25,7 @@ class NaoStandEnv(NaoEnv):
         pushes = Randomization(push=3.0) if randomization is None else randomization
         super().__init__(render_mode, pushes, drive, **options)
 
-    def _judge(self, action: np.ndarray) -> tuple[float, bool]:
-        change = float(np.square(action - self._action).mean())
+    def judge(self, action: np.ndarray) -> tuple[float, bool]:
+        change = float(np.square(action - self.last_action).mean())
         effort = float(np.square(action).mean())
-        return 1.0 - 2.0 * (1.0 - np.cos(self._sim.lean)) - 0.1 * effort - 0.1 * change, self._sim.fallen
+        return 1.0 - 2.0 * (1.0 - np.cos(self.sim.lean)) - 0.1 * effort - 0.1 * change, self.sim.fallen

@@ -27,19 +27,20 @@ class NaoWalkEnv(NaoEnv):
     JOINTS = (*LEGS, *ARMS)
     REACH = 0.8
     EXTRA = 6
+    OPTIONS = ("command",)
 
-    def _begin(self, options: Mapping[str, Any]) -> None:
+    def begin(self, options: Mapping[str, Any]) -> None:
         drawn = self.np_random.uniform(-1.0, 1.0, 3) * FASTEST
         self._command = np.array(finite_numbers("command", options.get("command", drawn), 3))
 
     def _velocity(self) -> np.ndarray:
-        now = self._sim.snapshot
+        now = self.sim.snapshot
         return np.array((*now.velocity_in_torso[:2], now.turn_in_torso[2]))
 
-    def _judge(self, action: np.ndarray) -> tuple[float, bool]:
+    def judge(self, action: np.ndarray) -> tuple[float, bool]:
         errors = (self._velocity() - self._command) / WIDTH
-        change = float(np.square(action - self._action).mean())
-        return float(np.exp(-np.square(errors)).mean()) - 0.05 * change, self._sim.fallen
+        change = float(np.square(action - self.last_action).mean())
+        return float(np.exp(-np.square(errors)).mean()) - 0.05 * change, self.sim.fallen
 
-    def _more(self) -> np.ndarray:
+    def extras(self) -> np.ndarray:
         return np.concatenate((self._command / FASTEST, self._velocity()))

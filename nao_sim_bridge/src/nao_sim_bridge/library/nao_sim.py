@@ -26,7 +26,7 @@ from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.core.shared_world import SharedWorld
 from nao_sim_bridge.core.simulation import SEED_STEP, robots_in
-from nao_sim_bridge.library.nao import LONGEST, Motion, Nao, finite_numbers
+from nao_sim_bridge.library.nao import LONGEST, Motion, Nao, finite_numbers, whole_number
 from nao_sim_bridge.library.session import ENDLESS, Session
 from nao_sim_bridge.world.places import RobotPlace
 
@@ -45,8 +45,8 @@ class NaoSim(Nao):
         seed: Of all random numbers: equal seeds and equal calls give equal runs, to the last bit.
         world: Name of a world that comes along, or path of a world file; see docs/worlds.md.
         robots: How many there are.
-        places: Where they stand, (x, y, yaw) each in m and rad, or (x, y, yaw, z) on something z m over the floor; those
-            of the world, or a circle, if nobody says.
+        places: Where they stand, (x, y, yaw) each in m and rad, or (x, y, yaw, z) on something z m over the floor;
+            those of the world, or a circle, if nobody says.
         version: Of the robots, "V6" or "V5".
         noise: Scale of the sensors' errors: 0 none, 1 those of a real robot.
         delay: How late joint angles, inertial unit and foot forces arrive, s.
@@ -72,7 +72,10 @@ class NaoSim(Nao):
         payload: float = 0.0,
         gui: bool = False,
     ) -> None:
-        scene = Scene(str(world), version, posture or "Crouch", seed, friction, payload, noise, delay)
+        start = "Crouch" if posture is None else posture
+        scene = Scene(str(world), version, start, whole_number("seed", seed), friction, payload, noise, delay)
+        if len(places) not in (0, robots):
+            raise BadValue("places", places, f"one for each of the {robots} robots, or none")
         self._places = tuple(RobotPlace(*finite_numbers("place", place, 3, 4)) for place in places)
         session = Session(robots_in(SharedWorld(scene), scene, robots, self._places), gui)
         super().__init__(session, 0)
@@ -108,15 +111,18 @@ class NaoSim(Nao):
         """Let time pass.
 
         Args:
-            seconds: Simulated, rounded to ticks; None for one tick.
+            seconds: Simulated, rounded to ticks of 1/120 s: 0.01 s are one tick, 0.00833 s; None for one tick.
 
         Raises:
-            BadValue: It is negative or not finite.
+            BadValue: It is negative, not finite, or above 0 and less than half a tick.
         """
         seconds = self.tick_s if seconds is None else seconds
         if not 0.0 <= seconds < ENDLESS:
             raise BadValue("seconds", seconds, "0 or more, finite")
-        self._session.advance(round(seconds / self.tick_s))
+        ticks = round(seconds / self.tick_s)
+        if ticks == 0 and seconds > 0.0:
+            raise BadValue("seconds", seconds, f"0, or a tick of {self.tick_s:.5f} s or more")
+        self._session.advance(ticks)
 
     def reset(self, seed: int | None = None, payload: float | None = None, delay: float | None = None) -> None:
         """Put robots and world to their start; what they do ends. What is None stays as it was.
@@ -135,7 +141,7 @@ class NaoSim(Nao):
         def start_again() -> None:
             for number, simulation in enumerate(self._session.simulations):
                 if seed is not None:
-                    changes["seed"] = seed + SEED_STEP * number
+                    changes["seed"] = whole_number("seed", seed) + SEED_STEP * number
                 simulation.vary(**changes)
             self._session.shared.reset()
             self._wake()
@@ -292,7 +298,13 @@ class NaoSim(Nao):
         return self._simulation.picture(view, width, height)
 
     def save_picture(self, path: str | Path, view: str = "three_quarter", width: int = 640, height: int = 480) -> None:
-        """As `picture`, written to a PNG file."""
+        """As `picture`, written to a PNG file.
+
+        Raises:
+            BadValue: The name of the file ends like that of another kind of picture; else as `picture`.
+        """
+        if Path(path).suffix.lower() not in ("", ".png"):
+            raise BadValue("path", str(path), "the name of a PNG file")
         from nao_sim_bridge.render.png import write_png
 
         write_png(Path(path), self.picture(view, width, height))
