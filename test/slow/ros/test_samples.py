@@ -26,8 +26,9 @@ LIMIT, END_LIMIT = 240.0, 60.0
 """s of wall time for a program, and for its end after Ctrl-C."""
 SPEEDS = {"python": 2.0, "shell": 4.0}
 """Times real time: most of it waits for speech, lights and legs. A program's limits are in simulated time, too."""
-ALL = [sample for page in PAGES if page != "docs/library.md" for sample in samples(page)]
-"""The library's page needs wheels that the stack does not, and runs without ROS: test_library.py."""
+WITHOUT_ROS = ("docs/library.md", "docs/environments.md")
+ALL = [sample for page in PAGES if page not in WITHOUT_ROS for sample in samples(page)]
+"""Pages of the library need wheels that the stack does not, and run without ROS: test_library.py."""
 REFUSED = re.compile(r"^Traceback|^success: False", re.MULTILINE)
 """In an output: `rosservice` ends with status 0 also when a service has said no."""
 SOUND = ROOT / "nao_sim_bridge" / "src" / "nao_sim_bridge" / "sounds" / "nao_library" / "chime.ogg"
