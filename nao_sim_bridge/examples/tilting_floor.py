@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """A floor that tilts under the robot: it rides the waves of a plate, until one is too high. Draws what happens.
 
-Needs `pip install ./nao_sim_bridge` and no ROS. Writes tilting_floor.png: the plate level, in its waves, at its steepest,
-and what has become of the robot.
+Needs `pip install ./nao_sim_bridge` and no ROS. Writes tilting_floor.png: the plate level, in its waves, at its
+steepest, and what has become of the robot.
 """
 
 from __future__ import annotations

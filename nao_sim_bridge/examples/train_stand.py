@@ -9,14 +9,14 @@ paid (Mania, Guy and Recht 2018, without their scaling of states). The rollouts 
 from __future__ import annotations
 
 import argparse
-from contextlib import closing
+from contextlib import closing, nullcontext
 from pathlib import Path
 
 import gymnasium
 import numpy as np
 
 from nao_sim_bridge import NaoSim
-from nao_sim_bridge.sweep import sweep
+from nao_sim_bridge.sweep import ray_running, sweep
 
 ENVIRONMENT = "nao_sim_bridge.envs:NaoStand-v0"
 WIDTH, RATE = 0.03, 0.02
@@ -88,10 +88,12 @@ def main() -> None:
     options.add_argument("--output", type=Path, default=Path("train_stand"), help="folder for policy, table and figure")
     chosen = options.parse_args()
     chosen.output.mkdir(parents=True, exist_ok=True)
-    if chosen.workers != 0:
-        import ray
+    with nullcontext() if chosen.workers == 0 else ray_running(chosen.workers):  # once, for all sweeps
+        learn_and_compare(chosen)
 
-        ray.init(num_cpus=chosen.workers, include_dashboard=False, log_to_driver=False)  # once, for all sweeps
+
+def learn_and_compare(chosen: argparse.Namespace) -> None:
+    """All but the arguments."""
     policy = train(chosen.iterations, chosen.directions, chosen.push, chosen.workers)
     np.save(chosen.output / "policy.npy", policy)
     nothing = np.zeros_like(policy)

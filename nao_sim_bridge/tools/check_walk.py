@@ -20,6 +20,7 @@ from __future__ import annotations
 import logging
 import math
 import sys
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Callable, Iterable, Iterator, List, Mapping, Sequence
@@ -27,7 +28,7 @@ from typing import Any, Callable, Iterable, Iterator, List, Mapping, Sequence
 import walk_runs
 from command_line import parse, parts_parser
 
-from nao_sim_bridge.sweep import sweep
+from nao_sim_bridge.sweep import ray_running, sweep
 
 MAX_STEP_X, MAX_STEP_Y = {"MaxStepX": 0.06}, {"MaxStepY": 0.16}
 # Velocity, gait, which part of the velocity counts, and what it must be at least, SI.
@@ -229,13 +230,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = parse(parser, PARTS, arguments, jobs=1, runs=1, seconds=1.0, minutes=0.1)
     logging.getLogger("nao_sim").setLevel(logging.ERROR)  # falls and refused orders are no news
     workers = chosen.jobs if chosen.jobs > 1 else 0
-    if workers:
-        import ray  # only who has several processes needs it
-
-        # Once, for all sweeps.
-        ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, configure_logging=False)
     extent = Extent(chosen.runs, chosen.seconds, chosen.minutes, chosen.seed)
-    return measure(chosen.parts, extent, partial(outcomes, workers)) > 0
+    with ray_running(workers) if workers else nullcontext():  # once, for all sweeps
+        return measure(chosen.parts, extent, partial(outcomes, workers)) > 0
 
 
 if __name__ == "__main__":

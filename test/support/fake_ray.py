@@ -34,11 +34,20 @@ class FakeRay:
 
     def __init__(self, **places):
         self.places, self.events, self.broken = places, {}, set()
+        self.initialized, self.starting = True, lambda: None
         self.actors, self.calls = [], []
         self._waits = itertools.count()
 
     def is_initialized(self):
-        return True
+        return self.initialized
+
+    def init(self, **options):
+        """Start, by what `starting` does."""
+        self.starting()
+        self.initialized = True
+
+    def shutdown(self):
+        self.initialized = False
 
     def nodes(self):
         return [{"Alive": True, "Resources": {"CPU": float(count)}} for count in self.places.values()]

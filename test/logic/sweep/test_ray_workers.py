@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 import threading
 from contextlib import redirect_stdout
+from types import SimpleNamespace
 
 import pytest
 from fake_ray import FakeRay
 
-from nao_sim_bridge.sweep import NoWorkers, progress, ray_workers, sweep
+from nao_sim_bridge.sweep import NoWorkers, progress, ray_start, ray_workers, sweep
 
 
 def doubled(seed):
@@ -28,7 +30,7 @@ def clock(monkeypatch):
         return now[0]
 
     monkeypatch.setattr(ray_workers, "LOOK_PERIOD", 0.0)
-    for module in (ray_workers, progress):
+    for module in (ray_start, ray_workers, progress):
         monkeypatch.setattr(module.time, "monotonic", monotonic)
 
 
@@ -158,9 +160,51 @@ def test_where_there_is_no_terminal_the_progress_is_lines(monkeypatch, clock, ca
 
 
 def test_rays_own_reports_stay_out_of_standard_output(capsys):
-    with redirect_stdout(ray_workers._WithoutRay(sys.stdout)):
-        for name in (ray_workers.RAYS_REPORTER, "another"):
+    with redirect_stdout(ray_start._WithoutRay(sys.stdout)):
+        for name in (ray_start.RAYS_REPORTER, "another"):
             thread = threading.Thread(target=print, args=(f"printed by {name}",), name=name)
             thread.start()
             thread.join()
     assert capsys.readouterr().out == "printed by another\n"
+
+
+@pytest.fixture
+def slow(monkeypatch):
+    """A Ray that is not there yet, and whose node is found at the look of the number that `late` has."""
+    ray, services = FakeRay(first=1), SimpleNamespace(late=1, looks=0, seen={})
+
+    def get_node():
+        services.looks += 1
+        if services.looks < services.late:
+            raise RuntimeError("no such node")
+
+    def starting():
+        services.seen = {name: os.environ.get(name) for name in ray_start.PATIENCE}
+        try:
+            services.get_node()
+        except RuntimeError:
+            raise Exception("node\ntimed out") from None  # as Ray does
+
+    services.get_node, ray.initialized, ray.starting = get_node, False, starting
+    monkeypatch.setitem(sys.modules, "ray._private.services", services)
+    monkeypatch.setattr(ray_start, "PAUSE", 0.0)
+    monkeypatch.setenv("RAY_worker_niceness", "7")
+    return ray, services
+
+
+def test_a_ray_that_starts_slowly_is_waited_for_and_its_workers_get_time(run, slow, monkeypatch):
+    ray, services = slow
+    monkeypatch.setattr(ray_start, "START_LIMIT", 600.0)  # of the clock: 3 s a look
+    services.late = 100
+    assert [row["result"] for row in run(ray, seeds=3)] == [0, 2, 4] and services.looks == 100
+    assert services.seen == {**ray_start.PATIENCE, "RAY_worker_niceness": "7"}  # that of the user
+    assert not ray.initialized and services.get_node.__name__ == "get_node"
+    assert "RAY_worker_register_timeout_seconds" not in os.environ
+
+
+def test_a_ray_that_does_not_start_ends_the_sweep_with_its_reason(run, slow):
+    ray, services = slow
+    services.late = 10**6
+    with pytest.raises(NoWorkers, match="Ray does not start on this computer: Exception: timed out"):
+        run(ray)
+    assert services.get_node.__name__ == "get_node"

@@ -110,3 +110,10 @@ def test_what_a_function_keeps_is_closed_after_the_last_run():
     kept = Kept()
     sweep(kept, 3, **OPTIONS)
     assert (kept.made, kept.closed) == (1, 1)
+
+
+def test_a_name_of_the_table_is_no_parameter_and_no_result():
+    with pytest.raises(BadValue, match="error is .*another name"):
+        sweep(lambda seed, error: seed, 2, workers=0, progress=False, error=[1])
+    (row,) = sweep(lambda seed, push: {"push": 0.0}, 1, workers=0, progress=False, push=[2.0]).rows
+    assert row["push"] == 2.0 and "returns push, which the row has already" in row["error"]

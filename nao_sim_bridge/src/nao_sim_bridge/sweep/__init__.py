@@ -15,8 +15,8 @@ Needs the extra `[sweep]`.
 
 from __future__ import annotations
 
-from nao_sim_bridge.sweep.ray_workers import NoWorkers
+from nao_sim_bridge.sweep.ray_start import NoWorkers, ray_running
 from nao_sim_bridge.sweep.run import sweep
 from nao_sim_bridge.sweep.table import Rate, Table
 
-__all__ = ["NoWorkers", "Rate", "Table", "sweep"]
+__all__ = ["NoWorkers", "Rate", "Table", "ray_running", "sweep"]

@@ -21,6 +21,11 @@ class Job:
             result = self._function(**inputs)
             answer = dict(result) if isinstance(result, Mapping) else {"result": result}
             answer = {name: _plain(name, value) for name, value in answer.items()}
+            taken = [name for name in answer if name in (*inputs, SECONDS, ERROR)]
+            if taken:
+                raise ValueError(
+                    f"the function returns {', '.join(taken)}, which the row has already: name it otherwise"
+                )
             error = ""
         except Exception as failure:
             answer, error = {}, f"{type(failure).__name__}: {failure}"

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import socket
-import sys
-import threading
 import time
 from collections import deque
-from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from typing import Any, Iterable, Iterator, Mapping, Sequence
 
-from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.sweep.job import Job
 from nao_sim_bridge.sweep.progress import Progress, counted
+from nao_sim_bridge.sweep.ray_start import NoWorkers, ray_running, reason_of
 from nao_sim_bridge.sweep.table import ERROR, SECONDS
 
 RETRIES = 3
@@ -28,15 +24,8 @@ LOOK_PERIOD = 1.0
 WAITING = 30.0
 """s without any worker after which the sweep reports that it waits."""
 MIB = 2**20
-REASON_LENGTH = 300
 ENVIRONMENT = {"RAY_kill_child_processes_on_worker_exit": "0"}
 """Of workers. Children of a dead worker end by themselves and stop their own; killed by Ray, they would leave these."""
-RAYS_REPORTER = "ray_listen_error_messages"
-"""Ray's thread that prints errors of its processes on stdout, dozens of lines each."""
-
-
-class NoWorkers(SimulationError):
-    """No worker of a sweep starts."""
 
 
 @dataclass
@@ -66,7 +55,7 @@ def run_on_ray(
         return
     import ray  # only who sweeps in parallel needs it
 
-    with _connected(ray, workers, address):
+    with ray_running(workers, address):
         crew = _Crew(ray, job, workers or len(runs), 0.0 if workers else memory, progress)
         try:
             yield from crew.run_all(runs)
@@ -184,7 +173,7 @@ class _Crew:
         """
         self._ray.kill(worker.actor)  # one that only cannot be reached must not continue
         self._workers.remove(worker)
-        reason = _reason(error)
+        reason = reason_of(error)
         if worker.host is None:
             self._failed_starts += 1
             self._ask_at = time.monotonic() + min(2.0 ** (self._failed_starts - 1), WAITING)
@@ -210,42 +199,3 @@ class _Crew:
         computers = sum(node["Alive"] for node in self._ray.nodes())
         where = f"on {counted(computers, 'computer')} of the cluster or on one that joins it"
         self._progress.report(f"{counted(count, 'run')} left and no worker yet: each waits for {needed}, {where}")
-
-
-def _reason(error: Exception) -> str:
-    """The error in one line: its last one says most."""
-    lines = [line for line in str(error).splitlines() if line.strip()]
-    text = f"{type(error).__name__}: {lines[-1].strip() if lines else ''}"
-    return text if len(text) <= REASON_LENGTH else f"{text[:REASON_LENGTH]}..."
-
-
-@contextmanager
-def _connected(ray: Any, workers: int | None, address: str | None) -> Iterator[None]:
-    """A Ray on this computer, that of an address, or that which is there; who has begun it ends it."""
-    if ray.is_initialized():
-        yield
-        return
-    with redirect_stdout(_WithoutRay(sys.stdout)):
-        quiet = {"log_to_driver": False, "configure_logging": False}
-        if address is not None:
-            ray.init(address=address, **quiet)
-        else:
-            ray.init(num_cpus=workers, include_dashboard=False, **quiet)
-        try:
-            yield
-        finally:
-            with redirect_stdout(io.StringIO()):  # what Ray has not printed yet
-                ray.shutdown()
-
-
-class _WithoutRay:
-    """Standard output of this process without Ray's reports: the sweep has its own, on stderr."""
-
-    def __init__(self, output: Any) -> None:
-        self._output = output
-
-    def write(self, text: str) -> int:
-        return len(text) if threading.current_thread().name == RAYS_REPORTER else self._output.write(text)
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._output, name)

@@ -48,7 +48,7 @@ def sweep(
         parameters: A sequence of values for each, of numbers, truth values or texts.
 
     Raises:
-        BadValue: There are no seeds or values, or the file is of another sweep.
+        BadValue: There are no seeds or values, a parameter has the name of a column, or the file is of another sweep.
         ImportError: There is no Ray.
         NoWorkers: No worker starts.
     """
@@ -56,6 +56,8 @@ def sweep(
     if not len(numbers):
         raise BadValue("seeds", seeds, "1 or more")
     for name, values in parameters.items():
+        if name in (SEED, SECONDS, ERROR):
+            raise BadValue(name, values, "a parameter of another name: the table has a column of this one")
         if isinstance(values, str) or not len(values):
             raise BadValue(name, values, "a sequence of values")
     names = list(parameters)
