@@ -3,7 +3,8 @@
     scripts/ros-env python3 test/slow/sweep_cluster.py --kills 20 --joins 10 [--stacks BEHAVIOR] [--seed 0]
 
 Needs Ray; with --stacks, each worker has a whole stack, and the workspace has to be built. Prints a line for each
-sweep and ends with 1 if one of them lacks rows, has wrong ones, hangs, or leaves programs running.
+sweep and ends with 1 if one of them lacks rows, has wrong ones, hangs, or leaves programs running. A sweep that ends
+before its node is in the cluster says nothing: it is a "no join", and made again with longer runs.
 """
 
 from __future__ import annotations
@@ -31,10 +32,13 @@ from nao_sim_bridge.sweep import sweep
 RAY = {"RAY_AUTH_MODE": "disabled", "RAY_worker_niceness": "0", "RAY_worker_register_timeout_seconds": "300"}
 """For a busy computer: with Ray's niceness of 15 a worker hardly starts there, and Ray ends it after 60 s."""
 MARK = "SWEEP_CLUSTER_CHECK"
+NO_JOIN = "no join"
 SEEDS = 8
 GONE_LIMIT = 60.0
 """s after a sweep within which the programs of lost workers must have ended: roslaunch takes up to 40 s."""
 NODE_STARTS = 8
+JOIN_TRIES = 3
+"""Sweeps for a join, each with runs twice as long as those of the one before: a busy computer takes long to join."""
 HANG_LIMIT = 600.0
 """s for one sweep."""
 
@@ -61,14 +65,14 @@ def run_small(address: str, rows: Path, lengths: list[float]) -> tuple[list[str]
     return [*errors, *([] if right else ["rows differ from those of one process"])], "+".join(map(str, makers))
 
 
-def run_stacks(address: str, behavior: str, rows: Path) -> tuple[list[str], str]:
+def run_stacks(address: str, behavior: str, rows: Path, seeds: int) -> tuple[list[str], str]:
     """What is wrong with a sweep of whole stacks, and how many rows it has."""
     from nao_library_modules.sweeps import BehaviorGoal, sweep_stack
 
-    table = sweep_stack(BehaviorGoal(behavior), SEEDS, noise=[1.0], output=rows, address=address)
+    table = sweep_stack(BehaviorGoal(behavior), seeds, noise=[1.0], output=rows, address=address)
     errors = [row["error"] for row in table.rows if row["error"]]
     wrong = [f"seed {row['seed']}: {row.get('outcome')}" for row in table.rows if row.get("outcome") != "succeeded"]
-    order = [row["seed"] for row in table.rows] == list(range(SEEDS))
+    order = [row["seed"] for row in table.rows] == list(range(seeds))
     return [*errors, *wrong, *([] if order else ["rows are not in order"])], str(len(table.rows))
 
 
@@ -144,6 +148,11 @@ class Meddler(threading.Thread):
         rows = self._rows.read_text().count("\n") - 1 if self._rows.exists() else 0
         self.done = f"with {rows} rows"
 
+    def came(self) -> bool:
+        """Whether the second node is in the cluster now, or a kill has no node that should come."""
+        nodes = self._cluster.global_state.node_table()
+        return self._kind == "kill" or sum(node["Alive"] for node in nodes) > 1
+
     def end(self) -> None:
         """The sweep is over: take the second node away."""
         self._over.set()
@@ -153,6 +162,33 @@ class Meddler(threading.Thread):
         if self._joined is not None:
             self._joined.terminate()
             self._joined.wait(GONE_LIMIT)
+
+
+def try_sweep(
+    cluster: Cluster, kind: str, stacks: str | None, rows: Path, mark: str, chance: random.Random, attempt: int
+) -> list[str]:
+    """What is wrong with one sweep, during which a node is killed or joins; prints a line."""
+    faulthandler.dump_traceback_later(HANG_LIMIT, exit=True)
+    at_once = chance.random() < (0.2 if kind == "kill" else 0.5)
+    lasted = 30.0 if stacks else 8.0  # s from the first row to the last one, about
+    meddler = Meddler(cluster, kind, rows, at_once, chance.uniform(0.0, 0.6) * lasted)
+    began = time.monotonic()
+    meddler.start()
+    try:
+        if stacks:
+            problems, made = run_stacks(cluster.address, stacks, rows, SEEDS * 2**attempt)
+        else:
+            lengths = [0.8, 1.2] if kind == "kill" else [3.0, 4.0]  # a node takes a while to join
+            problems, made = run_small(cluster.address, rows, [2**attempt * length for length in lengths])
+        if not meddler.came():
+            problems.append(NO_JOIN)
+    finally:
+        meddler.end()
+    took = time.monotonic() - began
+    problems += [f"still running: {program}" for program in wait_until_gone(mark)]
+    told = f"{rows.stem} {kind} {meddler.done}, rows by node: {made}, {took:.0f} s"
+    print(f"{told}: {'; '.join(problems) or 'ok'}", flush=True)
+    return problems
 
 
 def main() -> int:
@@ -166,30 +202,17 @@ def main() -> int:
     for name, value in RAY.items():
         os.environ.setdefault(name, value)
     chance, failed = random.Random(options.seed), 0
-    lasted = 30.0 if options.stacks else 8.0  # s from the first row to the last one, about
-    folder = tempfile.mkdtemp(prefix="sweep_cluster_")
+    folder = Path(tempfile.mkdtemp(prefix="sweep_cluster_"))
     cluster = insist(lambda: Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False}))
     try:
         for number, kind in enumerate(["kill"] * options.kills + ["join"] * options.joins):
-            faulthandler.dump_traceback_later(HANG_LIMIT, exit=True)
-            at_once = chance.random() < (0.2 if kind == "kill" else 0.5)
-            rows = Path(folder) / f"{number}.csv"
-            meddler = Meddler(cluster, kind, rows, at_once, chance.uniform(0.0, 0.6) * lasted)
-            began = time.monotonic()
-            meddler.start()
-            try:
-                if options.stacks:
-                    problems, made = run_stacks(cluster.address, options.stacks, rows)
-                else:
-                    lengths = [0.8, 1.2] if kind == "kill" else [3.0, 4.0]  # a node takes a while to join
-                    problems, made = run_small(cluster.address, rows, lengths)
-            finally:
-                meddler.end()
-            took = time.monotonic() - began
-            problems += [f"still running: {program}" for program in wait_until_gone(mark)]
+            for attempt in range(JOIN_TRIES):
+                problems = try_sweep(
+                    cluster, kind, options.stacks, folder / f"{number}_{attempt}.csv", mark, chance, attempt
+                )
+                if problems != [NO_JOIN]:
+                    break
             failed += bool(problems)
-            told = f"{number} {kind} {meddler.done}, rows by node: {made}, {took:.0f} s"
-            print(f"{told}: {'; '.join(problems) or 'ok'}", flush=True)
     finally:
         faulthandler.cancel_dump_traceback_later()
         ray.shutdown()
