@@ -11,6 +11,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+CHECK = """
+import warnings
+from gymnasium.utils.env_checker import check_env
+warnings.simplefilter("error")
+check_env(TiltEnv(), skip_render_check=True)
+"""
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
@@ -47,9 +53,22 @@ def test_every_example_of_the_library_runs_without_ros(library, tmp_path):
     assert (tmp_path / "nao.png").stat().st_size > 10_000 and (tmp_path / "pushes.png").exists()
     assert re.search(r"^ *0\.0 +4 +0 +0 ", told, re.MULTILINE), told
     assert re.search(r"^ *4\.0 +4 +4 +1 ", told, re.MULTILINE), told
+    told = python(sources / "examples" / "tilting_floor.py", cwd=tmp_path)
+    assert [line.rpartition(" ")[2] for line in told.splitlines() if "fallen" in line] == ["False", "True"]
+    assert (tmp_path / "tilting_floor.png").stat().st_size > 10_000
     example = sources / "examples" / "train_stand.py"
     told = python(example, "--iterations", 1, "--directions", 1, "--episodes", 1, cwd=tmp_path)
     assert "own balance" in told and (tmp_path / "train_stand" / "compared.png").exists()
+
+
+@pytest.mark.timeout(600)
+def test_the_environment_of_its_page_can_be_learned_in(library, tmp_path):
+    """Its blocks run, and the observation is as long as the page says."""
+    blocks = BLOCK.findall((ROOT / "docs" / "environments.md").read_text(encoding="utf-8"))
+    page = tmp_path / "page.py"
+    page.write_text("\n".join([*blocks, CHECK]), encoding="utf-8")
+    told = library[1](page, cwd=tmp_path)
+    assert re.search(r"^76 numbers seen, 7\d\.\d of 80, fallen: False$", told, re.MULTILINE), told
 
 
 @pytest.mark.timeout(1800)
