@@ -103,7 +103,8 @@ CHAIN = ", ".join(f"{{wait: 0.5, at: s{i}.end, label: s{i + 1}}}" for i in range
     "steps, seconds",
     [
         ("- {wait: 1}\n- {wait: 0.5}", 1.5), ("- {NaoLights.on: {lights: [FaceLeds], time: 2}}\n- {wait: 0.5}", 2.5),
-        ("- parallel: [{wait: 1}, [{wait: 1}, {wait: 2}]]", 3.0), ("- {repeat: 4, do: [{wait: 0.5}]}", 2.0),
+        ("- parallel: [{wait: 1}, [{wait: 1}, {wait: 2}]]", 3.0), ("- race: [{wait: 1}, [{wait: 2}]]", 1.0),
+        ("- {repeat: 4, do: [{wait: 0.5}]}", 2.0),
         ("- {repeat: 0, do: [{wait: 0.5}]}", 0.0), ("- {wait: 10, for: 3}", 3.0),
         ("- timeline: [{wait: 1, at: 0.5, label: a}, {wait: 1, at: a.end + 0.25}, {wait: 0.5, at: a}]", 2.75),
         ("- timeline: [{wait: 1, at: 2}, {barrier: all}, {wait: 0.5, at: all + 1}]", 4.5),

@@ -121,6 +121,18 @@ def test_a_failure_ends_the_others_and_the_behaviour(start, clients):
     assert run.states() == {"1": "failed"} and "preempted: a goal of somebody else took its place" in str(run.error)
 
 
+def test_the_first_branch_of_a_race_that_is_over_ends_the_others(start, clients):
+    run = start(
+        "- race: [{NaoLights.x: {str_param: hold a}}, [{NaoMotion.x: {str_param: hold b}}, {wait: 1}]]\n- {wait: 0}"
+    )
+    clients.hold(2)
+    clients.of("hold a").over()
+    assert run.states() == {
+        "1": "ended", "1.1": "ended", "1.2": "preempted", "1.2.1": "preempted", "1.2.2": "not run", "2": "ended",
+    }  # fmt: skip
+    assert run.error is None and not clients.running()
+
+
 def test_failures_are_skipped_and_retried(start, clients):
     run = start(
         """

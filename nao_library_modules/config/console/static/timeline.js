@@ -224,7 +224,7 @@ class View {
       if (path === dragged.path || path.startsWith(`${dragged.path}.`)) continue;
       const box = this.tracks.boxes.find((each) => each.path === path);
       const area = group.querySelector(".tl-body").getBoundingClientRect();
-      const inside = ["parallel", "timeline", "repeat", "sequence"].includes(box.kind);
+      const inside = ["parallel", "race", "timeline", "repeat", "sequence"].includes(box.kind);
       return { box, group, inside, after: event.clientX > area.left + area.width / 2 };
     }
     return null;

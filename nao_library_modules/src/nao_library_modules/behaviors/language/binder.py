@@ -20,6 +20,7 @@ from .model import (
     Functions,
     Parallel,
     PathParts,
+    Race,
     Repeat,
     Step,
     Timeline,
@@ -28,7 +29,18 @@ from .model import (
     path_text,
 )
 from .parameters import arguments
-from .program import BarrierNode, GoalNode, Node, OnTimeline, ParallelNode, Pause, RepeatNode, SequenceNode, servers_in
+from .program import (
+    BarrierNode,
+    GoalNode,
+    Node,
+    OnTimeline,
+    ParallelNode,
+    Pause,
+    RaceNode,
+    RepeatNode,
+    SequenceNode,
+    servers_in,
+)
 from .servers import FunctionTables
 from .times import At
 
@@ -222,7 +234,8 @@ class _Binder:
                     )
                     self._note(step, scope, f"{text} at a time: {remedy}")
                 users.setdefault(server, node)
-        return ParallelNode(**common, nodes=tuple(nodes))
+        kind = RaceNode if isinstance(step, Race) else ParallelNode
+        return kind(**common, nodes=tuple(nodes))
 
     def _rounds(self, step: Repeat, scope: _Scope, common: dict[str, Any]) -> Node:
         count = substitute(step.count, scope.values)

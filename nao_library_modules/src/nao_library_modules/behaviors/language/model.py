@@ -110,6 +110,13 @@ class Parallel(Composite):
 
 
 @dataclass(frozen=True)
+class Race(Parallel):
+    """All at once, until the first is over: the others are ended then."""
+
+    what = "race"
+
+
+@dataclass(frozen=True)
 class Timeline(Composite):
     """Each at its time."""
 

@@ -14,6 +14,7 @@ from .program import (
     OnTimeline,
     ParallelNode,
     Pause,
+    RaceNode,
     RepeatNode,
     SequenceNode,
     name_of,
@@ -69,6 +70,8 @@ def _waits_inside(node: Node) -> float:
         return sum(message.time.to_sec() for message in _messages(node))
     if isinstance(node, RepeatNode):
         return node.count * sum(map(waits_of, node.parts))
+    if isinstance(node, RaceNode):
+        return min(map(waits_of, node.parts), default=0.0)
     if isinstance(node, ParallelNode):
         return max(map(waits_of, node.parts), default=0.0)
     if isinstance(node, OnTimeline):

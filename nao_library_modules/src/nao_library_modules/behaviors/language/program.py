@@ -82,6 +82,10 @@ class ParallelNode(Group):
     """All at the same time."""
 
 
+class RaceNode(ParallelNode):
+    """All at the same time, until the first is over."""
+
+
 class OnTimeline(Group):
     """Each at its time."""
 

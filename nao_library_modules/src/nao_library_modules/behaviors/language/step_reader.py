@@ -18,6 +18,7 @@ from .model import (
     Functions,
     Parallel,
     PathParts,
+    Race,
     Repeat,
     Sequence,
     Step,
@@ -31,10 +32,10 @@ from .times import LABEL, at_of
 from .yaml_text import line_in, line_of
 
 COMMON = ("label", "on_error", "for")
-KINDS = ("SERVER.FUNCTION", "parallel", "timeline", "behavior", "chain", "wait", "repeat", "do", "barrier")
+KINDS = ("SERVER.FUNCTION", "parallel", "race", "timeline", "behavior", "chain", "wait", "repeat", "do", "barrier")
 FURTHER = {"behavior": ("parameters",), "repeat": ("do", "as")}
 """Keys that a kind has beside its own."""
-_GROUPS = {"parallel": Parallel, "timeline": Timeline, "do": Sequence}
+_GROUPS = {"parallel": Parallel, "race": Race, "timeline": Timeline, "do": Sequence}
 """Kinds that hold nothing but a list of steps."""
 _LABEL = re.compile(LABEL)
 _FUNCTION = re.compile(rf"({IDENTIFIER.pattern})\.({IDENTIFIER.pattern})")

@@ -29,6 +29,7 @@ from ..language.program import (
     OnTimeline,
     ParallelNode,
     Pause,
+    RaceNode,
     RepeatNode,
     servers_in,
     walk,
@@ -216,7 +217,10 @@ class Execution:
                 met.update(lambda there: there | {(number, "")})
 
             branches.append(do(branch, name=part.what))
-        par(*branches)
+        if isinstance(node, RaceNode):
+            pursue(*branches)
+        else:
+            par(*branches)
 
     def _meet(self, node: BarrierNode) -> None:
         if node.home is None:

@@ -294,7 +294,11 @@ class BehaviorsView:
         places = [LAST]
         box = self._tracks.box(self._selected)
         if box is not None:
-            places = [BEHIND, *([INSIDE] if box.kind in ("parallel", "timeline", "repeat", "sequence") else []), LAST]
+            places = [
+                BEHIND,
+                *([INSIDE] if box.kind in ("parallel", "race", "timeline", "repeat", "sequence") else []),
+                LAST,
+            ]
 
         async def put(step: Any, place: str) -> None:
             path = "" if place == LAST else self._selected

@@ -14,6 +14,7 @@ FUNCTION, BOX = "a function of a server", "another behaviour"
 KINDS: Mapping[str, Any] = {
     "wait": {"wait": 1.0},
     "parallel: steps at the same time": {"parallel": [{"wait": 1.0}]},
+    "race: steps at the same time, until the first is over": {"race": [{"wait": 1.0}, {"wait": 2.0}]},
     "timeline: steps at given times": {"timeline": [{"wait": 1.0, "at": 0.0}]},
     "repeat: steps several times": {"repeat": 2, "do": [{"wait": 1.0}]},
     "do: steps one after the other": {"do": [{"wait": 1.0}]},

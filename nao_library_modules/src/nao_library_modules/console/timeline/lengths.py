@@ -14,7 +14,7 @@ from naoqi.errors import NaoError
 
 from ...base.paths import config_file
 from ...behaviors.language.preview import times_of
-from ...behaviors.language.program import GoalNode, Node, OnTimeline, ParallelNode, Pause, RepeatNode
+from ...behaviors.language.program import GoalNode, Node, OnTimeline, ParallelNode, Pause, RaceNode, RepeatNode
 from ...motion.recorded_motion import motion_of
 
 USUAL = 1.0
@@ -66,6 +66,8 @@ class Lengths:
         lengths = [self.of(part) for part in node.parts] if not isinstance(node, OnTimeline) else []
         if isinstance(node, RepeatNode):
             return node.count * sum(lengths)
+        if isinstance(node, RaceNode):
+            return min(lengths, default=0.0)
         if isinstance(node, ParallelNode):
             return max(lengths, default=0.0)
         if isinstance(node, OnTimeline):

@@ -11,7 +11,7 @@ from ...behaviors.language.step_reader import KINDS
 from ...behaviors.language.times import at_of
 from .yaml_places import EditRefused, Place, value_at
 
-GROUPS = ("parallel", "timeline", "do")
+GROUPS = ("parallel", "race", "timeline", "do")
 """Keys with lists of steps."""
 DIGITS = 3
 """Decimal places of times that are dragged: ms."""

@@ -18,6 +18,7 @@ from ...behaviors.language.model import (
     Composite,
     Functions,
     Parallel,
+    Race,
     Repeat,
     Step,
     Timeline,
@@ -154,6 +155,8 @@ class _Layout:
         here = len(self.boxes)
         if isinstance(step, Parallel):
             rows, end = self._beside(step.steps, begin, row + 1)
+            if isinstance(step, Race) and node is not None:
+                end = min((begin + self._lengths.of(part) for part in node.parts), default=begin)
         elif isinstance(step, Timeline):
             rows, end = self._timed(step, node, begin, row + 1)
         else:
@@ -246,7 +249,7 @@ def _offset(entry: Step) -> float:
 
 def _kind(step: Step) -> str:
     kinds = {Functions: "goal", Wait: "wait", Box: "box", Parallel: "parallel", Timeline: "timeline"}
-    kinds.update({Repeat: "repeat", Barrier: "barrier"})
+    kinds.update({Race: "race", Repeat: "repeat", Barrier: "barrier"})
     return kinds.get(type(step), "sequence" if isinstance(step, Composite) else "unreadable")
 
 
