@@ -194,7 +194,7 @@ def begun_trial(master, visitor):
     """Somebody begins a trial while the master hangs. There are pages that look at trials."""
     page = Page(visitor, "/study?robot=/&protocol=ten_steps&participant=P01")
     with stopped(master):
-        page.click("Begin trial")
+        page.click("Start trial")
         time.sleep(1.0)
         try:
             yield

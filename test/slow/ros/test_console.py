@@ -21,7 +21,7 @@ from nao_sim_bridge.testing import wait_until
 PAGES = {
     "/": "What it does",
     "/wizard": "Conversation",
-    "/study": "Begin trial",
+    "/study": "Start trial",
     "/behaviors": "Search behaviours",
     "/functions": "Search functions",
 }

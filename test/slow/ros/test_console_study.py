@@ -14,6 +14,7 @@ from nao_library_actions.msg import NaoAudioInAction
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.console.study.files import StudyFiles
 from nao_library_modules.console.study.log import EVENTS
+from nao_library_modules.console.study.studies import Studies
 from nao_library_msgs.srv import PersonSays
 from nao_sim_bridge.testing import RobotTestCase, wait_until
 
@@ -35,10 +36,11 @@ class ConsoleStudy(RobotTestCase):
         text = config_file("console/protocols/ten_steps.yaml").read_text()
         text = text.replace("name: ten_steps", f"name: {STUDY}").replace("timeout: 30", "timeout: 300")
         (protocols / f"{STUDY}.yaml").write_text(text)
+        self.files = StudyFiles(self.folder / "studies")
+        self.addCleanup(self.end_recordings)
         self.program = ConsoleProgram(self.folder)
         self.addCleanup(self.program.close)
         self.browser = self.browse()
-        self.files = StudyFiles(self.folder / "studies")
 
     def browse(self):
         browser = ConsoleBrowser(self.program).enter()
@@ -46,16 +48,26 @@ class ConsoleStudy(RobotTestCase):
         browser.open("/study")
         return browser
 
+    def end_recordings(self):
+        """Of a trial that a failure of this test has left: a rosbag outlives its console."""
+        for trial in self.files.trials(STUDY):
+            if not trial.state().over:
+                Studies(self.files).abort(trial.id)
+
     def at(self, path):
-        """Wait until a step runs."""
-        wait_until(lambda: getattr(self.files.trial(TRIAL).state().current, "path", "") == path, 60.0, f"step {path}")
+        """Wait until a step has begun: it may be over before anybody looks."""
+
+        def begun():
+            return any(each.path == path for each in self.files.trial(TRIAL).state().outcomes)
+
+        wait_until(begun, 60.0, f"step {path}")
 
     def begin(self):
         self.browser.open("/study", protocol=STUDY, participant="P01")
         self.browser.reads("One trial of ten steps")
         for recording in ("Rosbag", "Video", "Sound"):
             self.browser.click(".q-checkbox", recording)
-        self.browser.click("button", "Begin trial")
+        self.browser.click("button", "Start trial")
 
     def say(self, text):
         answer = rospy.ServiceProxy("nao_sim/person_says", PersonSays)(text, Point(1.0, 0.2, 0.6), "", 0.0)
@@ -71,7 +83,7 @@ class ConsoleStudy(RobotTestCase):
         self.program.kill()
         self.program.start()
         self.browser.enter().open("/study")
-        self.browser.click("button", "Take up again")
+        self.browser.click("button", "Resume")
         self.at("2.2")
         other = self.browse()
         other.reads("wait for a word", "records bag", "records video", "records sound")
@@ -100,7 +112,7 @@ class ConsoleStudy(RobotTestCase):
     def test_a_log_that_cannot_be_written_is_told_until_somebody_has_seen_that(self):
         self.browser.open("/study", protocol=STUDY, participant="P01")
         self.browser.reads("One trial of ten steps")
-        self.browser.click("button", "Begin trial")
+        self.browser.click("button", "Start trial")
         self.browser.reads("wait for a touch")
         self.at("1.3")
         folder = self.files.trial(TRIAL).path
@@ -124,6 +136,6 @@ class ConsoleStudy(RobotTestCase):
         self.addCleanup(observer.close)
         observer.open("/study")
         observer.type("input[aria-label='Participant (pseudonym)']", "P01")
-        observer.click("button", "Begin trial")
+        observer.click("button", "Start trial")
         observer.reads("observers look on")
         self.assertEqual(self.files.studies(), [])
