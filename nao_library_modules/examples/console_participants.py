@@ -29,7 +29,7 @@ from nao_library_modules.base.errors import NaoError
 from nao_library_modules.console.study.alone import studies_alone
 from nao_library_modules.console.study.errors import StudyError
 from nao_library_modules.console.study.files import StudyFiles
-from nao_library_modules.console.study.protocol import ChoiceStep, SenseStep
+from nao_library_modules.console.study.protocol import ChoiceStep, SenseStep, WhileStep
 from nao_library_modules.console.study.reader import read_protocol_file
 from nao_library_modules.console.study.state import FAILED, FINISHED, HELD
 from nao_library_modules.console.study.table import summaries_of, table_of
@@ -81,16 +81,18 @@ class SimulatedParticipant:
 
     def _do(self, runner: Any) -> None:
         step = runner.step
+        if isinstance(step, WhileStep):
+            step = step.waits[0]
         if isinstance(step, ChoiceStep):
             runner.choose(self._chance.choice(step.choices), "participant")
         elif isinstance(step, SenseStep) and step.sense == "touch":
             self._react(runner)
             self._touch([sensors_of(step.names)[0].devices[0]], TOUCH_TIME, True)
         elif isinstance(step, SenseStep) and step.sense == "word":
-            self._listens.clear()
-            if self._listens.wait(LISTEN_LIMIT):
+            if self._listens.wait(LISTEN_LIMIT):  # it may listen already during the steps before
                 self._react(runner)
                 self._say(self._chance.choice(step.names), MOUTH, "", 0.0)
+                self._listens.clear()
 
     def _react(self, runner: Any) -> None:
         levels = [level for level in runner.state.about["condition"].values() if level in REACTIONS]

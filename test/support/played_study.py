@@ -117,8 +117,8 @@ class Trial:
         self.runner = self.studies.begin(self.protocol, participant, self.robot, listener=self.tell)
         return self
 
-    def take_up(self, trial="two_by_two/P01-1"):
-        self.runner = self.studies.take_up(trial, self.robot, listener=self.tell)
+    def resume(self, trial="two_by_two/P01-1"):
+        self.runner = self.studies.resume(trial, self.robot, listener=self.tell)
         return self
 
     def tell(self, _):
@@ -133,6 +133,25 @@ class Trial:
         place = (path, attempt)
         self.until(lambda: self.runner.state.current and self.runner._place() == place)
         return self
+
+    def begun(self, path, attempt=1):
+        """Wait until a step has begun, also one in a `while`."""
+        place = (path, attempt)
+        self.until(lambda: any((each.path, each.attempt) == place for each in [*self.runner.state.outcomes]))
+
+    def feel(self, sensor, stamp, touched=True):
+        """Topics tell of a touch."""
+        self.robot.events.add("touched", sensor, stamp=stamp, sensor=sensor, touched=touched)
+
+    def goal(self, function, position=-1):
+        """Wait for a goal of a function that goes on, and give it."""
+
+        def found():
+            return [run for run in self.robot.runs if run.command.chain[0][0] == function and not run.done]
+
+        for _ in iter(lambda: bool(found()), True):
+            assert self.robot.sent.acquire(timeout=LIMIT)
+        return found()[position]
 
     def touch(self, seconds):
         """In the step that waits for it, once its goal is sent."""

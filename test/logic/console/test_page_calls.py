@@ -32,7 +32,7 @@ METHODS = {
         "runs_on",
     ),
     *("protocols", "protocol_text", "newest_protocol", "store_protocol", "participants", "media", "studies", "trials"),
-    *("trial", "open_trials", "take_up", "save", "run", "Popen", "csv", "robot", "names", "shift", "stretch"),
+    *("trial", "open_trials", "resume", "save", "run", "Popen", "csv", "robot", "names", "shift", "stretch"),
     *("duplicate", "reorder", "undo", "redo", "set_field", "set_key", "set_parameter", "note", "deviation", "choose"),
 }
 """Methods of robots, files and documents."""

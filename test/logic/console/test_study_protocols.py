@@ -37,6 +37,28 @@ def test_protocols_that_come_along_can_be_run(path):
         ("- wait: 1\n    - {wait: touch, label: trial}", 5, "is no label"),
         ("- {repeat: 0, steps: [{wait: 1}]}", 4, "1..1000"),
         ("- wait: [", 5, "no YAML"),
+        ("- {wait: tuch}", 4, "did you mean 'touch'?"),
+        ("- {wait: touch, since: befor}", 4, "now or the label of an earlier step"),
+        (f"- {{wait: touch, since: head}}\n    {TOUCH}", 4, "head has not been done here: it is the step in line 5"),
+        (f"{TOUCH}\n    {TOUCH}", 5, "'head' is the label of the step in line 4, too"),
+        ("- wait: word\n      words: yes, no", 5, "words are a list: [yes, no]"),
+        ("- {wait: face, names: [ann, bob]}", 4, "looks for one of them"),
+        ("- {while: {do: [{run: nod}], until: tuch}}", 4, "did you mean 'touch'?"),
+        ("- {while: {do: [{wait: touch}], until: word, words: [yes]}}", 4, "waits for somebody, as the while does"),
+        ("- {while: {do: [{stop: true}], until: touch}}", 4, "would end the wait of the while as well"),
+        (
+            "- {while: {do: [{call: NaoTactile.getTouched}], until: touch}}",
+            4,
+            "needs NaoTactile, which waits in until",
+        ),
+        ("- {while: {do: [{run: nod}], until: time}}", 4, "until: time needs seconds"),
+        ("- {while: {run: nod, until: touch}}", 4, "a mapping with do and until"),
+        ("- {when: number = 1, then: [{wait: 1}]}", 4, "did you mean number == 1?"),
+        ("- {when: number == 1 and trial == 1, then: [{wait: 1}]}", 4, "a list has several that all have to hold"),
+        ("- {when: number == 1 or trial == 1, then: [{wait: 1}]}", 4, "`choose` has a branch for each answer"),
+        (f"{TOUCH}\n    - {{when: rear head == head, then: [{{wait: 1}}]}}", 5, "cannot be read"),
+        (f"{TOUCH}\n    - {{when: chest == head, then: [{{wait: 1}}]}}", 5, "stands on the left: head == chest"),
+        ("- {when: touches >= 3, then: [{wait: 1}]}", 4, "{wait: until, until: touches >= 3}"),
         (f"{TOUCH}\n    - {{when: head == frnt, then: [{{wait: 1}}]}}", 5, "head is never 'frnt'"),
         (f"{TOUCH}\n    - choose: head\n      cases:\n        chest: [{{wait: 1}}]", 7, "head is never 'chest'"),
         (
@@ -51,6 +73,70 @@ def test_a_mistake_is_told_with_its_line(step, line, told):
     with pytest.raises(ConsoleFileError) as error:
         read_protocol(f"{HEAD}    {step}\n", "x.yaml")
     assert [(line, True)] == [(each.line, told in each.text) for each in error.value.problems]
+
+
+FACTORS = "factors: {voice: {levels: [low, high]}, side: {levels: {l: {target: left}, r: {target: right}}}}\n"
+LIKERT = "- {wizard: How, choices: ['1', '2', '3'], label: how}"
+
+
+@pytest.mark.parametrize(
+    "before, condition, told",
+    [
+        (TOUCH, "head >= 1", "is never true: head, the answer of 'wait for a touch: head', is front head, middle head"),
+        (TOUCH, "head >= 1", "head != none is true where there was one; {wait: until, until: touches >= 1} counts"),
+        (
+            TOUCH,
+            "head_seconds == fast",
+            "is never true: head_seconds, the reaction time of head, s, is a number or none",
+        ),
+        ("- {wait: 1}", "voice > 1", "> compares numbers"),
+        ("- {wait: 1}", "voice != medium", "voice is never 'medium'"),
+        ("- {wait: 1}", "target == up", "target is never 'up'"),
+        ("- {wait: 1}", "trial == 5", "is a whole number from 1 to 4"),
+        ("- {wait: 1}", "trials == 4", "is always true"),
+        (LIKERT, "how > 3", "is never true"),
+        (LIKERT, "[how == 1, how == 2]", "are never true together"),
+        ("- {call: NaoTactile.getTouched, label: x}", "x == done", "it is what the function answers, or none"),
+        ("- {repeat: 2, as: i, steps: [{wait: 1}]}", "i == 2", "outside of its repeat, is none"),
+        (f"- when: number > 2\n      then: [{TOUCH[2:]}]", "head == chest", "head is never 'chest'"),
+    ],
+)
+def test_a_condition_that_is_never_or_always_true_is_refused(before, condition, told):
+    with pytest.raises(ConsoleFileError) as error:
+        read_protocol(f"{FACTORS}{HEAD}    {before}\n    - {{when: {condition}, then: [{{wait: 1}}]}}\n", "x.yaml")
+    assert told in str(error.value)
+
+
+def test_an_answer_that_comes_later_in_the_file_is_none_and_refused_but_in_a_loop():
+    steps = f"- {{when: head == front head, then: [{{wait: 1}}]}}\n    {TOUCH}"
+    with pytest.raises(ConsoleFileError, match="no answer here, as it is given by the step in line 5"):
+        read_protocol(f"{HEAD}    {steps}\n", "x.yaml")
+    inside = steps.replace("\n    ", "\n        ")
+    assert read_protocol(f"{HEAD}    - repeat: 2\n      steps:\n        {inside}\n", "x.yaml")
+
+
+@pytest.mark.parametrize(
+    "until, told",
+    [("touches >= 0", "is always true"), ("touches < 3", "it would not wait"), ("[touches >= 1, words >= 1]", "")],
+)
+def test_a_wait_that_would_be_over_at_once_is_refused(until, told):
+    text = f"{HEAD}    - {{wait: until, until: {until}}}\n"
+    if told:
+        with pytest.raises(ConsoleFileError, match=told):
+            read_protocol(text, "x")
+    else:
+        assert read_protocol(text, "x").name == "x"
+
+
+def test_conditions_may_compare_two_values_and_branches_may_share_a_label():
+    choose = (
+        "- choose: voice\n      cases:\n        low: [{wait: touch, label: reply}]\n"
+        "        high: [{wait: word, words: ['yes'], label: reply}]"
+    )
+    steps = f"{choose}\n    - {{when: reply == yes, then: [{{wait: 1}}]}}"
+    wizard = "- {wizard: Which, choices: [left, right], label: chosen}"
+    steps = f"{steps}\n    {wizard}\n    - {{when: 'chosen == {{target}}', then: [{{wait: 1}}]}}"
+    assert read_protocol(f"{FACTORS}{HEAD}    {steps}\n", "x").name == "x"
 
 
 def test_answers_of_several_sensors_at_once_can_be_asked_for():
@@ -125,6 +211,15 @@ def test_rounds_know_their_number():
         ("touches + 1 >= 3", {"touches": 2}, True),
         ("head_seconds > 2", {"head_seconds": None}, False),
         ("head_seconds < 2.5", {"head_seconds": 2.0}, True),
+        ("head_seconds < 2.5", {}, False),
+        ("answer == none", {}, True),
+        ("answer != yes", {}, True),
+        ("answer != none", {"answer": "yes"}, True),
+        ("likert + 1 > 3", {"likert": "3"}, True),
+        ("answer + 1 > 3", {"answer": "yes"}, False),
+        ("1 / i > 3", {"i": 0}, False),
+        ("chosen == {target}", {"chosen": "left", "target": "left"}, True),
+        ("angle > {limit}", {"angle": "0.5", "limit": 0.7}, False),
     ],
 )
 def test_conditions_compare_values_of_the_trial(text, values, holds):

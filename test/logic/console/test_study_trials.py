@@ -19,6 +19,7 @@ from played_study import LIMIT, PROTOCOL, PlayedRobot, Trial
 from nao_library_modules.console.study import recordings
 from nao_library_modules.console.study import studies as module
 from nao_library_modules.console.study.errors import StudyError
+from nao_library_modules.console.study.happenings import Touches
 from nao_library_modules.console.study.log import DELAY, EVENTS, TABLE, TrialLog, guarded, read_events
 from nao_library_modules.console.study.state import TrialState
 from nao_library_modules.console.study.studies import Studies
@@ -83,6 +84,185 @@ def test_a_touch_counts_that_came_before_the_server_waited_for_it(trial, monkeyp
     assert trial.runner.state.values["head_seconds"] == pytest.approx(0.2)
     trial.runner.abort()
     trial.end()
+
+
+STEPS = "name: steps\nphases:\n  - steps:\n"
+
+
+def steps_of(folder, steps, plays=("say",)):
+    return Trial(folder, PlayedRobot(plays), STEPS + textwrap.indent(textwrap.dedent(steps), "      "))
+
+
+def test_a_touch_during_the_steps_before_a_wait_answers_it_with_a_time_below_zero(tmp_path):
+    trial = steps_of(
+        tmp_path,
+        """
+        - {say: Touch my head, label: question}
+        - {run: nod}
+        - {wait: touch, sensors: [head], label: head}
+        - {run: bow}
+        - {wait: touch, sensors: [head], label: again, since: now}
+        """,
+    ).begin()
+    trial.at("1.2").feel("front head", 100.5)
+    trial.feel("middle head", 100.6)
+    trial.robot.time = 102.0
+    trial.goal("runBehavior").end()
+    trial.at("1.4").feel("rear head", 103.0)  # the same hand still
+    trial.goal("runBehavior").end()
+    trial.at("1.5")
+    values = trial.runner.state.values
+    assert (values["head"], values["head_seconds"]) == ("front head", pytest.approx(-1.5))
+    (
+        trial.feel("front head", 104.0, False),
+        trial.feel("middle head", 104.0, False),
+        trial.feel("rear head", 104.0, False),
+    )
+    trial.feel("front head", 105.0)
+    trial.goal("waitForTouch").end(touched=["front head"], results=[{"onset": 105.0}])
+    assert trial.end().values["again_seconds"] == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(
+    "told, begins",
+    [
+        ([("front head", 1.0, True), ("rear head", 1.1, True)], [True, False]),
+        ([("front head", 1.0, True), ("chest", 1.1, True)], [True, True]),
+        ([("left hand back", 1.0, True), ("right hand back", 1.0, True)], [True, True]),
+        ([("chest", 1.0, True), ("chest", 1.05, False), ("chest", 1.06, True)], [True, False, False]),
+        ([("chest", 1.0, True), ("chest", 1.2, False), ("chest", 1.4, True)], [True, False, True]),
+    ],
+)
+def test_a_touch_begins_where_nothing_was_pressed(told, begins):
+    touches = Touches()
+    found = [touches.begins({"sensor": sensor, "touched": on}, stamp) for sensor, stamp, on in told]
+    assert found == begins
+
+
+def test_a_touch_that_a_goal_has_told_of_is_not_told_again_by_topics():
+    touches = Touches()
+    touches.answered(["front head"], 1.0)
+    assert not touches.begins({"sensor": "front head", "touched": True}, 1.02)
+    touches.begins({"sensor": "front head", "touched": False}, 1.3)
+    assert touches.begins({"sensor": "front head", "touched": True}, 1.6)
+    assert touches.goes_on(["rear head"], 2.5) and not touches.goes_on(["chest"], 2.5)
+
+
+def test_a_reaction_counts_from_the_end_of_the_step_that_since_names(tmp_path):
+    trial = steps_of(
+        tmp_path,
+        """
+        - {run: ask, label: question}
+        - {run: nod}
+        - {wait: touch, sensors: [head], label: head, since: question}
+        """,
+    )
+    trial.robot.time = 99.0
+    trial.begin().at("1.1")
+    trial.robot.time = 101.5
+    trial.goal("runBehavior").end(results=[{"offset": 101.0, "end": 101.4}])
+    trial.at("1.2")
+    trial.robot.time = 104.0
+    trial.goal("runBehavior").end()
+    trial.at("1.3")
+    trial.goal("waitForTouch").end(touched=["front head"], results=[{"onset": 105.0}])
+    assert trial.end().values["head_seconds"] == pytest.approx(4.0)
+
+
+def test_the_robot_listens_ahead_of_a_word_but_not_while_it_speaks(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "behavior_speaks", lambda robot, name: name == "hello")
+    trial = steps_of(
+        tmp_path,
+        """
+        - {run: hello}
+        - {run: nod}
+        - {wait: word, words: ["yes"], label: answer}
+        """,
+    ).begin()
+    trial.at("1.1").goal("runBehavior").end()
+    trial.at("1.2").goal("listen").end(words=["yes"], results=[{"onset": 100.0}])
+    trial.robot.time = 102.0
+    trial.goal("runBehavior").end()
+    state = trial.end()
+    assert (state.values["answer"], state.values["answer_seconds"]) == ("yes", pytest.approx(-2.0))
+    assert [run.command.chain[0][0] for run in trial.robot.runs] == ["runBehavior", "listen", "runBehavior"]
+
+
+WHILE = """
+    - while: {do: [{run: nod, label: nodded}, {call: NaoTactile2.look}], until: touch, sensors: [head], label: head}
+    - {when: head == front head, then: [{say: Thanks}]}
+"""
+
+
+def test_a_while_does_its_steps_until_a_touch_ends_the_one_that_runs(tmp_path):
+    trial = steps_of(tmp_path, WHILE).begin()
+    for number in (1, 2):
+        trial.begun(f"1.1.w{number}.1")
+        trial.goal("runBehavior").end()
+        trial.robot.time += 1.0
+        look = trial.goal("look")
+        if number == 1:
+            look.end()
+    trial.goal("waitForTouch").end(touched=["front head"], results=[{"onset": 101.5}])
+    state = trial.end()
+    assert look.state == "preempted"
+    assert [(each.path, each.outcome) for each in state.outcomes] == [
+        *(("1.1", "done"), ("1.1.w1.1", "done"), ("1.1.w1.2", "done"), ("1.1.w2.1", "done"), ("1.1.w2.2", "cut")),
+        ("1.2.b1.1", "done"),
+    ]
+    assert (state.values["head"], state.values["head_seconds"]) == ("front head", pytest.approx(1.5))
+    assert TrialState.of(read_events(trial.files.trial("steps/P01-1").path)) == state
+    rows = [(row["path"], row["round"]) for row in table_of(trial.files, "steps").rows]
+    assert rows[2:5] == [("1.1.w1.2", 1), ("1.1.w2.1", 2), ("1.1.w2.2", 2)]
+
+
+def test_a_while_is_skipped_paused_and_restarted_as_a_whole(tmp_path):
+    trial = steps_of(tmp_path, WHILE).begin()
+    trial.begun("1.1.w1.1")
+    assert trial.runner.outcome.path == "1.1"
+    trial.runner.pause()
+    trial.until(lambda: trial.runner.state.status == "paused")
+    assert all(run.done for run in trial.robot.runs)
+    trial.feel("front head", 100.2)  # while it is paused
+    trial.robot.time = 103.0
+    trial.runner.go_on()
+    trial.begun("1.1.w1.1", 2)
+    trial.runner.next()
+    state = trial.end()
+    assert [each.outcome for each in state.outcomes if each.path == "1.1"] == ["stopped", "skipped"]
+    assert state.values["head"] == "none"
+
+
+def test_a_failure_in_a_while_holds_the_while(tmp_path):
+    trial = steps_of(tmp_path, WHILE).begin()
+    trial.goal("runBehavior").end("aborted", "fell")
+    trial.until(lambda: trial.runner.state.status == "held")
+    assert (trial.runner.outcome.path, trial.runner.outcome.error) == ("1.1", "step 1.1.w1.1: fell")
+    trial.runner.next()
+    assert trial.end().status == "finished"
+
+
+@pytest.mark.parametrize(
+    "results, answer, path",
+    [
+        ([{"values": ["0.7"]}], "0.7", "1.2.b1.1"),
+        ([{"values": ["True"]}], "true", "1.2.b2.1"),
+        ([{"values": []}], "none", "1.2.b2.1"),
+        ([{"values": ["front head", "chest"]}, {"values": []}], "front head, chest", "1.2.b2.1"),
+    ],
+)
+def test_what_a_function_answers_is_seen_by_conditions_and_the_table(tmp_path, results, answer, path):
+    trial = steps_of(
+        tmp_path,
+        """
+        - {call: NaoTactile2.look, label: x}
+        - {when: x > 0.5, then: [{say: "{x}"}], else: [{say: no}]}
+        """,
+    ).begin()
+    trial.goal("look").end(results=results)
+    state = trial.end()
+    assert (state.values["x"], state.outcomes[-1].path) == (answer, path)
+    assert table_of(trial.files, "steps").trials[0]["x"] == answer
 
 
 def test_repeat_begins_a_step_anew(trial):
@@ -167,7 +347,7 @@ def test_a_trial_that_stops_the_robot_itself_goes_on(tmp_path):
 
 def test_a_wait_for_a_time_ends_though_nothing_happens(tmp_path):
     begin, _, _ = PROTOCOL.partition("phases:")
-    text = begin + "phases: [{steps: [{wait: until, until: seconds >= 0.3}, {wait: until, until: seconds >= -1}]}]"
+    text = begin + "phases: [{steps: [{wait: until, until: seconds >= 0.3}, {wait: until, until: seconds >= 0.1}]}]"
     trial = Trial(tmp_path, text=text).begin()
     now = trial.robot.now
     trial.at("1.1")
@@ -232,6 +412,30 @@ def test_a_participant_goes_on_with_the_first_trial_that_is_not_finished(trial):
         trial.begin()
 
 
+def test_the_table_has_a_row_a_trial_and_the_round_of_each_step(tmp_path):
+    trial = steps_of(
+        tmp_path,
+        """
+        - repeat: 2
+          as: i
+          steps:
+            - {wizard: "Round {i}", choices: [left, right], label: side}
+            - {when: side == left, then: [{say: Left, label: told}]}
+        """,
+    ).begin()
+    for path, choice in (("1.1.r1.1", "left"), ("1.1.r2.1", "right")):
+        trial.at(path).runner.choose(choice)
+        trial.until(lambda path=path: any(each.path == path and each.ended for each in trial.runner.state.outcomes))
+    trial.end()
+    table = table_of(trial.files, "steps")
+    (row,) = csv.DictReader(table.trials_csv().splitlines())
+    assert (row["side_r1"], row["side_r2"], row["trial_state"]) == ("left", "right", "finished")
+    assert float(row["duration_s"]) >= 0.0 and "told_r1" not in row
+    found = [(each.label, each.round, dict(each.answers)) for each in summaries_of(table, by_round=True)]
+    assert found == [("side", 1, {"left": 1}), ("side", 2, {"right": 1})]
+    assert [each.count for each in summaries_of(table)] == [2]
+
+
 def test_all_that_happens_to_the_robot_is_logged_with_notes_and_deviations(trial):
     trial.begin().at("2.1")
     trial.robot.events.add("heard", "a noise", loud=True)
@@ -259,14 +463,14 @@ KILLED = """
 """
 
 
-def test_a_trial_whose_program_was_killed_is_taken_up_at_the_step_that_had_not_ended(tmp_path):
+def test_a_trial_whose_program_was_killed_is_resumed_at_the_step_that_had_not_ended(tmp_path):
     code = KILLED.format(support=str(Path(played_study.__file__).parent), folder=str(tmp_path))
     killed = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], timeout=60, check=False)
     assert killed.returncode == -signal.SIGKILL
     trial = Trial(tmp_path)
     ((folder, state),) = trial.studies.open_trials()
     assert (folder.id, state.status, state.path, state.notes) == ("two_by_two/P01-1", "interrupted", "2.1", 1)
-    trial.take_up().at("2.2", 2).runner.choose("yes")
+    trial.resume().at("2.2", 2).runner.choose("yes")
     state = trial.end()
     assert state.status == "finished"
     assert state.values["head_seconds"] == pytest.approx(0.25)

@@ -147,18 +147,18 @@ def run(
         say_json({"trials": ids, "troubles": troubles})
 
 
-@study_command.command("take-up", cls=NaoCommand)
+@study_command.command("resume", cls=NaoCommand)
 @click.argument("trial", metavar="STUDY/PSEUDONYM-N")
 @click.option("--choose", multiple=True, metavar="LABEL=CHOICE", help="Of a step of the wizard; the others are asked.")
 @folder_option
 @click.pass_context
-def take_up(context: click.Context, trial: str, choose: tuple[str, ...], folder: Path) -> None:
-    """Go on with a trial whose program was gone, behind the last step that had ended."""
+def resume(context: click.Context, trial: str, choose: tuple[str, ...], folder: Path) -> None:
+    """Resume a trial whose program was gone, behind the last step that had ended."""
     settings = settings_of(context)
     choices = _assigned(choose, "LABEL=CHOICE")
     studies, robot = _studies(settings, _files(folder))
     troubles: list[str] = []
-    _play(settings, partial(studies.take_up, trial, robot, "nao"), choices, troubles)
+    _play(settings, partial(studies.resume, trial, robot, "nao"), choices, troubles)
     if settings.json:
         say_json({"trials": [trial], "troubles": troubles})
 
@@ -191,33 +191,44 @@ def abort(context: click.Context, trial: str, folder: Path) -> None:
 
 @study_command.command("table", cls=NaoCommand)
 @click.argument("study", metavar="STUDY|DIR")
-@click.option("--csv", "file", default="", type=click.Path(), metavar="FILE.csv", help="A row a trial and step.")
+@click.option("--csv", "file", default="", type=click.Path(), metavar="FILE.csv", help="A row a step of a trial.")
+@click.option("--trials", "trials", default="", type=click.Path(), metavar="FILE.csv", help="A row a trial.")
+@click.option("--by-round", is_flag=True, help="Answers of each round of a loop.")
 @overwrite_option
 @folder_option
 @click.pass_context
-def study_table(context: click.Context, study: str, file: str, overwrite: bool, folder: Path) -> None:
-    """Answers and reaction times by condition; with --csv the whole table as a file.
+def study_table(
+    context: click.Context, study: str, file: str, trials: str, by_round: bool, overwrite: bool, folder: Path
+) -> None:
+    """Answers and reaction times by condition; with --csv and --trials the whole tables as files.
 
     STUDY is the name of one in the folder of the studies, or its own folder.
     """
     from ...console.study.files import StudyFiles
     from ...console.study.table import summaries_of, table_of
 
-    target = wanted_file(file, overwrite, ("csv",))
+    places = {end: wanted_file(each, overwrite, ("csv",)) for end, each in (("", file), ("_trials", trials))}
     path = Path(study).expanduser().absolute()
     files, name = (StudyFiles(path.parent), path.name) if path.is_dir() else (_files(folder), study)
     found = _told(lambda: table_of(files, name))
-    if target is not None:
-        target = target / f"{name}.csv" if target.is_dir() else target
+    tables = {"": (found.csv, len(found.rows)), "_trials": (found.trials_csv, len(found.trials))}
+    written = []
+    for end, target in places.items():
+        if target is None:
+            continue
+        target = target / f"{name}{end}.csv" if target.is_dir() else target
+        text, rows = tables[end]
         try:
-            write_whole(target, found.csv())
+            write_whole(target, text())
         except FileTrouble as error:
             raise CommandFailed(str(error)) from None
-    summaries = summaries_of(found)
+        written.append((target, rows))
+    summaries = summaries_of(found, by_round)
     if settings_of(context).json:
         rows = [
             {
                 "step": each.label,
+                "round": each.round,
                 "condition": each.condition,
                 "count": each.count,
                 "answers": each.answers,
@@ -228,20 +239,18 @@ def study_table(context: click.Context, study: str, file: str, overwrite: bool, 
             for each in summaries
         ]
         gaps = [{"trial": trial, "gap": gap} for trial, gap in found.gaps]
-        say_json({"rows": len(found.rows), "csv": str(target or ""), "summaries": rows, "gaps": gaps})
+        files = {str(target): count for target, count in written}
+        say_json({"rows": len(found.rows), "files": files, "summaries": rows, "gaps": gaps})
         return
-    lines = [("step", "condition", "times", "mean s", "median s", "answers")]
-    lines += [
-        (
-            *(each.label, each.condition, str(each.count), _number(each.mean), _number(each.median)),
-            ", ".join(f"{answer} {count}" for answer, count in sorted(each.answers.items())),
-        )
-        for each in summaries
-    ]
+    lines = [("step", *(("round",) if by_round else ()), "condition", "times", "mean s", "median s", "answers")]
+    for each in summaries:
+        rounds = (str(each.round or ""),) if by_round else ()
+        times = (str(each.count), _number(each.mean), _number(each.median))
+        answers = ", ".join(f"{answer} {count}" for answer, count in sorted(each.answers.items()))
+        lines.append((each.label, *rounds, each.condition, *times, answers))
     say_lines(table(lines))
     say_lines(f"{trial}: {gap}" for trial, gap in found.gaps)
-    if target is not None:
-        click.echo(f"written: {target}, {len(found.rows)} rows")
+    say_lines(f"written: {target}, {count} rows" for target, count in written)
 
 
 def _status(trial: TrialFolder, state: TrialState) -> str:
@@ -268,9 +277,13 @@ def _protocol(files: StudyFiles, name: str) -> StudyProtocol:
 
 
 def _told(act: Callable[[], Any]) -> Any:
-    """What a function answers; its errors are those of the command."""
+    """What a function answers; its errors are those of the command, each mistake of a file on a line of its own."""
+    from ...console.files.yaml_file import ConsoleFileError
+
     try:
         return act()
+    except ConsoleFileError as error:
+        raise CommandFailed("\n".join([f"{error.name} cannot be run:", *map(str, error.problems)])) from None
     except (NaoError, OSError) as error:
         raise CommandFailed(str(error)) from None
 
@@ -362,14 +375,15 @@ def _play(
 
     runner = _told(lambda: begin(listener=changed))
     click.echo(f"trial {runner.id}: {_words(runner.state.about['condition']) or 'no factors'}", err=settings.json)
-    shown, asked = 0, None
+    shown: set[int] = set()
+    asked = None
     try:
         while not runner.wait(0):
             try:
                 changes.get(timeout=LOOK_PERIOD)
             except queue.Empty:  # the last change may come just before its thread ends
                 continue
-            shown = _show(settings, runner, shown)
+            _show(settings, runner, shown)
             outcome = runner.outcome
             place = (outcome.path, outcome.attempt, outcome.outcome) if outcome is not None else None
             if place == asked or outcome is None:
@@ -437,15 +451,16 @@ def _abort(runner: TrialRunner) -> None:
         runner.wait()
 
 
-def _show(settings: CliSettings, runner: TrialRunner, shown: int) -> int:
-    """Tell of steps that have ended since; how many were told."""
-    ended = [each for each in list(runner.state.outcomes) if each.ended is not None]
-    for each in ended[shown:]:
+def _show(settings: CliSettings, runner: TrialRunner, shown: set[int]) -> None:
+    """Tell of steps that have ended, a `while` behind the steps in it. `shown`: numbers of those that were told."""
+    outcomes = list(runner.state.outcomes)
+    ended = [i for i, each in enumerate(outcomes) if each.ended is not None and i not in shown]
+    shown.update(ended)
+    for each in sorted((outcomes[i] for i in ended), key=lambda each: each.ended or 0.0):
         answer = f" {each.answer}" if each.answer else ""
         seconds = f" after {each.seconds:.2f} s" if each.seconds is not None and each.answer else ""
         error = f": {each.error}" if each.error else ""
         click.echo(f"  {each.path} {each.text}: {each.outcome}{answer}{seconds}{error}", err=settings.json)
-    return len(ended)
 
 
 def _chosen(step: Any, question: str, choices: Mapping[str, str]) -> str:

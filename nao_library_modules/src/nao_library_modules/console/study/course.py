@@ -1,20 +1,20 @@
 """From one step of a protocol to the next. Pure.
 
 A path names a step for good: `2.3` is the third step of the second phase, `2.3.b1.2` the second of the first branch
-there, `2.3.r4.2` the second of the fourth round.
+there, `2.3.r4.2` the second of the fourth round, `2.3.w4.2` that of a `while`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from .errors import StudyError
-from .protocol import FIRST, LAST, BranchStep, ProtocolStep, RoundsStep, StudyProtocol
+from .protocol import FIRST, LAST, BranchStep, ProtocolStep, RoundsStep, StudyProtocol, WhileStep
 
 
 def following(protocol: StudyProtocol, path: str, values: Mapping[str, Any]) -> str:
-    """Path of the step that comes behind another one; empty at the end of the trial.
+    """Path of the step that comes behind another one; empty at the end of the trial, or of a round of a `while`.
 
     `path`: of that one; empty: the first step is wanted. `values`: of the trial, for branches and phases.
     """
@@ -29,6 +29,8 @@ def following(protocol: StudyProtocol, path: str, values: Mapping[str, Any]) -> 
                 found = _first_round(group, prefix[:-1], known, int(prefix[-1][1:]) + 1)
             if found:
                 return ".".join(found)
+            if isinstance(group, WhileStep):
+                return ""
     for i, phase in enumerate(protocol.phases[int(parts[0]) :], int(parts[0]) + 1):
         if (phase.only == FIRST and values["trial"] != 1) or (
             phase.only == LAST and values["trial"] != values["trials"]
@@ -38,6 +40,28 @@ def following(protocol: StudyProtocol, path: str, values: Mapping[str, Any]) -> 
         if found:
             return ".".join(found)
     return ""
+
+
+def first_inside(protocol: StudyProtocol, path: str, number: int, values: Mapping[str, Any]) -> str:
+    """Path of the first step in a round of the `while` at a path; empty if none is done."""
+    step = step_at(protocol, path)
+    assert isinstance(step, WhileStep)
+    return ".".join(_first(step.steps, [*path.split("."), f"w{number}"], {**values, **rounds_of(protocol, path)}, 0))
+
+
+def is_inside(path: str) -> bool:
+    """Whether a step is one of those that a `while` does."""
+    return ".w" in path
+
+
+def round_numbers(path: str) -> list[int]:
+    """Numbers of the rounds that a step is in, from outside; those of a `while` among them."""
+    return [int(part[1:]) for part in path.split(".") if part[:1] in ("r", "w")]
+
+
+def any_round(path: str) -> str:
+    """A path with all its rounds taken for the first one, as the protocol has it."""
+    return ".".join(f"{part[0]}1" if part[0] in "rw" else part for part in path.split("."))
 
 
 def step_at(protocol: StudyProtocol, path: str) -> ProtocolStep:
@@ -66,12 +90,17 @@ def all_steps(protocol: StudyProtocol) -> Iterator[tuple[str, ProtocolStep]]:
         yield from _walk(phase.steps, str(i))
 
 
+def steps_in(steps: Iterable[ProtocolStep]) -> Iterator[ProtocolStep]:
+    """Steps and those inside of them; of rounds the first one."""
+    return (step for _, step in _walk(tuple(steps), ""))
+
+
 def _walk(steps: tuple[ProtocolStep, ...], prefix: str) -> Iterator[tuple[str, ProtocolStep]]:
     for i, step in enumerate(steps, 1):
         path = f"{prefix}.{i}"
         yield path, step
         for part, inner in step.inner():
-            if part[0] != "r" or part == "r1":
+            if part[0] != "r" or part == "r1":  # the first round stands for all
                 yield from _walk(inner, f"{path}.{part}")
 
 
@@ -85,7 +114,7 @@ def _lists(protocol: StudyProtocol, parts: list[str]) -> list[tuple[Any, tuple[P
         lists: list[tuple[Any, tuple[ProtocolStep, ...], int]] = [(None, steps, 1)]
         for i in range(2, len(parts) - 1, 2):
             group = steps[int(parts[i - 1]) - 1]
-            steps = dict(group.inner())[parts[i]]
+            steps = group.inside(parts[i]) or ()
             lists.append((group, steps, i + 1))
     except (IndexError, KeyError, ValueError):
         raise StudyError(f"there is no step {'.'.join(parts)} in protocol {protocol.name}") from None

@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from ...nao.touch_names import names_of, sensors_of
 from ..robots.commands import RobotCommand
-from .conditions import StudyCondition
+from .conditions import NOTHING, StudyCondition
 
 HOLD, SKIP, STOP = "hold", "skip", "stop"
 ON_ERROR = (HOLD, SKIP, STOP)
 """What a failed step does: the trial waits for the wizard, goes on, or is aborted."""
-SENSES = ("touch", "word", "face")
-LIVE = ("touches", "words", "faces", "seconds")
-"""What a condition that is waited for may ask beside the values of the trial: counts since the step began, and its
-time, s."""
+SENSES = ("touch", "word", "sound", "face")
+OTHER_NAMES = {"person": "face"}
+"""What a sense may be called as well: a robot knows a person by the face."""
+COUNTED = {"touched": "touches", "heard": "words", "seen": "faces"}
+"""Kind of an event -> what conditions that are waited for call its count."""
+LIVE = (*COUNTED.values(), "seconds")
+"""What a condition that is waited for may ask beside the values of the trial: what happened in the window of the step,
+and the time since it began, s."""
+NOW = "now"
+"""As `since` of a step that waits: only what happens after its begin counts."""
+TIME_UP = "time"
+"""Answer of a `while` that its own time has ended."""
 GIVEN = ("participant", "number", "trial", "trials")
 """Values that every trial has: pseudonym and number of the participant, which trial of how many it is for him."""
-NOTHING, DONE = "none", "done"
-"""Answers of a step that timed out or was skipped, and of one that was done and asks nothing."""
+DONE = "done"
+"""Answer of a step that was done and asks nothing. One that timed out or was skipped has `NOTHING`."""
 FIRST, LAST = "first", "last"
 BAG_TOPICS = ("joint_states", "/tf", "/rosout")
 """Of a rosbag that a protocol does not name topics for."""
@@ -45,8 +54,12 @@ class ProtocolStep:
         return (DONE, NOTHING)
 
     def inner(self) -> Iterator[tuple[str, tuple[ProtocolStep, ...]]]:
-        """Steps inside of a group, each list with the part of the path that leads to it."""
+        """Steps inside of a group, each list with the part of the path to it; of a `while` its first round."""
         return iter(())
+
+    def inside(self, part: str) -> tuple[ProtocolStep, ...] | None:
+        """Steps behind a part of a path; None if there are none."""
+        return dict(self.inner()).get(part)
 
 
 @dataclass(frozen=True)
@@ -61,6 +74,15 @@ class CommandStep(ProtocolStep):
     @property
     def text(self) -> str:
         return self.command.label
+
+    @property
+    def asks(self) -> bool:
+        """Whether its answer is what the functions answer, rather than that they were done."""
+        return any(form in (self.command.source or {}) for form in ("call", "chain"))
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        return () if self.asks else (DONE, NOTHING)
 
 
 @dataclass(frozen=True)
@@ -83,12 +105,13 @@ class ChoiceStep(ProtocolStep):
 
 @dataclass(frozen=True)
 class SenseStep(ProtocolStep):
-    """The robot waits for a touch, a word or a face."""
+    """The robot waits for a touch, a word, a sound or a face."""
 
     sense: str  # one of `SENSES`
-    names: tuple[str, ...]  # sensors or groups; words; names of faces (none: anybody)
+    names: tuple[str, ...]  # sensors or groups; words; names of faces (none: anybody); none for sounds
     timeout: float  # s of ROS time
-    confidence: float  # 0..1, of words and names; 0: as the server has it
+    confidence: float  # 0..1, of words, sounds and names; 0: as the server has it
+    since: str = ""  # `NOW`, the label of an earlier step, or empty: since the wait before
 
     @property
     def kind(self) -> str:  # type: ignore[override]
@@ -102,6 +125,8 @@ class SenseStep(ProtocolStep):
     def answers(self) -> tuple[str, ...]:
         if self.sense == "touch":
             return (*names_of(sensors_of(self.names)), NOTHING)
+        if self.sense == "sound":
+            return (self.sense, NOTHING)
         return (*self.names, NOTHING) if self.names else ()
 
 
@@ -124,6 +149,7 @@ class UntilStep(ProtocolStep):
     kind: ClassVar[str] = "condition"
     conditions: tuple[StudyCondition, ...]
     timeout: float  # s of ROS time; 0: none
+    since: str = ""  # as of a `SenseStep`
 
     @property
     def text(self) -> str:
@@ -157,6 +183,37 @@ class RoundsStep(ProtocolStep):
 
     def inner(self) -> Iterator[tuple[str, tuple[ProtocolStep, ...]]]:
         return ((f"r{i}", self.steps) for i in range(1, self.count + 1))
+
+
+@dataclass(frozen=True)
+class WhileStep(ProtocolStep):
+    """Steps that are done until something happens, which ends the one that runs."""
+
+    kind: ClassVar[str] = "while"
+    waits: tuple[ProtocolStep, ...]  # SenseStep, PauseStep, UntilStep: the first that is over ends it
+    steps: tuple[ProtocolStep, ...]  # of the robot, pauses, and groups of those
+    rounds: int  # how often they are done; 0: until it ends
+    timeout: float  # s of ROS time; 0: none
+
+    @property
+    def text(self) -> str:
+        what = " and ".join(step.text for step in self.steps[:2]) + (" ..." if len(self.steps) > 2 else "")
+        return f"while {what}: {' or '.join(each.text for each in self.waits)}"
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        own = [(TIME_UP,) if isinstance(each, PauseStep) else each.answers for each in self.waits]
+        return tuple(dict.fromkeys((*(answer for answers in own for answer in answers), NOTHING))) if all(own) else ()
+
+    def inner(self) -> Iterator[tuple[str, tuple[ProtocolStep, ...]]]:
+        return iter((("w1", self.steps),))
+
+    def inside(self, part: str) -> tuple[ProtocolStep, ...] | None:
+        return self.steps if re.fullmatch(r"w[1-9]\d*", part) else None
+
+
+WAITING = (ChoiceStep, SenseStep, UntilStep, WhileStep)
+"""Steps that wait for somebody: what happens after the end of one of them counts in the next."""
 
 
 @dataclass(frozen=True)

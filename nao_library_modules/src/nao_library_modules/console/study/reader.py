@@ -17,16 +17,19 @@ from ...nao.touch_names import sensors_of
 from ..files.yaml_file import ConsoleFileError, FileReader
 from ..robots.commands import FORMS, read_command
 from ..robots.commands import KEYS as COMMAND_KEYS
-from .conditions import StudyCondition, unknown_names
-from .course import all_steps
+from .conditions import FORM, NOTHING, StudyCondition, unknown_names
+from .course import all_steps, steps_in
 from .order import LATIN_SQUARE, ORDERS
+from .possible import impossible_conditions
 from .protocol import (
     FIRST,
     GIVEN,
     HOLD,
     LAST,
     LIVE,
+    NOW,
     ON_ERROR,
+    OTHER_NAMES,
     SENSES,
     BranchStep,
     ChoiceStep,
@@ -40,7 +43,9 @@ from .protocol import (
     StudyProtocol,
     UntilStep,
     WantedRecordings,
+    WhileStep,
 )
+from .waits import server_of
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 """What studies and participants may be called: it is the name of a folder, too."""
@@ -57,8 +62,11 @@ _KEYS = {
     "when": ("then", "else"),
     "choose": ("cases", "else"),
     "repeat": ("as", "steps"),
+    "while": (),
 }
-_SENSE_KEYS = {"touch": "sensors", "word": "words", "face": "names"}
+_SENSE_KEYS = {"touch": ("sensors",), "word": ("words",), "sound": (), "face": ("names",)}
+_WAITS = (*SENSES, *OTHER_NAMES)
+_WHILE_KEYS = ("do", "until", "times", "timeout", "label")
 KINDS = (*FORMS, *_KEYS)
 
 
@@ -90,7 +98,6 @@ class _Reader(FileReader):
         super().__init__(text, name)
         self._names: set[str] = set()
         self._labels: dict[str, int] = {}
-        self._compared: list[tuple[StudyCondition, str, int]] = []  # with where they stand, and their line
 
     def protocol(self, text: str) -> StudyProtocol:
         top = self.content
@@ -104,7 +111,7 @@ class _Reader(FileReader):
         for factor in factors:
             for level in factor.levels.values():
                 self._names.update(level)
-        self._find_labels(top.get("phases"))
+        self._find_labels(top.get("phases"), {})
         seed = top.get("seed", 0)
         if not _whole(seed):
             self.note("seed", f"{seed!r} is no whole number", line_in(top, "seed"))
@@ -126,7 +133,8 @@ class _Reader(FileReader):
             text,
         )
         self._check_texts(protocol)
-        self._check_answers(protocol)
+        if not self.problems:  # what is wrong otherwise may be what a condition lacks
+            self.problems += impossible_conditions(protocol)
         self.finish()
         return protocol
 
@@ -257,15 +265,24 @@ class _Reader(FileReader):
             self._keys(value, ("wait",), where, line)
             return PauseStep(line, "", self._seconds(value, "wait", where, line, 0.0))
         if what == "until":
-            self._keys(value, ("wait", "until", "label", "timeout"), where, line)
+            self._keys(value, ("wait", "until", "label", "timeout", "since"), where, line)
             known = {*self._names, *LIVE}
             conditions = self._conditions(value.get("until"), where, line_in(value, "until") or line, known)
-            return UntilStep(line, label, conditions, self._seconds(value, "timeout", where, line, 0.0))
-        if what not in SENSES:
-            text = f"there is no wait for {what!r}{of_those(str(what), (*SENSES, 'until'))}, or a number of seconds"
+            timeout, since = self._seconds(value, "timeout", where, line, 0.0), self._since(value, where, line)
+            return UntilStep(line, label, conditions, timeout, since)
+        if what not in _WAITS:
+            text = f"there is no wait for {what!r}{of_those(str(what), (*_WAITS, 'until'))}, or a number of seconds"
             self._fail(where, text, line)
-        key = _SENSE_KEYS[what]
-        self._keys(value, ("wait", key, "label", "timeout", "confidence"), where, line)
+        return self._sense(value, str(what), where, line, label, ("wait", "label", "timeout"))
+
+    def _sense(
+        self, value: dict[str, Any], what: str, where: str, line: int, label: str, known: Sequence[str]
+    ) -> SenseStep:
+        """A wait for a touch, a word, a sound or a face. `known`: further keys that may stand there."""
+        what = OTHER_NAMES.get(what, what)
+        keys = _SENSE_KEYS[what]
+        self._keys(value, (*known, *keys, "confidence", "since"), where, line)
+        key = keys[0] if keys else ""
         names = value.get(key, [])
         names = [names] if isinstance(names, str) else names
         at = line_in(value, key) or line
@@ -280,11 +297,101 @@ class _Reader(FileReader):
                 words = ()
         elif what == "word" and not words:
             self.note(where, "wait: word needs words, those that the robot is to listen for: [yes, no]", at)
+        elif what == "word" and any("," in word for word in words):
+            self.note(where, f"words are a list: [{', '.join(words)}]", at)
+        elif what == "face" and len(words) > 1:
+            self.note(where, f"names are {len(words)} names: the robot looks for one of them, or for anybody", at)
         confidence = value.get("confidence", 0.0)
         if not _number(confidence) or not 0 <= confidence <= 1:
             self._fail(where, f"confidence is a number 0..1, not {confidence!r}", line_in(value, "confidence"))
-        timeout = self._seconds(value, "timeout", where, line, DEFAULT_WAIT)
-        return SenseStep(line, label, str(what), words, timeout or DEFAULT_WAIT, float(confidence))
+        timeout = self._seconds(value, "timeout", where, line, DEFAULT_WAIT) or DEFAULT_WAIT
+        return SenseStep(line, label, what, words, timeout, float(confidence), self._since(value, where, line))
+
+    def _since(self, value: dict[str, Any], where: str, line: int) -> str:
+        since = value.get("since", "")
+        if since and since != NOW and since not in self._labels:
+            text = f"since is {since!r}; right are {NOW} or the label of an earlier step"
+            self.note(where, f"{text}{of_those(str(since), (NOW, *self._labels))}", line_in(value, "since") or line)
+            return ""
+        return str(since)
+
+    def _while(self, value: dict[str, Any], path: str, line: int, _label: str) -> ProtocolStep:
+        where, content = f"step {path}", value["while"]
+        if not isinstance(content, dict) or not {"do", "until"} <= {*content}:
+            form = "{do: [STEP, ...], until: touch, timeout: 20, label: NAME}"
+            self._fail(where, f"while is a mapping with do and until: {form}", line)
+        label = content.get("label", "")
+        label = label if isinstance(label, str) and label in self._labels else ""
+        waits = self._ends(content, where, line_in(content, "until") or line)
+        times = content.get("times", 0)
+        if not _whole(times) or not 0 <= times <= MOST_ROUNDS:
+            self.note(where, f"times is a whole number 0..{MOST_ROUNDS}, not {times!r}", line_in(content, "times"))
+            times = 0
+        steps = self._steps(content.get("do"), f"{path}.w1", line_in(content, "do") or line)
+        for each in steps:
+            self._only_acts(each, where)
+        self._share_no_server(waits, steps, where, line)
+        timeout = self._seconds(content, "timeout", where, line, 0.0)
+        return WhileStep(line, label, waits, steps, times, timeout)
+
+    def _ends(self, content: dict[str, Any], where: str, line: int) -> tuple[ProtocolStep, ...]:
+        """What a `while` waits for: `until` takes what `wait` takes, a condition, or a list of waits."""
+        until = content["until"]
+        if until in _WAITS:
+            return (self._sense(content, str(until), where, line, "", _WHILE_KEYS),)
+        if isinstance(until, list) and any(isinstance(each, dict) or each in _WAITS for each in until):
+            self._keys(content, _WHILE_KEYS, where, line)
+            return tuple(self._end(each, where, line_in(until, i) or line) for i, each in enumerate(until))
+        seconds = until == "time"
+        self._keys(content, (*_WHILE_KEYS, "seconds" if seconds else "since"), where, line)
+        if seconds and "seconds" not in content:
+            self.note(where, "until: time needs seconds: {do: [...], until: time, seconds: 20}", line)
+        if seconds or _number(until):
+            key = "seconds" if seconds else "until"
+            return (PauseStep(line, "", self._seconds(content, key, where, line, 0.0)),)
+        if isinstance(until, str) and not set(until) & set("=<>"):
+            text = f"there is no until: {until!r}{of_those(until, (*_WAITS, 'time'))}, a number of seconds, a condition"
+            self._fail(where, f"{text} as touches >= 3, or a list of waits", line)
+        conditions = self._conditions(until, where, line, {*self._names, *LIVE})
+        return (UntilStep(line, "", conditions, 0.0, self._since(content, where, line)),)
+
+    def _end(self, value: Any, where: str, line: int) -> ProtocolStep:
+        if not isinstance(value, dict) or "wait" not in value:
+            self._fail(where, "a list of until has waits: [{wait: touch}, {wait: word, words: [yes]}]", line)
+        for key in ("label", "timeout"):
+            if key in value:
+                self.note(where, f"{key} is one of the while, not of a wait in its until", line_in(value, key) or line)
+        return self._wait(value, where[len("step ") :], line, "")
+
+    def _share_no_server(
+        self, waits: Sequence[ProtocolStep], steps: Iterable[ProtocolStep], where: str, line: int
+    ) -> None:
+        """Note what would end a wait of a `while`: a server does one thing at a time."""
+        used: dict[str, ProtocolStep] = {}
+        for wait in waits:
+            server = server_of(wait)
+            if server and server in used:
+                text = f"{used[server].text!r} and {wait.text!r} both need {server}, which does one thing at a time"
+                self.note(where, f"{text}: one wait may name several sensors or words", line)
+            used.setdefault(server, wait)
+        for step in steps_in(steps):
+            if isinstance(step, CommandStep) and used and step.command.stops:
+                self.note(where, "stop would end the wait of the while as well", step.line)
+            elif isinstance(step, CommandStep) and server_of(step) in used:
+                text = f"{step.text!r} needs {server_of(step)}, which waits in until and does one thing at a time"
+                self.note(where, text, step.line)
+
+    def _only_acts(self, step: ProtocolStep, where: str) -> None:
+        """Note steps in a `while` that wait for somebody: it waits itself."""
+        if not isinstance(step, (CommandStep, PauseStep, BranchStep, RoundsStep, WhileStep)):
+            text = f"{step.text!r} waits for somebody, as the while does: its do has steps of the robot, wait: SECONDS"
+            self.note(where, f"{text}, when, choose and repeat; until takes a list of waits", step.line)
+        if isinstance(step, WhileStep):
+            self.note(where, "a while stands in no while: until takes a list of waits", step.line)
+        elif isinstance(step, (BranchStep, RoundsStep)):
+            for _, inner in [*step.inner()][: 1 if isinstance(step, RoundsStep) else None]:
+                for each in inner:
+                    self._only_acts(each, where)
 
     def _when(self, value: dict[str, Any], path: str, line: int, _label: str) -> ProtocolStep:
         conditions = self._conditions(value["when"], f"step {path}", line, self._names)
@@ -303,8 +410,7 @@ class _Reader(FileReader):
         for i, (answer, steps) in enumerate(cases.items(), 1):
             at = line_in(cases, answer)
             read = self._steps(steps, f"{path}.b{i}", at)
-            condition = StudyCondition(str(name), "==", _word(answer))
-            self._compared.append((condition, where, at))
+            condition = StudyCondition(str(name), "==", _word(answer), at)
             branches.append(((condition,), read))
         if "else" in value:
             read = self._steps(value["else"], f"{path}.b{len(cases) + 1}", line_in(value, "else"))
@@ -321,43 +427,66 @@ class _Reader(FileReader):
 
     def _conditions(self, value: Any, where: str, line: int, known: Iterable[str]) -> tuple[StudyCondition, ...]:
         texts = value if isinstance(value, list) else [value]
+        if value is None or not texts:
+            self.note(where, f"a condition is missing, as answer == yes: {FORM}", line)
+            return ()
         read = []
-        for text in texts:
+        for i, text in enumerate(texts):
+            at = (line_in(value, i) if isinstance(value, list) else line) or line
             try:
-                condition = StudyCondition.read(str(text))
+                condition = StudyCondition.read(_word(text), at)
             except ValueError as error:
-                self.note(where, str(error), line)
+                self.note(where, str(error), at)
                 continue
             for name in condition.names():
                 if name not in known:
-                    self.note(where, f"there is no value {name!r}{of_those(name, sorted(known))}", line)
-            self._compared.append((condition, where, line))
+                    self.note(where, f"there is no value {name!r}{self._hint(name, condition, known)}", at)
             read.append(condition)
         return tuple(read)
 
-    def _find_labels(self, value: Any) -> None:
-        """Labels and names of rounds, which conditions before or behind them may name."""
+    @staticmethod
+    def _hint(name: str, condition: StudyCondition, known: Iterable[str]) -> str:
+        if name in LIVE:
+            return f": {name} is counted while something is waited for: {{wait: until, until: {condition}}}"
+        if condition.right in known:
+            return f": a value stands on the left: {condition.right} {condition.operation} {condition.left}"
+        return of_those(name, sorted(known))
+
+    def _find_labels(self, value: Any, taken: dict[str, int]) -> dict[str, int]:
+        """Note labels and names of rounds, which conditions may name; those there are, with their lines.
+
+        Branches of which one is taken may have steps of the same label. `taken`: labels before.
+        """
         if isinstance(value, list):
             for each in value:
-                self._find_labels(each)
+                taken = self._find_labels(each, taken)
+            return taken
         if not isinstance(value, dict):
-            return
+            return taken
         label, name = value.get("label"), value.get("as")
-        if label is not None and any(kind in value for kind in KINDS):
+        if label is not None and (any(kind in value for kind in KINDS) or "until" in value):
             line = line_in(value, "label")
-            if not _identifier(label) or label in (*GIVEN, *LIVE):
-                self.note(
-                    "label", f"{label!r} is no label: letters, digits and _, and none of {', '.join(GIVEN)}", line
-                )
-            elif label in self._labels or label in self._names:
+            if not _identifier(label) or label in (*GIVEN, *LIVE, NOW, NOTHING):
+                reserved = ", ".join((*GIVEN, *LIVE, NOW, NOTHING))
+                self.note("label", f"{label!r} is no label: letters, digits and _, and none of {reserved}", line)
+            elif label in taken:
+                text = f"{label!r} is the label of the step in line {taken[label]}, too"
+                self.note("label", f"{text}: only branches of which one is taken share a label", line)
+            elif label in self._names and label not in self._labels:
                 self.note("label", f"{label!r} is the name of something else, too", line)
             else:
-                self._labels[label] = line
+                self._labels.setdefault(label, line)
                 self._names.update((label, f"{label}_seconds"))
+                taken = {**taken, label: line}
         if "repeat" in value and _identifier(name):
             self._names.add(name)
-        for each in value.values():
-            self._find_labels(each)
+        cases = value.get("cases")
+        branches = [value.get("then"), *(cases.values() if isinstance(cases, dict) else ()), value.get("else")]
+        taken = {**taken, **{key: at for each in branches for key, at in self._find_labels(each, taken).items()}}
+        for key, each in value.items():
+            if key not in ("then", "cases", "else"):
+                taken = self._find_labels(each, taken)
+        return taken
 
     def _check_texts(self, protocol: StudyProtocol) -> None:
         levels = {f"factor {factor.name}": list(factor.levels.values()) for factor in protocol.factors}
@@ -372,17 +501,6 @@ class _Reader(FileReader):
             for text in texts:
                 for problem in unknown_names(text, sorted(self._names)):
                     self.note(f"step {path}", problem, step.line)
-
-    def _check_answers(self, protocol: StudyProtocol) -> None:
-        """Note conditions that wait for an answer that a step cannot have, or a level that a factor does not have."""
-        words: dict[str, tuple[str, ...]] = {factor.name: tuple(factor.levels) for factor in protocol.factors}
-        words.update((step.label, step.answers) for _, step in all_steps(protocol) if step.label)
-        for condition, where, line in self._compared:
-            known = words.get(condition.left, ())
-            # Several sensors that are touched at once are one answer.
-            for word in condition.right.split(", ") if known and condition.operation in ("==", "!=") else ():
-                if word not in known:
-                    self.note(where, f"{condition.left} is never {word!r}{of_those(word, known)}", line)
 
     def _values(self, top: dict[str, Any], key: str) -> dict[str, Any]:
         values = self._mapping(top, key)

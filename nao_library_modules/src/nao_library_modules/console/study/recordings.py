@@ -1,6 +1,6 @@
 """Recordings of a trial: a rosbag as a process of its own, videos and sounds by the servers.
 
-All of them go on when the console is killed, and a trial that is taken up again finds them by what its log tells.
+All of them go on when the console is killed, and a trial that is resumed finds them by what its log tells.
 """
 
 from __future__ import annotations

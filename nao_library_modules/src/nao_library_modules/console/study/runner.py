@@ -5,62 +5,77 @@ from __future__ import annotations
 import logging
 import queue
 import threading
-from collections import Counter
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
-from ...nao.touch_names import names_of, sensors_of
-from ..robots.commands import RobotCommand, call
+from ..robots.commands import RobotCommand
 from ..robots.errors import Stopped
 from ..robots.events import ConsoleEvent
 from . import state as told
-from .conditions import filled
-from .course import following, phase_of, rounds_of, step_at
+from .ahead import ListeningAhead
+from .conditions import NOTHING, filled
+from .course import first_inside, following, phase_of, rounds_of, step_at
 from .errors import StudyError
+from .happenings import TOUCHED, Happenings
 from .log import PATIENCE, LogGap, TrialLog
 from .protocol import (
-    NOTHING,
+    COUNTED,
+    NOW,
     SKIP,
     STOP,
     ChoiceStep,
     CommandStep,
-    PauseStep,
     ProtocolStep,
     SenseStep,
     StudyProtocol,
     UntilStep,
+    WhileStep,
 )
 from .state import TRIAL, StepOutcome, TrialState
+from .waits import (
+    CHOICE,
+    HAPPENED,
+    RUN_ENDED,
+    TIMER,
+    StepEnd,
+    TimeWait,
+    Wait,
+    kinds_of,
+    waits_of,
+)
 
 log = logging.getLogger(__name__)
 
-NEXT, REPEAT, PAUSE, CONTINUE, ABORT, CHOICE = "next", "repeat", "pause", "continue", "abort", "choice"
-_RUN_ENDED, _TIME_UP, _HAPPENED = "run ended", "time is up", "happened"
+NEXT, REPEAT, PAUSE, CONTINUE, ABORT = "next", "repeat", "pause", "continue", "abort"
 STOPPED = "stopped"
 """Kind of the event when everything was stopped."""
-COUNTED = {"touched": "touches", "heard": "words", "seen": "faces"}
-"""Kind of an event -> what conditions that are waited for call its count."""
-GOAL_LAG = 0.5
-"""s of ROS time by which a goal may tell of a touch later than the topics: its onset is the better one."""
 LOOK_PERIOD = 0.1
 """s of this computer after which conditions are looked at again, whatever has happened; the log likewise."""
 LOG_PATIENCE = 2.0
 """s for which steps are begun although the log cannot be written; then the trial waits before the next one."""
+ROUND_TIME = 0.5
+"""s of ROS time that a round of a `while` lasts at least: steps that are over at once do not flood robot and log."""
 After = Callable[[float, Callable[[], None]], Callable[[], None]]
 """Has a function called once after so many s of ROS time; returns what prevents that."""
 
 
-@dataclass(frozen=True)
-class StepEnd:
-    """How a step ended."""
+@dataclass
+class _Frame:
+    """A step that runs: of a `while` and the step in it there are two, the outer one first."""
 
-    outcome: str  # one of `state`
-    answer: str = ""
-    stamp: float | None = None  # of the answer, ROS time, s
-    error: str = ""
+    step: ProtocolStep | None
+    place: tuple[str, int]
+    waits: list[Wait] = field(default_factory=list)
+    end: StepEnd | None = None
+    by: str = ""  # who has ended it
+
+    @property
+    def over(self) -> StepEnd | None:
+        """How it ended; None: it has not."""
+        return self.end or next((wait.over for wait in self.waits if wait.over is not None), None)
 
 
 class TrialRunner:
@@ -73,12 +88,13 @@ class TrialRunner:
         protocol: What is done.
         robot: The `RobotClient`.
         trial_log: Opened.
-        state: Of the log so far: new, or of a trial that is taken up.
+        state: Of the log so far: new, or of a trial that is resumed.
         about: Of a new trial: what its first event holds; `trial`: its id, `values`: its values.
         after: Clock of the time-outs.
         recordings: Begins and ends recordings in the trial's thread: has `begin()` and `end()`.
         at_end: Called in the trial's thread when all is over.
         stops: Of the robot when the trial was asked for; None: as many as now.
+        speaks: Whether a stored behaviour speaks: the robot does not listen ahead then, it would hear itself.
     """
 
     def __init__(
@@ -92,10 +108,14 @@ class TrialRunner:
         recordings: Any = None,
         at_end: Callable[[TrialRunner], None] = lambda _: None,
         stops: int | None = None,
+        speaks: Callable[[str], bool] = lambda name: True,
     ) -> None:
         self.protocol, self.robot, self.state, self.log = protocol, robot, state, trial_log
         self.id: str = (state.about or about)["trial"]
         self._about, self._after, self._recordings, self._at_end = about, after, recordings, at_end
+        self._frames: list[_Frame] = []  # steps that run, from outside
+        self.happenings = Happenings(robot.now())
+        self.ahead = ListeningAhead(self, speaks)
         self._inbox: queue.Queue[tuple[str, Any, str]] = queue.Queue()
         self._lock = threading.RLock()
         self._listeners: list[Callable[[TrialRunner], None]] = []
@@ -111,13 +131,13 @@ class TrialRunner:
         self._thread = threading.Thread(target=self._run, name=f"trial {self.id}", daemon=True)
 
     def start(self, by: str = "") -> None:
-        """Begin, or go on."""
+        """Start, or resume."""
         self.log.on_change = self._log_changed
         self._unsubscribe = self.robot.events.subscribe(self._take)
         if self.state.status:
-            self.tell(told.TAKEN_UP, f"trial {self.id} is taken up again", by)
+            self.tell(told.RESUMED, f"trial {self.id} is resumed", by)
         else:
-            self.tell(told.BEGAN, f"trial {self.id} begins", by, **self._about)
+            self.tell(told.BEGAN, f"trial {self.id} starts", by, **self._about)
         self._thread.start()
 
     def on_change(self, listener: Callable[[TrialRunner], None]) -> Callable[[], None]:
@@ -138,7 +158,7 @@ class TrialRunner:
 
     @property
     def step(self) -> ProtocolStep | None:
-        """The step that runs, or that failed and is held."""
+        """The step that runs, or that failed and is held; of a `while` and the step in it the `while`."""
         outcome = self.outcome
         return step_at(self.protocol, outcome.path) if outcome is not None else None
 
@@ -146,8 +166,7 @@ class TrialRunner:
     def outcome(self) -> StepOutcome | None:
         """The begin of the step that runs, or the end of the one that failed and is held."""
         with self._lock:
-            held = self.state.status == told.HELD and self.state.outcomes
-            return self.state.outcomes[-1] if held else self.state.current
+            return self.state.last if self.state.status == told.HELD else self.state.current
 
     @property
     def trouble(self) -> str:
@@ -161,7 +180,7 @@ class TrialRunner:
         return outcome.text if outcome is not None else ""
 
     def pause(self, by: str = "") -> None:
-        """Wait: a step of the robot comes to its end, any other one is ended, and begins anew afterwards."""
+        """Wait: a step of the robot comes to its end, any other one is ended, and restarts afterwards."""
         self._control(PAUSE, by)
 
     def go_on(self, by: str = "") -> None:
@@ -173,7 +192,7 @@ class TrialRunner:
         self._control(NEXT, by)
 
     def repeat(self, by: str = "") -> None:
-        """Begin the step anew; between steps the one that was the last."""
+        """Restart the step; between steps the one that was the last."""
         self._control(REPEAT, by)
 
     def abort(self, by: str = "") -> None:
@@ -225,8 +244,8 @@ class TrialRunner:
                 self.state.apply(logged)
         if event.kind == STOPPED and threading.current_thread() is not self._thread:
             self._control(PAUSE, event.by)  # who stops the robot does not want its next step
-        if event.kind in COUNTED:
-            self._inbox.put((_HAPPENED, event, ""))
+        if self.happenings.take(event):
+            self._inbox.put((HAPPENED, event, ""))
         self._notify()
 
     def _log_changed(self, gap: LogGap | None) -> None:
@@ -267,6 +286,7 @@ class TrialRunner:
         except Exception as error:  # whatever it is: the recordings have to end, and the log
             log.exception("trial %s", self.id)
             text = f": {error}"
+        self.ahead.end()
         try:
             if self._recordings is not None:
                 self._recordings.end(self)
@@ -287,7 +307,7 @@ class TrialRunner:
 
     def _steps(self) -> str:
         """Do all steps; how the trial ended."""
-        path = self._unfinished() or self._following(self.state.path)
+        path = self._unfinished() or self.following(self.state.path)
         while path:
             control, path = self._between(path)
             if control == ABORT:
@@ -298,31 +318,30 @@ class TrialRunner:
             if end.outcome == told.STOPPED:
                 if not self._pausing:
                     return told.ABORTED
-                continue  # it begins anew behind the pause
+                continue  # it restarts after the pause
             if end.outcome == told.REPEATED:
                 continue
             if end.outcome == told.FAILED:
-                step = step_at(self.protocol, path)
-                on_error = step.on_error if isinstance(step, CommandStep) else ""
-                if on_error == STOP:
+                if end.on_error == STOP:
                     return told.ABORTED
-                if on_error != SKIP:
+                if end.on_error != SKIP:
                     control = self._hold(path, end.error)
                     if control == ABORT:
                         return told.ABORTED
                     if control == REPEAT:
                         continue
-            path = self._following(path)
+            path = self.following(path)
         return told.FINISHED
 
     def _unfinished(self) -> str:
-        """The step at which a trial that is taken up was interrupted."""
-        last = self.state.outcomes[-1] if self.state.outcomes else None
+        """The step at which a trial that is resumed was interrupted."""
+        last = self.state.last
         if last is None or not (self._was_held or last.outcome in (told.STOPPED, told.REPEATED, "")):
             return ""
         return last.path
 
-    def _following(self, path: str) -> str:
+    def following(self, path: str) -> str:
+        """Path of the step behind another one, by the values of this moment; empty: none."""
         with self._lock:
             return following(self.protocol, path, self.state.values)
 
@@ -340,27 +359,29 @@ class TrialRunner:
                     return ABORT, path
                 if not self._pausing:
                     return "", path
+            self.ahead.end()
             self.tell(told.PAUSED, "paused")
             control = self._until_control()
             self._pausing = False
+            self.happenings.forget(COUNTED, self.robot.now())  # what happened meanwhile is no answer
             if control == ABORT:
                 return control, path
-            self.tell(told.CONTINUED, "goes on")
+            self.tell(told.CONTINUED, "continues")
             if control == REPEAT:
                 path = self.state.path or path
             elif control == NEXT:
-                path = self._following(path) if path else ""
+                path = self.following(path) if path else ""
 
     def _wait_for_log(self, before: str, at_end: bool = False) -> str:
         """Wait while the log cannot be written, if it could not for `LOG_PATIENCE`, or it is to be closed.
 
-        An abort ends that, before a step also who goes on. Returns `ABORT` or nothing.
+        An abort ends that, before a step also who continues. Returns `ABORT` or nothing.
         """
         control, waits = "", False
         while self.log.trouble and not control and (at_end or not self._goes_on_without_log):
             if not waits and self.log.blocked_for >= LOG_PATIENCE:
                 waits = True
-                otherwise = "Abort gives up what waits" if at_end else "Go on does not wait"
+                otherwise = "Abort gives up what waits" if at_end else "Continue does not wait"
                 self.tell(told.PAUSED, f"the trial waits before {before} until its log can be written. {otherwise}")
             if not waits and not at_end:
                 break
@@ -375,7 +396,7 @@ class TrialRunner:
             elif what == ABORT and waits:
                 control = ABORT
         if waits:
-            self.tell(told.CONTINUED, "goes on")
+            self.tell(told.CONTINUED, "continues")
         return control
 
     def _hold(self, path: str, error: str) -> str:
@@ -383,7 +404,7 @@ class TrialRunner:
         self.tell(told.HELD, f"step {path} failed, and the trial waits: {error}", path=path, error=error)
         control = self._until_control()
         if control != ABORT:
-            self.tell(told.CONTINUED, "goes on")
+            self.tell(told.CONTINUED, "continues")
         return control
 
     def _until_control(self) -> str:
@@ -403,15 +424,18 @@ class TrialRunner:
         title = filled(step.text, values)
         begin = {"path": path, "phase": phase_of(self.protocol, path), "label": step.label, "step": step.kind}
         self.tell(told.STEP_BEGAN, f"step {path}: {title}", **begin, title=title, attempt=attempt)
-        began = self.state.outcomes[-1].began
+        began = self.state.outcomes[-1].began or 0.0
+        zero = self._zero(step, began)
         try:
             end, by = self._execute(step, values, (path, attempt), began)
         except Stopped as error:  # before its goal was sent
             self._pausing = True
             end, by = StepEnd(told.STOPPED, error=str(error)), ""
         except NaoError as error:
-            end, by = StepEnd(told.FAILED, error=str(error)), ""
-        seconds = None if end.stamp is None else round(end.stamp - began, 4)
+            on_error = step.on_error if isinstance(step, CommandStep) else ""
+            end, by = StepEnd(told.FAILED, error=str(error), on_error=on_error), ""
+        self._take_answer(step, end)
+        seconds = None if end.stamp is None else round(end.stamp - zero, 4)
         answer = end.answer or (NOTHING if end.outcome in (told.TIMEOUT, told.SKIPPED) and step.label else "")
         text = (
             f"step {path}: {end.outcome}" + (f", {answer}" if answer else "") + (f": {end.error}" if end.error else "")
@@ -426,6 +450,7 @@ class TrialRunner:
             answer=answer,
             answered=end.stamp,
             seconds=seconds,
+            finished=end.finished,
             error=end.error,
         )
         return end
@@ -434,118 +459,130 @@ class TrialRunner:
         self, step: ProtocolStep, values: Mapping[str, Any], place: tuple[str, int], began: float
     ) -> tuple[StepEnd, str]:
         """Do a step until it is over, or a control ends it; who did that."""
-        run, prevent = None, lambda: None
-        timeout = step.seconds if isinstance(step, PauseStep) else getattr(step, "timeout", 0.0)
-        command = _command_of(step)
-        if command is not None:
-            texts = {name: str(value) for name, value in values.items()}
-            wanted = command.filled(texts) if isinstance(step, CommandStep) else command
-            run = self.robot.send(wanted, stops=self._stops)
-            if run is None:  # of a stop, which nothing is waited for
-                self._stops += 1
-                return StepEnd(told.DONE), ""
-            run.on_end(lambda ended: self._inbox.put((_RUN_ENDED, ended, "")))
-        if timeout and not isinstance(step, SenseStep):  # the server of a sense has it itself
-            prevent = self._after(timeout, lambda: self._inbox.put((_TIME_UP, place, "")))
-        counts: Counter[str] = Counter()
-        felt: StepEnd | None = None  # a touch that the goal has not told of: it may have come before the server waited
+        self.ahead.begin(place[0], step)
+        frame = _Frame(step, place, waits_of(self, step, values, place, began))
+        self._frames.append(frame)
         try:
-            while True:
-                if isinstance(step, UntilStep) and self._holds(step, values, counts, began):
-                    return StepEnd(told.DONE, "", self.robot.now()), ""
-                try:
-                    what, about, by = self._inbox.get(timeout=LOOK_PERIOD if isinstance(step, UntilStep) else None)
-                except queue.Empty:  # time is a condition, too
-                    continue
-                if what == _RUN_ENDED and about is run:
-                    end = _end_of(step, run)
-                    return (felt if felt is not None and end.outcome == told.TIMEOUT else end), ""
-                if what == _TIME_UP and about == place and felt is not None:
-                    return felt, ""
-                if what == _TIME_UP and about == place:
-                    return StepEnd(told.DONE if isinstance(step, PauseStep) else told.TIMEOUT), ""
-                if what == _HAPPENED:
-                    new = about.stamp >= began and _counts(about)
-                    counts[COUNTED[about.kind]] += new
-                    if new and felt is None and _is_answer(step, about):
-                        felt = StepEnd(told.DONE, str(about.data["sensor"]), about.stamp)
-                        prevent = self._after(GOAL_LAG, lambda: self._inbox.put((_TIME_UP, place, "")))
-                elif what == CHOICE and about[0] == place:
-                    return StepEnd(told.DONE, about[1], about[2]), by
-                elif what == ABORT:
-                    self._pausing = False
-                    return StepEnd(told.STOPPED), by
-                elif what == PAUSE:
-                    self._pausing = True
-                    if not isinstance(step, CommandStep):
-                        return StepEnd(told.STOPPED, error="paused"), by
-                elif what == CONTINUE:
-                    self._pausing, self._stops = False, about[1]
-                elif what in (NEXT, REPEAT) and about[0] == place:
-                    return StepEnd(told.SKIPPED if what == NEXT else told.REPEATED), by
+            for wait in frame.waits:
+                wait.begin()
+                if wait.over is not None:
+                    break
+            if isinstance(step, WhileStep):
+                self._rounds(step, place[0], frame)
+            self._wait_for_end()
+            return frame.over or StepEnd(told.CUT), frame.by
         finally:
-            prevent()
-            if run is not None and not run.done:
-                run.cancel()
+            self._frames.pop()
+            for wait in frame.waits:
+                wait.close()
 
-    def _holds(self, step: UntilStep, values: Mapping[str, Any], counts: Mapping[str, int], began: float) -> bool:
-        live = {name: counts.get(name, 0) for name in COUNTED.values()}
-        live["seconds"] = self.robot.now() - began
-        return all(condition.holds({**values, **live}) for condition in step.conditions)
+    def _rounds(self, step: WhileStep, path: str, frame: _Frame) -> None:
+        """Do the steps of a `while`, round for round, until it is over."""
+        number = 0
+        while frame.over is None and (not step.rounds or number < step.rounds):
+            number += 1
+            next_round = self.robot.now() + ROUND_TIME
+            inner = first_inside(self.protocol, path, number, self.state.values)
+            if not inner:
+                return
+            while inner and frame.over is None:
+                end = self._do(inner)
+                self._take_messages()
+                if end.outcome == told.FAILED and end.on_error != SKIP and frame.over is None:
+                    frame.end = replace(end, error=f"step {inner}: {end.error}")
+                elif end.outcome == told.STOPPED and frame.over is None:
+                    frame.end = StepEnd(told.STOPPED, error=end.error)
+                inner = self.following(inner)
+            rest = next_round - self.robot.now()
+            if frame.over is None and rest > 0.0:
+                pause = TimeWait(self, step, {}, 0.0, rest, told.DONE)
+                self._frames.append(_Frame(None, ("", 0), [pause]))
+                try:
+                    pause.begin()
+                    self._wait_for_end()
+                finally:
+                    self._frames.pop()
+                    pause.close()
 
+    def _wait_for_end(self) -> None:
+        """Wait until one of the steps that run is over."""
+        while True:
+            for wait in [wait for frame in self._frames for wait in frame.waits]:
+                if wait.over is None:
+                    wait.look()
+            if any(frame.over for frame in self._frames):
+                return
+            polls = any(wait.polls for frame in self._frames for wait in frame.waits)
+            try:
+                self._take_message(*self._inbox.get(timeout=LOOK_PERIOD if polls else None))
+            except queue.Empty:  # time is a condition, too
+                continue
 
-def _counts(event: ConsoleEvent) -> bool:
-    """Whether an event is a touch, a word or a face: neither the end of a touch, nor other things that are seen."""
-    return event.data.get("touched", event.kind != "touched") and event.data.get("what", "face") == "face"
+    def _take_messages(self) -> None:
+        """Take the messages that have come."""
+        while not self._inbox.empty():
+            self._take_message(*self._inbox.get())
 
+    def _take_message(self, what: str, about: Any, by: str) -> None:
+        """Have a message end what it ends. A control is about the outermost step."""
+        for frame in self._frames:
+            for wait in frame.waits:
+                if frame.over is None:
+                    wait.take(what, about)
+                    if wait.over is not None:
+                        frame.by = by
+        frame = self._frames[0]
+        if what == PAUSE:
+            self._pausing = True
+        elif what == CONTINUE:
+            self._pausing, self._stops = False, about[1]
+        elif what == ABORT:
+            self._pausing = False
+        if frame.over is not None:
+            return
+        if what == ABORT:
+            frame.end, frame.by = StepEnd(told.STOPPED), by
+        elif what == PAUSE and not isinstance(frame.step, CommandStep):
+            frame.end, frame.by = StepEnd(told.STOPPED, error="paused"), by
+        elif what in (NEXT, REPEAT) and about[0] == frame.place:
+            frame.end, frame.by = StepEnd(told.SKIPPED if what == NEXT else told.REPEATED), by
 
-def _is_answer(step: ProtocolStep, event: ConsoleEvent) -> bool:
-    """Whether an event is the touch that a step waits for."""
-    if not isinstance(step, SenseStep) or step.sense != "touch" or event.kind != "touched":
-        return False
-    return event.data.get("sensor") in names_of(sensors_of(step.names))
+    # What waits ask for
 
+    def send(self, command: RobotCommand) -> Any:
+        """Send a goal, whose end is a message; None for a stop. Raises what `RobotClient.send` does."""
+        run = self.robot.send(command, stops=self._stops)
+        if run is None:
+            self._stops += 1
+            return None
+        run.on_end(lambda ended: self._inbox.put((RUN_ENDED, ended, "")))
+        return run
 
-def _command_of(step: ProtocolStep) -> RobotCommand | None:
-    """What a step asks of the robot."""
-    if isinstance(step, CommandStep):
-        return step.command
-    if not isinstance(step, SenseStep):
-        return None
-    names = list(step.names)
-    if step.sense == "touch":
-        return _sense("NaoTactile", "waitForTouch", step, sensors=names)
-    if step.sense == "word":
-        confidence = {"confidence": step.confidence} if step.confidence else {}
-        return _sense("nao_audio_in", "listen", step, vocabulary=names, **confidence)
-    name = {"str_param": names[0]} if names else {}
-    return _sense("NaoVision", "detectFaces", step, **name)
+    def after(self, seconds: float, token: object) -> Callable[[], None]:
+        """Have a message come after so many s of ROS time; returns what prevents that."""
+        return self._after(seconds, lambda: self._inbox.put((TIMER, token, "")))
 
+    def since(self, step: SenseStep | UntilStep, began: float) -> float:
+        """ROS time from which on what happens answers a step, s, unless a wait before it has taken it."""
+        named = self._named(step.since)
+        return began if step.since == NOW else named.began or 0.0 if named is not None else 0.0
 
-def _sense(server: str, function: str, step: SenseStep, **fields: Any) -> RobotCommand:
-    return call(server, function, **fields, timeout=step.timeout)
+    def _zero(self, step: ProtocolStep, began: float) -> float:
+        """ROS time from which the reaction time of a step counts: its begin, or the end of the step that it names."""
+        parts = step.waits if isinstance(step, WhileStep) else (step,)
+        named = next(filter(None, (self._named(getattr(each, "since", "")) for each in parts)), None)
+        return began if named is None else named.finished or named.ended or began
 
+    def _named(self, label: str) -> StepOutcome | None:
+        """How the newest step with a label was done; None if none was, or there is none."""
+        if not label or label == NOW:
+            return None
+        return next((each for each in reversed(self.state.outcomes) if each.label == label), None)
 
-def _end_of(step: ProtocolStep, run: Any) -> StepEnd:
-    """How a step ended whose goal has."""
-    if run.state != "succeeded":
-        return StepEnd(told.FAILED, error=run.text or run.state)
-    if not isinstance(step, SenseStep):
-        return StepEnd(told.DONE)
-    result: Mapping[str, Any] = run.result
-    answers = {
-        "touch": lambda: list(result.get("touched") or []),
-        "word": lambda: list(result.get("words") or [])[:1],
-        "face": lambda: [each.get("name") or "face" for each in result.get("objects") or []][:1],
-    }[step.sense]()
-    if not answers:
-        return StepEnd(told.TIMEOUT)
-    parts = result.get("results") or [{}]
-    return StepEnd(told.DONE, ", ".join(answers), _seconds(parts[-1].get("onset")) or _seconds(parts[-1].get("end")))
-
-
-def _seconds(value: Any) -> float | None:
-    """A time of a result, in s; None where the robot does not tell it."""
-    to_sec = getattr(value, "to_sec", None)
-    seconds = to_sec() if to_sec is not None else value
-    return float(seconds) if seconds else None
+    def _take_answer(self, step: ProtocolStep, end: StepEnd) -> None:
+        """What has answered a wait, and what was before it, is no answer of the next one."""
+        kinds = kinds_of(step)
+        if TOUCHED in kinds and end.touched and end.stamp is not None:
+            self.happenings.answered(end.touched, end.stamp)
+            kinds -= {TOUCHED}
+        self.happenings.forget(kinds, self.robot.now())

@@ -1,4 +1,4 @@
-"""How far a trial is, worked out from its events alone: while it runs, when it is taken up again, and afterwards."""
+"""How far a trial is, worked out from its events alone: while it runs, when it is resumed, and afterwards."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from .protocol import DONE, NOTHING
+from .conditions import NOTHING
+from .course import is_inside
+from .protocol import DONE
 
 TRIAL = "trial"
 """Kind of the events that a trial itself adds; their `data` has what as one of those below."""
-BEGAN, TAKEN_UP, STEP_BEGAN, STEP_ENDED, PAUSED, CONTINUED, HELD, ENDED = (
-    *("began", "taken up", "step began", "step ended", "paused", "continued", "held", "ended"),
+BEGAN, RESUMED, STEP_BEGAN, STEP_ENDED, PAUSED, CONTINUED, HELD, ENDED = (
+    *("began", "resumed", "step began", "step ended", "paused", "continued", "held", "ended"),
 )
 TROUBLE_SEEN = "trouble seen"
 LOG_GAP = "log gap"
@@ -20,6 +22,8 @@ RECORDING_BEGAN, RECORDING_ENDED = "recording began", "recording ended"
 RUNNING, INTERRUPTED, FINISHED, ABORTED = "running", "interrupted", "finished", "aborted"
 STATES = (RUNNING, PAUSED, HELD, INTERRUPTED, FINISHED, ABORTED)
 TIMEOUT, SKIPPED, FAILED, REPEATED, STOPPED = "timeout", "skipped", "failed", "repeated", "stopped"
+CUT = "cut"
+"""End of a step in a `while` that has ended it."""
 ON = (DONE, TIMEOUT, SKIPPED, FAILED)
 """Ends of a step behind which the next one comes; a failed one where the protocol says so, or the wizard goes on."""
 
@@ -36,10 +40,11 @@ class StepOutcome:
     attempt: int  # how often it has been begun
     began: float | None  # None: the log does not tell
     ended: float | None = None  # None: it has not
-    outcome: str = ""  # done, timeout, skipped, failed, repeated, stopped; empty: it has not ended
+    outcome: str = ""  # done, timeout, skipped, failed, repeated, stopped, cut; empty: it has not ended
     answer: str = ""  # choice, sensor, word, name of the face
     seconds: float | None = None  # reaction time: from `began` to the answer
     error: str = ""
+    finished: float | None = None  # when what the robot did was over, of speech the last sound; None: it does not tell
 
 
 @dataclass
@@ -59,6 +64,7 @@ class TrialState:
     deviations: int = 0  # gaps among them
     gaps: list[str] = field(default_factory=list)  # what the log lacks
     trouble: str = ""  # of the log, until somebody has seen it
+    open: list[StepOutcome] = field(default_factory=list)  # steps that run: a `while`, and the one in it
 
     @staticmethod
     def of(events: Iterable[Mapping[str, Any]], runs: bool = False) -> TrialState:
@@ -83,9 +89,13 @@ class TrialState:
 
     @property
     def current(self) -> StepOutcome | None:
-        """The step that was begun and has not ended."""
-        last = self.outcomes[-1] if self.outcomes else None
-        return last if last is not None and last.ended is None else None
+        """The step that was begun and has not ended; of a `while` and the step in it the `while`."""
+        return self.open[0] if self.open else None
+
+    @property
+    def last(self) -> StepOutcome | None:
+        """The step that was begun last, but for those in a `while`."""
+        return next((each for each in reversed(self.outcomes) if not is_inside(each.path)), None)
 
     def attempts(self, path: str) -> int:
         """How often a step has been begun."""
@@ -105,13 +115,14 @@ class TrialState:
             self.about, self.values, self.began, self.status = dict(told), dict(told["values"]), stamp, RUNNING
         elif what in (PAUSED, HELD):
             self.status = what
-        elif what in (CONTINUED, TAKEN_UP):
+        elif what in (CONTINUED, RESUMED):
             self.status = RUNNING
-            if what == TAKEN_UP and self.current is not None:
-                self._end(self.current, {"outcome": STOPPED, "error": "the console was gone"}, stamp)
+            for outcome in reversed(self.open[:] if what == RESUMED else []):
+                self._end(outcome, {"outcome": STOPPED, "error": "the console was gone"}, stamp)
         elif what == STEP_BEGAN:
-            self._lacks_end()
+            self._lacks_end(told["path"])
             self.outcomes.append(_outcome(told, began=stamp))
+            self.open.append(self.outcomes[-1])
         elif what == STEP_ENDED:
             self._end(self._begun(told), told, stamp)
         elif what == TROUBLE_SEEN:
@@ -131,25 +142,33 @@ class TrialState:
         for outcome in reversed(self.outcomes):
             if (outcome.path, outcome.attempt) == place and outcome.ended is None:
                 return outcome
-        self._lacks_end()
+        self._lacks_end(place[0])
         lacking = self._lacks(f"the begin of step {place[0]} is not in the log")
         self.outcomes.append(_outcome(told, began=None, error=lacking))
         return self.outcomes[-1]
 
     def _end(self, outcome: StepOutcome, told: Mapping[str, Any], stamp: float) -> None:
+        if any(each is outcome for each in self.open):
+            while self.open.pop() is not outcome:  # a step in it
+                continue
         outcome.ended, outcome.outcome = stamp, told["outcome"]
         outcome.answer, outcome.seconds = told.get("answer", ""), told.get("seconds")
+        outcome.finished = told.get("finished")
         outcome.error = "; ".join(filter(None, (outcome.error, told.get("error", ""))))
         if outcome.outcome in ON:
-            self.path = outcome.path
+            if not is_inside(outcome.path):
+                self.path = outcome.path
             if outcome.label:
                 self.values[outcome.label] = outcome.answer or (NOTHING if outcome.outcome != DONE else DONE)
                 self.values[f"{outcome.label}_seconds"] = outcome.seconds
 
-    def _lacks_end(self) -> None:
-        """Note that the log does not tell how the current step ended, if there is one."""
-        if self.current is not None:
-            self.current.error = self._lacks(f"the end of step {self.current.path} is not in the log")
+    def _lacks_end(self, path: str = "") -> None:
+        """Note of which steps the log does not tell the end: those that run, but for a `while` around `path`."""
+        while self.open and not path.startswith(f"{self.open[-1].path}.w"):
+            self._lacks_end_of(self.open.pop())
+
+    def _lacks_end_of(self, outcome: StepOutcome) -> None:
+        outcome.error = self._lacks(f"the end of step {outcome.path} is not in the log")
 
     def _lacks(self, what: str) -> str:
         """Note what the log lacks, a deviation; `what`."""

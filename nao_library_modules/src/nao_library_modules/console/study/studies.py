@@ -1,4 +1,4 @@
-"""The studies of a console: begins trials, takes them up again, and knows those that run."""
+"""The studies of a console: starts trials, resumes them, and knows those that run."""
 
 from __future__ import annotations
 
@@ -10,12 +10,17 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from functools import lru_cache, partial
 from typing import Any
 from xml.etree import ElementTree
+
+from naoqi.errors import NaoError
 
 from ...base.paths import config_file
 from ...base.suggestion import of_those
 from ...base.whole_file import FileTrouble
+from ..timeline.stored import SERVICE
+from .ahead import EARS
 from .conditions import filled
 from .errors import StudyError
 from .files import StudyFiles, TrialFolder
@@ -159,7 +164,7 @@ class Studies:
                 protocol, trial, robot, by, {**about, "trial": trial.id, "values": known}, wanted, listener, stops
             )
 
-    def take_up(
+    def resume(
         self,
         trial_id: str,
         robot: Any,
@@ -167,7 +172,7 @@ class Studies:
         listener: Callable[[TrialRunner], None] | None = None,
         stops: int | None = None,
     ) -> TrialRunner:
-        """Go on with a trial whose console was gone, behind the last step that had ended.
+        """Resume a trial whose console was gone, behind the last step that had ended.
 
         `stops`: as for `begin`. Raises StudyError if it is over, runs elsewhere, or a trial runs on the robot.
         """
@@ -176,7 +181,7 @@ class Studies:
             trial = self.files.trial(trial_id)
             state = trial.state()
             if state.over or not state.status:
-                raise StudyError(f"trial {trial_id} is {state.status or 'empty'}: it cannot be taken up again")
+                raise StudyError(f"trial {trial_id} is {state.status or 'empty'}: it cannot be resumed")
             record = dict(state.about.get("record", {}))
             wanted = replace(WantedRecordings(**record), bag=tuple(record.get("bag", ())))
             return self._start(trial.protocol(), trial, robot, by, state.about, wanted, listener, stops)
@@ -188,7 +193,7 @@ class Studies:
         over, or a program runs it.
         """
         trial = self.files.trial(trial_id)
-        trial_log = TrialLog(trial.path)  # nobody takes it up meanwhile
+        trial_log = TrialLog(trial.path)  # nobody resumes it meanwhile
         try:
             left = LeftTrial(trial_id, trial_log, read_events(trial.path), robot)
             if left.state.over or not left.state.status:
@@ -233,7 +238,11 @@ class Studies:
             self._tell()
 
         runner = TrialRunner(
-            protocol, robot, trial_log, state, about, ros_after, TrialRecordings(trial.path, wanted), end, stops
+            *(protocol, robot, trial_log, state, about, ros_after),
+            TrialRecordings(trial.path, wanted),
+            end,
+            stops,
+            lru_cache(maxsize=None)(partial(behavior_speaks, robot)),
         )
         with self._lock:
             self._runners[robot.namespace] = runner
@@ -270,6 +279,17 @@ def ros_after(seconds: float, callback: Callable[[], None]) -> Callable[[], None
 
     timer = rospy.Timer(rospy.Duration.from_sec(seconds), lambda _: callback(), oneshot=True)
     return timer.shutdown
+
+
+def behavior_speaks(robot: Any, name: str) -> bool:
+    """Whether a stored behaviour speaks or listens; also where nobody knows. `robot`: a `RobotClient`."""
+    from nao_library_msgs.srv import ListBehaviors
+
+    try:
+        behaviors = robot.call(SERVICE, ListBehaviors).behaviors
+    except NaoError:
+        return True
+    return any(each.name == name and {*each.servers} & {*EARS} for each in behaviors)
 
 
 def versions() -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""What was measured: a row a trial and step, and what is counted and averaged by condition. Pure."""
+"""What was measured: a row a step, a row a trial, and what is counted and averaged by condition. Pure."""
 
 from __future__ import annotations
 
@@ -7,19 +7,22 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from .conditions import NOTHING
+from .course import any_round, round_numbers
 from .errors import StudyError
 from .files import StudyFiles
 from .log import csv_text
-from .protocol import NOTHING
-from .state import DONE, TrialState
+from .protocol import DONE, SENSES
+from .state import ON, TIMEOUT, TrialState
 
 BEFORE = ("study", "participant", "number", "trial", "position", "trial_state")
 BEHIND = (
-    *("phase", "path", "label", "kind", "text", "attempt", "began_s", "ended_s", "outcome", "answer", "reaction_s"),
-    *("error", "notes", "deviations"),
+    *("phase", "path", "round", "outer_round", "label", "kind", "text", "attempt", "began_s", "ended_s", "outcome"),
+    *("answer", "reaction_s", "error", "notes", "deviations"),
 )
-ANSWERED = ("wizard", "touch", "word", "face")
-"""Kinds of steps whose answers are counted."""
+OF_TRIAL = ("began_s", "ended_s", "duration_s", "notes", "deviations")
+ANSWERED = ("wizard", "while", *SENSES)
+"""Kinds of steps whose answers are counted, with a label or without; of others the answers of those with a label."""
 
 
 @dataclass(frozen=True)
@@ -28,22 +31,25 @@ class StudyTable:
 
     Attributes:
         factors: Names of the columns with the levels.
-        rows: Column -> value.
+        rows: Of a step each: column -> value.
+        trials: Of a trial each: column -> value, with the answers by their labels.
         gaps: Id of a trial, and what its log lacks.
     """
 
     factors: tuple[str, ...]
     rows: tuple[Mapping[str, Any], ...]
+    trials: tuple[Mapping[str, Any], ...] = ()
     gaps: tuple[tuple[str, str], ...] = ()
 
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Names of the columns in their order."""
-        return (*BEFORE, *self.factors, *BEHIND)
-
     def csv(self) -> str:
-        """All of it as CSV."""
-        return csv_text(self.columns, [[row.get(column) for column in self.columns] for row in self.rows])
+        """A row a step, as CSV."""
+        return _csv((*BEFORE, *self.factors, *BEHIND), self.rows)
+
+    def trials_csv(self) -> str:
+        """A row a trial, as CSV; the columns of the answers come last."""
+        known = (*BEFORE, *self.factors, *OF_TRIAL)
+        answers = dict.fromkeys(column for row in self.trials for column in row if column not in known)
+        return _csv((*known, *answers), self.trials)
 
 
 @dataclass(frozen=True)
@@ -52,6 +58,7 @@ class ConditionSummary:
 
     condition: str
     label: str
+    round: int | None  # of the innermost loop; None: all of them
     count: int  # how often it was done
     answers: Mapping[str, int]  # answer -> how often
     reactions: tuple[float, ...]
@@ -79,24 +86,51 @@ def table_of(files: StudyFiles, study: str) -> StudyTable:
     states = [(trial, trial.state()) for trial in trials]
     factors = dict.fromkeys(name for _, state in states for name in state.about.get("condition", {}))
     rows = [row for trial, state in states for row in rows_of(state, study, trial.participant, trial.number)]
+    whole = [trial_row(state, study, trial.participant, trial.number) for trial, state in states]
     gaps = tuple((trial.id, gap) for trial, state in states for gap in state.gaps)
-    return StudyTable(tuple(factors), tuple(rows), gaps)
+    return StudyTable(tuple(factors), tuple(rows), tuple(whole), gaps)
+
+
+def trial_row(state: TrialState, study: str, participant: str, trial: int) -> dict[str, Any]:
+    """A trial, with the last answer of each label: `LABEL` and `LABEL_seconds`, in rounds `LABEL_r1` and so on."""
+    row = _about(state, study, participant, trial)
+    ended = state.ended
+    row.update(began_s=state.began or None, ended_s=ended, duration_s=None)
+    if ended is not None:
+        row.update(duration_s=round(ended - state.began, 4))
+    row.update(notes=state.notes, deviations=state.deviations)
+    for outcome in state.outcomes:
+        asks = outcome.kind in ANSWERED
+        if outcome.label and outcome.outcome in ON and (asks or outcome.answer):
+            rounds = "".join(f"_r{number}" for number in round_numbers(outcome.path))
+            row[f"{outcome.label}{rounds}"] = outcome.answer or (DONE if outcome.outcome == DONE else NOTHING)
+            if asks:
+                row[f"{outcome.label}{rounds}_seconds"] = outcome.seconds
+    return row
+
+
+def _about(state: TrialState, study: str, participant: str, trial: int) -> dict[str, Any]:
+    return {
+        "study": study,
+        "participant": participant,
+        "number": state.about.get("number"),
+        "trial": trial,
+        "position": state.about.get("position"),
+        "trial_state": state.status,
+        **state.about.get("condition", {}),
+    }
 
 
 def rows_of(state: TrialState, study: str, participant: str, trial: int) -> Iterable[dict[str, Any]]:
     """Rows of a trial: a step each, in the order in which they were begun."""
-    about = state.about
     for outcome in state.outcomes:
+        rounds = [None, None, *round_numbers(outcome.path)]
         yield {
-            "study": study,
-            "participant": participant,
-            "number": about.get("number"),
-            "trial": trial,
-            "position": about.get("position"),
-            "trial_state": state.status,
-            **about.get("condition", {}),
+            **_about(state, study, participant, trial),
             "phase": outcome.phase,
             "path": outcome.path,
+            "round": rounds[-1],
+            "outer_round": rounds[-2],
             "label": outcome.label,
             "kind": outcome.kind,
             "text": outcome.text,
@@ -112,23 +146,31 @@ def rows_of(state: TrialState, study: str, participant: str, trial: int) -> Iter
         }
 
 
-def summaries_of(table: StudyTable) -> list[ConditionSummary]:
+def summaries_of(table: StudyTable, by_round: bool = False) -> list[ConditionSummary]:
     """Answers and reaction times by step and condition, of the steps that have answers; unlabelled ones by their path.
 
-    What was repeated or stopped does not count.
+    What was repeated or stopped does not count. `by_round`: a summary for each round of a loop as well.
     """
-    groups: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    groups: dict[tuple[str, str, int], list[Mapping[str, Any]]] = {}
     for row in table.rows:
-        if row["kind"] in ANSWERED and row["outcome"] in (DONE, "timeout"):
+        if (row["kind"] in ANSWERED or (row["label"] and row["answer"])) and row["outcome"] in (DONE, TIMEOUT):
             condition = ", ".join(f"{name}: {row.get(name)}" for name in table.factors) or "all"
-            groups.setdefault((str(row["label"] or row["path"]), condition), []).append(row)
-    return [_summary(condition, label, rows) for (label, condition), rows in sorted(groups.items())]
+            label = str(row["label"] or any_round(row["path"]))
+            number = row["round"] if by_round else None
+            groups.setdefault((label, condition, number or 0), []).append(row)
+    return [
+        _summary(condition, label, number or None, rows) for (label, condition, number), rows in sorted(groups.items())
+    ]
 
 
-def _summary(condition: str, label: str, rows: Sequence[Mapping[str, Any]]) -> ConditionSummary:
+def _summary(condition: str, label: str, number: int | None, rows: Sequence[Mapping[str, Any]]) -> ConditionSummary:
     answers: dict[str, int] = {}
     for row in rows:
-        answer = str(row["answer"] or NOTHING)
+        answer = str(row["answer"] or (DONE if row["outcome"] == DONE else NOTHING))
         answers[answer] = answers.get(answer, 0) + 1
     reactions = tuple(row["reaction_s"] for row in rows if row["reaction_s"] is not None)
-    return ConditionSummary(condition, label, len(rows), answers, reactions)
+    return ConditionSummary(condition, label, number, len(rows), answers, reactions)
+
+
+def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:
+    return csv_text(columns, [[row.get(column) for column in columns] for row in rows])

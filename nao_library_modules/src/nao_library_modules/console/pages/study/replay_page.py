@@ -12,7 +12,7 @@ from starlette.responses import FileResponse, PlainTextResponse, Response
 from ...study.errors import StudyError
 from ...study.files import StudyFiles, TrialFolder
 from ...study.log import read_events
-from ...study.state import TAKEN_UP, TrialState
+from ...study.state import RESUMED, TrialState
 from ...study.studies import Studies
 from ...view.background import in_background
 from ..frame import framed, page_at
@@ -60,12 +60,12 @@ def replay_of(trial: TrialFolder) -> dict[str, Any]:
 
 
 def _goals(events: list[dict[str, Any]], ended: float) -> list[dict[str, Any]]:
-    """Goals of the console; one whose end was not logged lasts until the trial was taken up again, or was over."""
+    """Goals of the console; one whose end was not logged lasts until the trial was resumed, or was over."""
     goals: dict[str, dict[str, Any]] = {}
     for event in events:
         about = event.get("data") or {}
         goal = about.get("goal")
-        if about.get("what") == TAKEN_UP:
+        if about.get("what") == RESUMED:
             for each in goals.values():
                 each["ended"] = min(each["ended"], event["stamp"])
         if goal and event.get("kind") == "sent":

@@ -11,7 +11,7 @@ from starlette.requests import Request
 
 from naoqi.errors import NaoError
 
-from ...study.protocol import NOTHING
+from ...study.conditions import NOTHING
 from ...study.studies import Studies
 from ...study.table import ConditionSummary, summaries_of, table_of
 from ..frame import framed, page_at
@@ -47,12 +47,20 @@ def build(console: Any, studies: Studies) -> None:
                     f"/study/results?robot={quote(page.robot.name)}&study={quote(event.value)}"
                 ),
             ).classes("min-w-[16rem]")
+            by_round = request.query_params.get("by_round") == "1"
             try:
-                trials, gaps, summaries = await page.work(_results_of, studies, chosen)
+                trials, gaps, summaries = await page.work(_results_of, studies, chosen, by_round)
             except NaoError as error:
                 ui.label(str(error)).classes("text-negative")
                 return
             _trials(page, trials)
+            ui.switch(
+                "By round",
+                value=by_round,
+                on_change=lambda event: ui.navigate.to(
+                    f"/study/results?robot={quote(page.robot.name)}&study={quote(chosen)}&by_round={int(event.value)}"
+                ),
+            )
             for trial, gap in gaps:
                 ui.label(f"{trial}: {gap}").classes("text-negative")
             _summaries(summaries)
@@ -61,14 +69,19 @@ def build(console: Any, studies: Studies) -> None:
                 table = await page.work(lambda: table_of(studies.files, chosen).csv().encode())
                 ui.download(table, f"{chosen}.csv", "text/csv")
 
-            ui.button("Table as CSV", icon="download", on_click=download).props("no-caps")
+            async def download_trials() -> None:
+                table = await page.work(lambda: table_of(studies.files, chosen).trials_csv().encode())
+                ui.download(table, f"{chosen}_trials.csv", "text/csv")
+
+            ui.button("Table as CSV, a row a step", icon="download", on_click=download).props("no-caps")
+            ui.button("A row a trial", icon="download", on_click=download_trials).props("no-caps")
 
 
-def _results_of(studies: Studies, study: str) -> tuple[list[Any], Any, list[ConditionSummary]]:
+def _results_of(studies: Studies, study: str, by_round: bool) -> tuple[list[Any], Any, list[ConditionSummary]]:
     """The newest trials of a study with their states, gaps, and what was measured in all. Reads all its files."""
     table = table_of(studies.files, study)
     trials = sorted(studies.files.trials(study), key=lambda trial: trial.path.stat().st_mtime)[-MOST_TRIALS:]
-    return [(each, each.state()) for each in trials], table.gaps, summaries_of(table)
+    return [(each, each.state()) for each in trials], table.gaps, summaries_of(table, by_round)
 
 
 def _trials(page: Any, trials: list[Any]) -> None:
@@ -97,6 +110,7 @@ def _summaries(summaries: list[ConditionSummary]) -> None:
         {"name": name, "label": label, "field": name, "align": "left", "sortable": True}
         for name, label in (
             ("label", "Step"),
+            ("round", "Round"),
             ("condition", "Condition"),
             ("count", "Times"),
             ("answers", "Answers"),
@@ -109,6 +123,7 @@ def _summaries(summaries: list[ConditionSummary]) -> None:
         {
             "id": i,
             "label": each.label,
+            "round": each.round,
             "condition": each.condition,
             "count": each.count,
             "answers": ", ".join(f"{answer} {count}" for answer, count in sorted(each.answers.items())),
@@ -142,7 +157,7 @@ def _plot(title: str, summaries: list[ConditionSummary], series: list[Any], lege
                 "grid": {"left": 40, "right": 10, "top": 40, "bottom": 60},
                 "xAxis": {
                     "type": "category",
-                    "data": [_levels(each.condition) for each in summaries],
+                    "data": [_levels(each) for each in summaries],
                     "axisLabel": {"interval": 0, "color": "#888", "lineHeight": 15},
                 },
                 "yAxis": {"type": "value", "axisLabel": {"color": "#888"}},
@@ -171,9 +186,10 @@ def colours_of(answers: Iterable[str]) -> dict[str, str]:
     return {**{answer: COLOURS[i % len(COLOURS)] for i, answer in enumerate(known)}, NOTHING: GREY}
 
 
-def _levels(condition: str) -> str:
-    """The levels of a condition beneath each other."""
-    return "\n".join(part.partition(": ")[2] or part for part in condition.split(", "))
+def _levels(summary: ConditionSummary) -> str:
+    """The levels of a condition beneath each other, and the round."""
+    levels = [part.partition(": ")[2] or part for part in summary.condition.split(", ")]
+    return "\n".join([*levels, *([f"round {summary.round}"] if summary.round else [])])
 
 
 def _number(value: float | None) -> float | None:

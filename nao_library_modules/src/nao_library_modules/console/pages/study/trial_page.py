@@ -20,13 +20,13 @@ from ....behaviors.language.expressions import text_of
 from ...files.yaml_file import ConsoleFileError
 from ...study.checking import checked_for
 from ...study.conditions import filled
-from ...study.course import all_steps
+from ...study.course import all_steps, any_round
 from ...study.errors import StudyError
 from ...study.order import order_of
 from ...study.protocol import BAG_TOPICS, BranchStep, ChoiceStep, RoundsStep, StudyProtocol, WantedRecordings
 from ...study.reader import read_protocol
 from ...study.runner import TrialRunner
-from ...study.state import DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, SKIPPED, STOPPED, TIMEOUT, TrialState
+from ...study.state import CUT, DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, SKIPPED, STOPPED, TIMEOUT, TrialState
 from ...study.studies import Studies
 from ..frame import framed, page_at, sure
 from .links import study_links
@@ -55,9 +55,10 @@ ICONS = {
     FAILED: "error",
     REPEATED: "replay",
     STOPPED: "stop_circle",
+    CUT: "content_cut",
 }
 STATUS_COLOURS = {RUNNING: "positive", PAUSED: "warning", HELD: "negative"}
-SHORTCUTS = {"p": "pause or go on", "n": "next", "r": "repeat", "m": "write a note", "1..9": "a choice"}
+SHORTCUTS = {"p": "pause or continue", "n": "next", "r": "repeat", "m": "write a note", "1..9": "a choice"}
 
 
 def build(console: Any, studies: Studies) -> None:
@@ -155,7 +156,7 @@ class _StudyPage:
                         if state.recordings:
                             ui.badge(f"records {', '.join(state.recordings)}").props("color=negative")
                         ui.button(
-                            "Take up again", icon="restart_alt", on_click=lambda _, each=folder.id: self._take_up(each)
+                            "Resume", icon="restart_alt", on_click=lambda _, each=folder.id: self._resume(each)
                         ).props("no-caps")
                         ui.button(
                             "Abort",
@@ -176,7 +177,7 @@ class _StudyPage:
                 self._bag = ui.checkbox("Rosbag")
                 self._video = ui.checkbox("Video of the camera")
                 self._sound = ui.checkbox("Sound of the microphones")
-            self._begin_button = ui.button("Begin trial", icon="play_arrow", on_click=self._begin).props("no-caps")
+            self._begin_button = ui.button("Start trial", icon="play_arrow", on_click=self._begin).props("no-caps")
             self._problems = ui.column().classes("text-negative gap-0").props('role="alert"')
         with ui.expansion("Protocol as YAML", icon="edit").classes("w-full"):
             self._name = ui.input("Name", value=NEW).props("maxlength=64")
@@ -266,10 +267,10 @@ class _StudyPage:
         more = {"record": wanted, "values": values, "stops": self.robot.stops}
         await self._try(lambda: self.studies.begin(protocol, pseudonym, self.robot, by, **more))
 
-    async def _take_up(self, trial: str) -> None:
+    async def _resume(self, trial: str) -> None:
         if self.page.operate():
             by, stops = self.page.visitor.name, self.robot.stops
-            await self._try(lambda: self.studies.take_up(trial, self.robot, by, stops=stops))
+            await self._try(lambda: self.studies.resume(trial, self.robot, by, stops=stops))
 
     async def _give_up(self, trial: str) -> None:
         if self.page.operate() and await _sure_to_abort(trial):
@@ -380,8 +381,8 @@ class _StudyPage:
                 elif isinstance(step, RoundsStep):
                     ui.label(f"{path} {step.count} rounds").classes("italic")
                 else:
-                    self._marks[_any_round(path)] = ui.icon(ICONS[""]).props('role="img" aria-label="to come"')
-                    self._texts[_any_round(path)] = (ui.label(), f"{path} {step.text}")
+                    self._marks[any_round(path)] = ui.icon(ICONS[""]).props('role="img" aria-label="to come"')
+                    self._texts[any_round(path)] = (ui.label(), f"{path} {step.text}")
         if len(steps) > MOST_STEPS:
             ui.label(f"and {len(steps) - MOST_STEPS} steps more").classes("italic")
 
@@ -410,9 +411,9 @@ class _StudyPage:
         outcome = runner.outcome
         self._status.text = state.status
         self._status.props(f"color={STATUS_COLOURS.get(state.status, 'grey')}")
-        self._now.text = runner.title or (f"paused behind step {state.path}" if state.path else "it begins")
+        self._now.text = runner.title or (f"paused behind step {state.path}" if state.path else "it starts")
         self._error.text = outcome.error if outcome is not None and state.status == HELD else ""
-        self._pause.text = "Go on" if state.status in (PAUSED, HELD) else "Pause"
+        self._pause.text = "Continue" if state.status in (PAUSED, HELD) else "Pause"
         if tuple(state.recordings) != self._recordings:
             self._recordings = tuple(state.recordings)
             self._recorded.clear()
@@ -443,7 +444,7 @@ class _StudyPage:
                     ui.button(text, on_click=lambda _, each=choice: self._choose(each)).props("no-caps size=lg")
 
     def _update_marks(self, state: TrialState) -> None:
-        latest = {_any_round(outcome.path): outcome for outcome in state.outcomes}
+        latest = {any_round(outcome.path): outcome for outcome in state.outcomes}
         for path, mark in self._marks.items():
             outcome = latest.get(path)
             kind = "" if outcome is None else RUNNING if outcome.ended is None else outcome.outcome
@@ -520,8 +521,3 @@ class _StudyPage:
 
 async def _sure_to_abort(trial: str) -> bool:
     return await sure(f"Abort trial {trial}? What was logged stays.", "Abort the trial", "Do not abort")
-
-
-def _any_round(path: str) -> str:
-    """A path with all its rounds taken for the first one, as the list of steps has it."""
-    return ".".join("r1" if part[0] == "r" else part for part in path.split("."))
