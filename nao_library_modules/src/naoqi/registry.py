@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import atexit
+import gc
+import sys
 import threading
+from types import FunctionType
 from typing import Dict, Optional, Tuple
 
 from .errors import BadArguments, RobotUnreachable
@@ -22,14 +25,12 @@ class Registry:
         self._lock = threading.Lock()  # guards both tables
         self._connections: Dict[Tuple[str, int], Connection] = {}
         self._wanted: Dict[Connection, int] = {}
-        self._closed_at_exit = False
+        # From the import on: what a program registers afterwards is called before, and reaches the robot.
+        atexit.register(self._end)
 
     def get(self, host: str, port: int, wait: bool, limit: Optional[float], timing: Optional[Timing]) -> Connection:
         """The connection to an address; see `connection`."""
         with self._lock:
-            if not self._closed_at_exit:
-                self._closed_at_exit = True
-                atexit.register(self._end)
             found: Optional[Connection] = self._connections.get((host, port))
             if found is None or found.state is State.CLOSED:
                 self._wanted.pop(found, None)
@@ -56,6 +57,8 @@ class Registry:
 
     def _end(self) -> None:
         """Close every connection at the end of the program: libqi's threads must not meet one that is taken down."""
+        if self._connections:
+            _end_objects_of_the_program()
         self.close_all()
         wait_until_idle(IDLE_LIMIT)
 
@@ -69,6 +72,20 @@ class Registry:
                 self._connections.pop((connection.host, connection.port), None)
         if unwanted:
             connection.close()
+
+
+def _end_objects_of_the_program() -> None:
+    """Let go of the objects that the program keeps in its own module, as Python is about to do.
+
+    What their `__del__` sends reaches the robot: Python calls it when the connections have closed.
+    """
+    main = vars(sys.modules["__main__"])
+    value = None
+    for name, value in list(main.items()):
+        if type(value).__module__ == "__main__" or isinstance(getattr(type(value), "__del__", None), FunctionType):
+            main[name] = None
+    del value
+    gc.collect()
 
 
 _registry = Registry()

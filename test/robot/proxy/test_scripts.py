@@ -68,6 +68,26 @@ test.add(1, 2)
 {last}
 """
 
+LAST_WISHES = """
+import atexit
+import sys
+from naoqi import ALProxy
+
+class Robot:
+    def __init__(self):
+        self.test = ALProxy("ALTest", "127.0.0.1", int(sys.argv[1]))
+
+    def __del__(self):
+        print("__del__", self.test.add(1, 2))
+
+class App:
+    def __init__(self):
+        self.robot = Robot()
+
+app, robot = App(), Robot()
+atexit.register(lambda: print("atexit", robot.test.add(3, 4)))
+"""
+
 
 def run(script, robot, **options):
     command = [sys.executable, "-c", script, str(robot.port)]
@@ -78,6 +98,11 @@ def test_a_program_of_the_sdk_runs_with_python_3_syntax_only(robot):
     result = run(SDK_STYLE, robot)
     assert result.stdout == "hello you! 0\nhello you! 1\n"
     assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_what_a_program_sends_at_its_end_is_heard(robot):
+    result = run(LAST_WISHES, robot)
+    assert result.stdout == "atexit 7\n__del__ 3\n__del__ 3\n" and (result.returncode, result.stderr) == (0, "")
 
 
 @pytest.mark.parametrize(
