@@ -14,6 +14,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any, Callable
 
+from nao_sim_bridge.base.closing import CLOSE_LIMIT
 from nao_sim_bridge.base.errors import BadValue, SimulationStopped, TaskKilled
 from nao_sim_bridge.base.limits import kind
 from nao_sim_bridge.base.tasks import Task, TaskIds, stopped_error
@@ -101,7 +102,7 @@ class SimulationRunner:
     def start(self) -> None:
         self._thread.start()
 
-    def stop(self, timeout: float = 5.0) -> None:
+    def stop(self, timeout: float = CLOSE_LIMIT) -> None:
         """End the thread, wait for it (wall time, s) and free the simulation; everybody who waits gets an error."""
         with self._wake:
             self._stopping = True
