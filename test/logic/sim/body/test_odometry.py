@@ -31,3 +31,19 @@ def test_a_foot_that_is_pressed_from_above_hands_over_to_none_in_the_air():
     for _ in range(2):  # the foot that takes over is on the ground from the next time on
         now = odometry.update(on_the_left, (0.0, LEAN, 0.0), (-5.0, 0.0))
     assert now.position == pytest.approx(before.position)
+
+
+def test_the_torso_goes_on_while_a_landing_bounces_and_holds_where_nothing_carries():
+    odometry, angles = Odometry(MODEL, INIT, (0.0, LEAN, 0.0)), [*INIT]
+
+    def gone(loads, swing):
+        """How far ahead it goes in a tick in which the leg that carries swings so far, m."""
+        before = odometry.torso.position
+        for joint in ("LHipPitch", "LAnklePitch"):
+            angles[MODEL.joint_index[joint]] += swing if joint == "LHipPitch" else -swing
+        return odometry.update(angles, (0.0, LEAN, 0.0), loads).position[0] - before[0]
+
+    over_the_foot = [gone((40.0, 0.0), 0.004) for _ in range(8)][-1]
+    assert over_the_foot > 0.0004
+    assert [gone((0.0, 0.0), 0.0) for _ in range(3)] == pytest.approx([over_the_foot] * 3, rel=0.05)
+    assert [gone((0.0, 0.0), 0.0) for _ in range(20)][-1] == pytest.approx(0.0, abs=1e-9)
