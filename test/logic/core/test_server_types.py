@@ -5,12 +5,20 @@ import sys
 from types import SimpleNamespace
 
 import pytest
+from actionlib.msg import TestAction
 
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.functions.chain import OF_THE_SERVER
 from nao_library_modules.functions.memory_functions import MemoryFunctions
-from nao_library_modules.functions.server_types import ACTIONS, described_type, installed_message, server_type
+from nao_library_modules.functions.server_types import (
+    ACTIONS,
+    described_type,
+    installed_message,
+    require_fields,
+    server_type,
+)
 from nao_library_msgs.msg import LedFunction
+from naoqi.errors import NaoError
 
 
 def test_a_message_is_known_by_its_name_where_it_is_built():
@@ -27,7 +35,8 @@ def test_a_name_imports_no_module_that_is_no_message(name, tmp_path, monkeypatch
         (tmp_path / file).write_text("raise SystemExit('a name has run a module')\n")
     monkeypatch.syspath_prepend(str(tmp_path))
     assert installed_message(name) is None and "greeter" not in sys.modules
-    with pytest.raises(BadGoal, match="not known to this process"):
+    monkeypatch.setattr(sys, "argv", ["/opt/nao_behavior_server"])
+    with pytest.raises(BadGoal, match="nao_behavior_server does not find the messages of greet.*start it again"):
         described_type("greet", SimpleNamespace(action=name, message=name))
 
 
@@ -38,3 +47,12 @@ def test_all_fields_of_a_message_are_never_taken_for_the_parameters_of_a_functio
     for function in {**MemoryFunctions.functions, **server.module.declared_functions()}.values():
         with pytest.raises(TypeError):
             inspect.signature(function).bind("self", *fields)
+
+
+def test_an_action_of_a_users_own_that_lacks_fields_is_refused_with_all_of_them():
+    for name in ACTIONS:
+        require_fields(server_type(name).action)
+    with pytest.raises(
+        NaoError, match="TestAction lacks functions in its goal, .* results in its result, index in its"
+    ):
+        require_fields(TestAction)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -10,6 +11,8 @@ from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+
+from naoqi.errors import NaoError
 
 from ..base.errors import BadGoal
 from ..base.suggestion import of_those
@@ -19,6 +22,13 @@ DESCRIBE = "/describe"
 MESSAGE = re.compile(r"[A-Za-z]\w*/[A-Za-z]\w*", re.ASCII)
 """Name of a message, as package/Name."""
 PACKAGE = "nao_library_actions"
+FIELDS = {
+    "goal": ("functions",),
+    "function message": ("function", "time", "str_param"),
+    "result": ("memList", "results"),
+    "feedback": ("index", "function", "count", "waiting"),
+}
+"""What each action of a server has, whoever wrote it."""
 SERVERS = {
     "NaoLights": ("NaoLed", "lights.server.NaoLights"),
     "NaoMotion": ("NaoMotion", "motion.server.NaoMotion"),
@@ -83,15 +93,48 @@ def described_type(name: str, response: Any) -> ServerType:
     """The types of a server that is none of this package's, as it describes itself.
 
     `name`: its relative name. `response`: DescribeFunctionsResponse of its service NAME/describe. Raises BadGoal if its
-    messages are not known in this process.
+    messages are not found by this process.
     """
-    types = [
-        installed_message(kind) for kind in (f"{response.action}Action", f"{response.action}Goal", response.message)
-    ]
+    kinds = (f"{response.action}Action", f"{response.action}Goal", response.message)
+    types = [installed_message(kind) for kind in kinds]
     if None in types:
-        problem = f"its messages {response.action} and {response.message} are not known to this process"
-        raise BadGoal("step", name, "a server whose messages are built, in a workspace that was sourced", problem)
+        process = _this_process()
+        packages = " and ".join(dict.fromkeys(kind.partition("/")[0] for kind, found in zip(kinds, types) if not found))
+        cure = (
+            f"build {packages}, source devel/setup.bash of its workspace, and in that shell start it again, with the"
+            " launch file that it belongs to"
+        )
+        raise BadGoal("step", name, cure, f"{process} does not find the messages of {name}, of the package {packages}")
     return ServerType(name, *types, path="")
+
+
+def _this_process() -> str:
+    """The name by which people know this process: of its node, else of its program."""
+    import rospy
+
+    return rospy.get_name() if rospy.core.is_initialized() else Path(sys.argv[0]).name
+
+
+def require_fields(action: type) -> None:
+    """See that an action has the fields that every server fills and reads.
+
+    Raises NaoError that names those which are missing.
+    """
+    parts = action()
+    goal = parts.action_goal.goal
+    kind = goal._slot_types[0] if goal.__slots__ else ""
+    function = _message_type(kind) if kind.endswith("[]") and "/" in kind else None
+    there = {
+        "goal": goal.__slots__,
+        "function message": function.__slots__ if function else (),
+        "result": parts.action_result.result.__slots__,
+        "feedback": parts.action_feedback.feedback.__slots__,
+    }
+    missing = [
+        f"{field} in its {part}" for part, fields in FIELDS.items() for field in fields if field not in there[part]
+    ]
+    if missing:
+        raise NaoError(f"the action {action._type} lacks {', '.join(missing)}; docs/your_own.md shows one that has all")
 
 
 def installed_message(name: str) -> Any:

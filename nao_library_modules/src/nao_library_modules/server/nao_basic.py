@@ -27,6 +27,7 @@ from ..functions.goal_checks import GoalCheck, check_goals
 from ..functions.memory_functions import MEMORY, MemoryFunctions
 from ..functions.parts import Part, bound, copied, joined
 from ..functions.runner import FunctionRunner
+from ..functions.server_types import require_fields
 from ..processes.closing import close_all
 from ..processes.launcher import LaunchPath, launch_supervisor
 from ..processes.supervisor import Supervisor
@@ -210,8 +211,9 @@ class NaoBasic(FunctionRunner):
         """Start the action server, its services and the diagnostics: the last line of a module's constructor.
 
         `name`: relative name of the action. `action`: its type; the first field of the goal is the array of function
-        messages.
+        messages. Raises NaoError if it lacks a field that servers need.
         """
+        require_fields(action)
         self.chain.server = name
         self._take_types(action)
         self.server = self._served = self._node.action_server(name, action, self._execute, self.interrupt.trigger)
