@@ -26,7 +26,7 @@ USES = (
     (r"call vision|nao photo|record video", {"eyes"}),
     (r"sim touch|call tactile|nao_sim/touch", {"touch"}),
     # These ask, or do what disturbs nobody.
-    (r"nao (status|list|help|behaviors|get|set|watch|files|completion|sim picture)", set()),
+    (r"nao (status|list|help|behaviors|get|set|watch|files|completion|sim picture|sim film)", set()),
     (r"rostopic (echo|list)|rosservice list|nao_memory|get_installed_behaviors|/describe", set()),
     (r"robot_state\.py|getAngles|systemVersion|import almath", set()),
 )

@@ -18,6 +18,7 @@ from wrong_behaviors import GOOD, LINE, WRONG, wrong_text
 from nao_library_modules.cli.app import COMMANDS, nao
 from nao_library_modules.cli.bash_completion import LineComplete
 from nao_library_modules.cli.chain_text import Angle, build_message, read_chain, read_value
+from nao_library_modules.cli.commands import simulator_commands
 from nao_library_modules.cli.graph import START
 from nao_library_modules.cli.output import say_result
 from nao_library_msgs.msg import (
@@ -33,7 +34,7 @@ from nao_library_msgs.msg import (
     RecordedFile,
     RecordedVideo,
 )
-from nao_library_msgs.srv import CheckGoalsResponse, ListBehaviorsResponse
+from nao_library_msgs.srv import CheckGoalsResponse, ListBehaviorsResponse, StartFilmResponse, StopFilmResponse
 
 ABORTED = GoalStatus.ABORTED
 
@@ -119,6 +120,31 @@ def test_files_come_to_where_the_user_is_and_replace_none_unasked(run, recorder,
     assert list(recorder.iterdir()) == []
 
 
+@pytest.mark.parametrize("more, status", [((), 0), (("--for", "5"), 130)])
+def test_a_film_that_is_interrupted_is_complete_and_comes_to_where_the_user_is(
+    run, graph, sent, tmp_path, monkeypatch, more, status
+):
+    asked, made = [], tmp_path / "made.mp4"
+
+    def start(request):
+        asked.append((request.view, request.width, request.height))
+        return StartFilmResponse(success=True, path=str(made))
+
+    def stop(_request):
+        made.write_bytes(b"film")
+        return StopFilmResponse(success=True, path=str(made), length=rospy.Duration(2))
+
+    def interrupt(_seconds):
+        raise KeyboardInterrupt
+
+    graph(services={"/nao_sim/film/start": start, "/nao_sim/film/stop": stop})
+    monkeypatch.setattr(simulator_commands, "start_node", lambda: None)
+    monkeypatch.setattr(rospy, "sleep", interrupt)
+    ended = run("sim", "film", str(tmp_path / "x.mp4"), "--view", "face", *more)
+    assert (ended.exit_code, ended.stdout) == (status, f"{tmp_path}/x.mp4: 2.00 s\n"), ended.stderr
+    assert asked == [("face", 480, 480)] and (tmp_path / "x.mp4").read_bytes() == b"film"
+
+
 def test_a_file_that_came_meanwhile_is_not_replaced_and_one_in_a_folder_has_the_servers_name(
     run, recorder, sent, tmp_path
 ):
@@ -197,20 +223,30 @@ def test_where_a_motion_is_that_was_cut_short_is_told(run, graph, sent, interrup
     assert (result.exit_code, result.stdout) == (status, "written: /wave.yaml\n")
 
 
-def test_a_new_study_balances_its_conditions_and_ends_without_a_master(run, graph, tmp_path, monkeypatch):
+def test_a_new_study_balances_its_conditions_keeps_its_results_and_ends_without_a_master(
+    run, graph, tmp_path, monkeypatch
+):
     run("new", "study", "greeting", "--folder", str(tmp_path))
     study = runpy.run_path(str(tmp_path / "greeting" / "scripts" / "greeting.py"))
     assert sorted(study["balanced"](("red", "green"), 6, 1)) == ["green"] * 3 + ["red"] * 3
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
+    results = tmp_path / "greeting" / "results"
+    assert study["place_for"]("") == results / "greeting.csv"
+    (results / "greeting.csv").touch()
+    assert study["place_for"]("") == results / "greeting-2.csv"
     monkeypatch.setattr("sys.argv", ["greeting.py", "--output", str(tmp_path / "trials.csv")])
     with pytest.raises(SystemExit, match="there is no ROS master"):
         study["main"]()
     (node,) = ElementTree.parse(tmp_path / "greeting" / "greeting.launch").iter("node")
-    given = {"trials": "8", "output": "a.csv", "overwrite": "false", "timeout": "", "seed": ""}
+    monkeypatch.setenv("PWD", "/home/me")  # nodes themselves begin in another folder
+    given = {"trials": "8", "output": "", "overwrite": "false", "timeout": "", "seed": ""}
     for more, words_ in (
         ({}, ""),
-        ({"overwrite": "true", "timeout": "5", "seed": "0"}, " --overwrite --timeout 5 --seed 0"),
+        ({"output": "a.csv"}, " --output /home/me/a.csv"),
+        ({"output": "/tmp/a.csv", "timeout": "5", "seed": "0"}, " --output /tmp/a.csv --timeout 5 --seed 0"),
+        ({"overwrite": "true"}, " --overwrite"),
     ):
-        assert resolve_args(node.get("args"), {"arg": {**given, **more}}) == "--trials 8 --output a.csv" + words_
+        assert resolve_args(node.get("args"), {"arg": {**given, **more}}) == "--trials 8" + words_
 
 
 @pytest.mark.parametrize("name, kind", [("nao_library_msgs", "ROS package"), ("queue", "Python module")])
@@ -525,6 +561,7 @@ def test_values_of_another_type_are_refused():
         ({"results": [{"function": "f", "values": ["1"]}, {"function": "g", "values": ["2"]}]}, "f: 1\ng: 2\n", ""),
         ({"results": [{"function": "f", "values": [], "error": "no"}]}, "", "f: no\n"),
         ({"results": [], "name": ["HeadYaw", "Head"], "position": [0.5, 0.25]}, "HeadYaw  0.5\nHead     0.25\n", ""),
+        ({"touched": ["front head"], "touch_times": [1795982312.34567]}, "front head  1795982312.346\n", ""),
     ],
 )
 def test_answers_are_printed_with_what_failed(capsys, result, out, err):

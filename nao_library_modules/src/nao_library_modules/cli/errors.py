@@ -20,6 +20,6 @@ class StackMissing(click.ClickException):
 
 
 class CommandInterrupted(click.ClickException):
-    """Somebody pressed Ctrl-C; the goal that ran is over."""
+    """Somebody pressed Ctrl-C; what ran is over."""
 
     exit_code = INTERRUPTED

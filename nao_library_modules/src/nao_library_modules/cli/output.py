@@ -57,7 +57,8 @@ def words(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):
-        return f"{value:.6g}"
+        # Times of ROS are seconds since 1970: six digits of them would be days.
+        return f"{value:.3f}" if 1e6 <= abs(value) < 1e15 else f"{value:.6g}"
     if isinstance(value, Mapping):
         return ", ".join(f"{name} {words(entry)}" for name, entry in value.items() if filled(entry))
     if isinstance(value, (list, tuple)):

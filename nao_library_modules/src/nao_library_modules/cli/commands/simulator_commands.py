@@ -7,16 +7,20 @@ from typing import Any
 import click
 
 from ...base.errors import BadGoal
+from ...base.limits import limit
 from ...nao.touch_names import GROUPS, SENSORS, devices_of, names_of
 from ..chain_text import Number
-from ..errors import CommandFailed
+from ..errors import CommandFailed, CommandInterrupted
 from ..files import bring, names_file, overwrite_option, passing_name, wanted_file
 from ..goals import start_node
 from ..output import say_json
 from ..settings import CliSettings, NaoGroup, OneOf, SignedCommand, settings_of
 from ..stack import SIMULATOR
 
-VIEWS = ("front", "three_quarter", "side", "back", "far", "room", "face")
+VIEWS = ("front", "three_quarter", "side", "back", "stage", "far", "room", "face")
+LONGEST_FILM = limit("recording").highest
+"""s of a film that ends with Ctrl-C."""
+view_option = click.option("--view", type=OneOf(VIEWS), default="three_quarter", show_default=True, help="From where.")
 
 
 @click.group(cls=NaoGroup, name="sim")
@@ -89,7 +93,7 @@ def push(context: click.Context, force: tuple[float, float, float], seconds: flo
 
 @sim_command.command("picture")
 @click.argument("file", default="", type=click.Path())
-@click.option("--view", type=OneOf(VIEWS), default="three_quarter", show_default=True, help="From where.")
+@view_option
 @click.option("--size", default="640x480", show_default=True, metavar="WxH", help="In pixels.")
 @overwrite_option
 @click.pass_context
@@ -115,6 +119,59 @@ def read_size(text: str) -> tuple[int, int]:
     if not (by and width.isdigit() and height.isdigit()):
         raise click.UsageError(f"{text!r} is no size: 640x480")
     return int(width), int(height)
+
+
+@sim_command.command("film")
+@click.argument("file", default="", type=click.Path())
+@click.option(
+    "--for", "seconds", type=Number("recording"), metavar="S", help="How long, in its time; without: until Ctrl-C."
+)
+@view_option
+@click.option("--size", default="480x480", show_default=True, metavar="WxH", help="In pixels, even numbers.")
+@click.option(
+    "--rate", type=Number("frame rate"), default=20.0, show_default=True, metavar="HZ", help="Frames a second."
+)
+@click.option("--caption", default="", metavar="TEXT", help="A line of text in the film.")
+@overwrite_option
+@click.pass_context
+def film(
+    context: click.Context,
+    file: str,
+    seconds: float | None,
+    view: str,
+    size: str,
+    rate: float,
+    caption: str,
+    overwrite: bool,
+) -> None:
+    """Film from outside, with what the robot says, into FILE (mp4) or a folder.
+
+    Without FILE it stays in the simulator's folder. A film that Ctrl-C ends is complete.
+    """
+    import rospy
+
+    from nao_library_msgs.srv import CaptionFilm, StartFilm, StopFilm
+
+    settings = settings_of(context)
+    target = wanted_file(file, overwrite, ["mp4"])
+    width, height = read_size(size)
+    name = f"{passing_name()}.mp4" if names_file(target) else ""
+    start_node()
+    _call(settings, "film/start", StartFilm, file=name, view=view, width=width, height=height, frame_rate=rate)
+    try:
+        if caption:
+            _call(settings, "film/caption", CaptionFilm, text=caption)
+        rospy.sleep(LONGEST_FILM if seconds is None else seconds)
+    except KeyboardInterrupt:
+        if seconds is not None:
+            raise CommandInterrupted("the film ended before its time") from None
+    finally:
+        answer = _call(settings, "film/stop", StopFilm)
+        path = bring(answer.path, target, overwrite)
+        if settings.json:
+            say_json({"path": path, "view": view, "frames": answer.frames, "duration": answer.length})
+        else:
+            click.echo(f"{path}: {answer.length.to_sec():.2f} s")
 
 
 @sim_command.command("advance")
