@@ -153,6 +153,15 @@ def test_volume_makes_it_quieter_and_reset_brings_back_the_start(robot, tts, say
     assert (tts.getVolume(), tts.getVoice()) == (1.0, "naoenu")
 
 
+def test_volumes_beyond_a_limit_are_taken_for_it(robot, tts, caplog):
+    tts.setVolume(1.5)
+    robot.ALAudioDevice.setOutputVolume(-3)
+    assert (tts.getVolume(), robot.ALAudioDevice.getOutputVolume()) == (1.0, 0)
+    told = [record.getMessage() for record in caplog.records if record.name == "nao_sim.limits"]
+    taken = ["volume is 1.5, and taken for 1: allowed is 0 to 1", "volume is -3, and taken for 0: allowed is 0 to 100"]
+    assert told == taken
+
+
 def test_a_voice_preference_is_a_file(robot, tts):
     path = robot.server.files.folder / "ALTextToSpeech_Voice_mine.json"
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -173,7 +182,6 @@ def test_errors_name_what_is_wrong_and_what_is_allowed(tts, refused):
         ("setParameter", ("speed", 20.0), "speed is 20.0, allowed is 50 to 400"),
         ("setParameter", ("pitchShift", 0.25), r"pitchShift is 0.25, allowed is 0 \(off\) or 0.5 to 4"),
         ("getParameter", ("sped",), "parameter is 'sped': did you mean 'speed'\\? allowed is one of"),
-        ("setVolume", (1.5,), "volume is 1.5, allowed is 0 to 1"),
         ("sayToFile", ("text", "one.mp3"), r"pFileName is 'one.mp3', allowed is a name that ends in .wav or .raw"),
         ("loadVoicePreference", ("none",), "no file 'ALTextToSpeech_Voice_none.json'"),
     ]

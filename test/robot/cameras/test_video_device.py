@@ -203,11 +203,17 @@ REFUSED = [
     ("recordVideo", ("looker_0", "../outside", 4, 1), "is not inside"),
     ("recordVideo", ("looker_0", "raw.bin", 0, 1), "totalNumber is 0"),
     ("setParameter", (0, 1, 256), "kCameraContrastID is 256, allowed is 0 to 255"),
-    ("setParameter", (0, 17, 5), "while kCameraAutoExpositionID is 1; set it to 0 first"),
     *(("getParameter", (3, 1), "camera is 3"), ("getParameterRange", (0, 33), "parameter is 33")),
     ("putImage", (0, 4, 4, bytes(47)), r"length of imageBuffer is 47, allowed is 48: 3 bytes \(RGB\) a pixel, 4x4"),
     *(("getImagePositionFromAngularPosition", (TOP, wrong), "AngularPosition") for wrong in ([0.1], [0.1, 2.0])),
 ]
+
+
+def test_what_an_automatic_chooses_cannot_be_set(video):
+    gain, exposure, automatic = 6, 17, 11
+    assert [video.setParameter(TOP, number, 40) for number in (gain, exposure)] == [False, False]
+    assert video.setParameter(TOP, automatic, 0) and video.setParameter(TOP, gain, 40)
+    assert video.getParameter(TOP, gain) == 40
 
 
 def test_what_is_refused_names_what_is_allowed_and_changes_nothing(robot, video):

@@ -47,6 +47,10 @@ RGB = 11
 CHOSEN_BY = {EXPOSURE: AUTO_EXPOSURE, GAIN: AUTO_EXPOSURE, WHITE_BALANCE: AUTO_WHITE_BALANCE}
 
 
+class ChosenAutomatically(BadValue):
+    """A parameter of a camera that an automatic chooses as long as it is on."""
+
+
 class Cameras:
     """The cameras of one robot. Any thread but for `tick`, which is the simulation's.
 
@@ -201,7 +205,8 @@ class Cameras:
 
         Raises:
             BadValue: There is no such camera or parameter, the value is out of range, or the parameter can only be
-                read, at least while an automatic chooses it.
+                read.
+            ChosenAutomatically: An automatic chooses the parameter now.
         """
         camera = self.tables.camera(camera)
         parameter = self.tables.parameter(number)
@@ -214,7 +219,7 @@ class Cameras:
             switch = CHOSEN_BY.get(parameter.id)
             if switch is not None and values[switch]:
                 name = self.tables.parameters[switch].name
-                raise BadValue(parameter.name, value, f"no value while {name} is 1; set it to 0 first")
+                raise ChosenAutomatically(parameter.name, value, f"no value while {name} is 1; set it to 0 first")
             if parameter.id in CHOSEN_BY.values() and values[parameter.id] and not value:
                 # Who turns an automatic off finds what it chose last.
                 for chosen, by in CHOSEN_BY.items():

@@ -7,6 +7,7 @@ are taken out of the text, so that nobody hears them.
 from __future__ import annotations
 
 import logging
+import math
 import re
 from dataclasses import dataclass, replace
 from typing import Any, Callable, Iterator, List, Mapping, Optional, Union
@@ -78,16 +79,22 @@ class TagReader:
 
     def __init__(self, warn: Callable[[str], None] = log.warning) -> None:
         self._warn = warn
-        self._left_out: set[str] = set()
+        self._told: set[str] = set()
 
     def read(self, text: str, prosody: Prosody = PLAIN) -> list[Piece]:
         """Pieces of a text in their order; `prosody` is for where no tag says otherwise."""
         return list(_Reading(self, prosody).pieces(text))
 
+    def limit(self, tag: str, limit: float) -> None:
+        """Say, once for each of the first tags, that its value is beyond what a voice can."""
+        if tag not in self._told and len(self._told) < MOST_TOLD:
+            self._told.add(tag)
+            self._warn(f"tag \\{tag}\\ is taken for {limit:g}, its limit")
+
     def leave_out(self, tag: str, why: str) -> None:
         """Say, once for each of the first tags, that it does nothing."""
-        if tag not in self._left_out and len(self._left_out) < MOST_TOLD:
-            self._left_out.add(tag)
+        if tag not in self._told and len(self._told) < MOST_TOLD:
+            self._told.add(tag)
             self._warn(f"tag \\{tag}\\ is left out of what is said: {why}")
 
 
@@ -136,22 +143,30 @@ class _Reading:
             )
         )
 
+    def _limited(self, tag: str, value: str | None, low: float, high: float) -> float:
+        """The value of a tag, brought to its limit as on a robot; a ValueError for what is no number."""
+        number = _within(value, -math.inf)
+        within = min(max(number, low), high)
+        if within != number:
+            self._reader.limit(f"{tag}={value}", within)
+        return within
+
     # --- tags -----------------------------------------------------------------------------------------------------
 
     def speed(self, value: str | None) -> None:
-        self._changes["rspd"] = _within(value, 50.0, 400.0) / 100.0
+        self._changes["rspd"] = self._limited("rspd", value, 50.0, 400.0) / 100.0
 
     def pitch(self, value: str | None) -> None:
-        self._changes["vct"] = _within(value, 50.0, 200.0) / 100.0
+        self._changes["vct"] = self._limited("vct", value, 50.0, 200.0) / 100.0
 
     def volume(self, value: str | None) -> None:
-        self._changes["vol"] = _within(value, 0.0, 100.0) / 80.0
+        self._changes["vol"] = self._limited("vol", value, 0.0, 100.0) / 80.0
 
     def pause(self, value: str | None) -> list[Piece]:
         return [Pause(min(_within(value, 0.0) / 1000.0, LONGEST_PAUSE))]
 
     def wait(self, value: str | None) -> list[Piece]:
-        return [Pause(_within(value, 0.0, 20.0) * WAIT_UNIT)]
+        return [Pause(self._limited("wait", value, 0.0, 20.0) * WAIT_UNIT)]
 
     def bookmark(self, value: str | None) -> list[Piece]:
         return [Bookmark(int(_within(value, 0, LAST_BOOKMARK)))]

@@ -43,6 +43,14 @@ def test_a_tag_changes_what_comes_behind_it(read, warnings, tag, expected):
     assert not warnings
 
 
+def test_values_beyond_a_limit_are_taken_for_it_and_told_once(read, warnings):
+    for _ in range(2):
+        *_, last = read(r"\rspd=10\ \vct=900\ \vol=150\ loud")
+        assert last.prosody == Prosody(0.5, 2.0, 1.25)
+    told = [r"tag \rspd=10\ is taken for 50", r"tag \vct=900\ is taken for 200", r"tag \vol=150\ is taken for 100"]
+    assert [text.split(",")[0] for text in warnings] == told
+
+
 def test_tags_change_the_parameters_by_their_share_until_a_reset(read):
     assert read("Hello there.") == [Spoken("Hello there.", Prosody())] and read("") == []
     (piece,) = read(r"\rspd=50\quick", Prosody(speed=3.0, pitch=1.5))
@@ -72,7 +80,7 @@ def test_spelling_parts_the_letters_and_phonetic_text_is_not_spoken(read, warnin
     "text",
     [
         r"\emph=2\very \emph=1\good",
-        r"\rspd=1000\very \vct=abc\good",
+        r"\rspd=fast\very \vct=abc\good",
         r"\mrk=70000\very \pau=-5\good",
         r"very \audio=/usr/share/a.wav\good",
         "very\\ good\\",

@@ -34,6 +34,7 @@ def test_a_move_that_is_stopped_ends_on_two_feet(walker, end):
         ("move", (0.0, 0.0, 0.4, [["MaxStepTheta", 0.2], ["Frequency", 1.0]]), (None, None, 0.25)),
         ("moveToward", (0.0, -0.8, 0.0, [["LeftStepHeight", 0.03], ["RightStepHeight", 0.015]]), (None, -0.02, None)),
         ("setWalkTargetVelocity", (0.8, 0.0, 0.0, 1.0), (0.03, None, None)),
+        ("setWalkTargetVelocity", (0.8, 0.0, 0.0, 1.5), (0.03, None, None)),
         ("setWalkTargetVelocity", (1.0, 0.0, 0.0, 1.0, [["MaxStepX", 0.03]], [["MaxStepX", 0.04]]), (0.02, None, None)),
     ],
 )

@@ -117,7 +117,12 @@ class SettingFunctions(Part):
             self._module.after_wait(lambda: self._module.call_now(proxy, "setParameter", CAMERAS[name], number, before))
         if self._ask("setParameter", name, number, value) is False:
             problem = f"the {name} camera refuses"
-            raise BadGoal("values", [value], f"see getParameterRange of parameter {number}", problem=problem)
+            raise BadGoal(
+                "values",
+                [value],
+                f"see getParameterRange of parameter {number}, and whether an automatic chooses it",
+                problem=problem,
+            )
 
     # The nodes that read them
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from typing import Any, Collection, Mapping
 
 from nao_sim_bridge.base.errors import BadValue, UnknownName
+
+log = logging.getLogger("nao_sim.limits")
 
 
 def number(value: Any, field: str, low: float = -math.inf, high: float = math.inf) -> float:
@@ -15,6 +18,15 @@ def number(value: Any, field: str, low: float = -math.inf, high: float = math.in
     if not low <= value <= high:
         raise BadValue(field, value, _range(low, high))
     return float(value)
+
+
+def limited(value: Any, field: str, low: float, high: float) -> float:
+    """`value` as a finite number, brought to the nearer limit with a line in the log; for what robots limit as well."""
+    checked = number(value, field)
+    within = min(max(checked, low), high)
+    if within != checked:
+        log.warning("%s is %g, and taken for %g: allowed is %s", field, checked, within, _range(low, high))
+    return within
 
 
 def whole_number(value: Any, field: str, low: int, high: int) -> int:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import replace
 from typing import Any, Callable
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.cameras.cameras import Cameras
+from nao_sim_bridge.cameras.cameras import Cameras, ChosenAutomatically
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.cameras.video_device_cameras import CameraStates, of_active
 from nao_sim_bridge.naoqi.cameras.video_device_subscribers import Subscriber, VideoSubscribers, tells_success
+
+log = logging.getLogger("nao_sim.cameras")
 
 NATIVE, IDLE_RESOLUTION, IDLE_RATE = 9, 1, 5
 """Colour space that the cameras themselves give, and size and rate of a camera that nobody looks through."""
@@ -126,7 +129,12 @@ class VideoDeviceSettings:
         return self._cameras.parameter(camera, number)
 
     def setParameter(self, camera: int, number: int, value: int) -> bool:
-        self._cameras.set_parameter(camera, number, value)
+        """False, with a line in the log, while an automatic chooses it."""
+        try:
+            self._cameras.set_parameter(camera, number, value)
+        except ChosenAutomatically as error:
+            log.warning("setParameter: %s", error)
+            return False
         return True
 
     def getParameterRange(self, camera: int, number: int) -> list:

@@ -6,11 +6,12 @@ move takes them.
 
 from __future__ import annotations
 
+import math
 from operator import attrgetter
 from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.naoqi.binding.arguments import known
+from nao_sim_bridge.naoqi.binding.arguments import known, limited
 from nao_sim_bridge.naoqi.motion.arguments import pairs
 from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, feet_gait, parameters
 
@@ -45,6 +46,14 @@ def gait_of_feet(left: Any, right: Any, frequency: float) -> FeetGait:
     return feet_gait(values)
 
 
+def frequency_share(value: Any, field: str) -> float:
+    """A share 0..1 of the top frequency; one above 1 is taken for 1, with a line in the log, as on a robot."""
+    share = limited(value, field, -math.inf, 1.0)
+    if share < 0.0:
+        raise BadValue(field, value, "0 to 1")
+    return share
+
+
 def gait_list(which: str) -> list[list[Any]]:
     """Pairs of all parameters that moves may set, in NAOqi's order: their "Default", "Min" or "Max"."""
     if which not in LISTS:
@@ -54,4 +63,7 @@ def gait_list(which: str) -> list[list[Any]]:
 
 def _pairs(config: Any, field: str) -> dict[str, float]:
     given = pairs(config, field, '[["MaxStepX", 0.03], ["StepHeight", 0.02]]')
-    return {name: round(value, DECIMALS) if isinstance(value, float) else value for name, value in given}
+    values = {name: round(value, DECIMALS) if isinstance(value, float) else value for name, value in given}
+    if FREQUENCY in values:  # the one parameter that robots bring to its limit
+        values[FREQUENCY] = frequency_share(values[FREQUENCY], FREQUENCY)
+    return values

@@ -12,7 +12,7 @@ from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.binding.arguments import known, number, vector
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.motion.arguments import require_rising
-from nao_sim_bridge.naoqi.motion.move_config import gait_list, gait_of, gait_of_feet
+from nao_sim_bridge.naoqi.motion.move_config import frequency_share, gait_list, gait_of, gait_of_feet
 from nao_sim_bridge.naoqi.motion.part import MotionPart
 from nao_sim_bridge.walk.footstep_plan import SIDES, FootstepPlan
 from nao_sim_bridge.walk.footsteps import FootPose
@@ -87,7 +87,7 @@ class Walking(MotionPart):
         return self._toward("moveToward", x, y, theta, gait_of(config))
 
     def setWalkTargetVelocity(self, x: float, y: float, theta: float, frequency: float, *configs: Any) -> Task:
-        share = _share(frequency, "frequency", 0.0)
+        share = frequency_share(frequency, "frequency")
         gait = gait_of_feet(*configs, share) if len(configs) == 2 else gait_of(*configs, frequency=share)
         return self._toward("setWalkTargetVelocity", x, y, theta, gait)
 

@@ -10,7 +10,7 @@ from nao_sim_bridge.base.errors import UnknownName
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import Task, WorkThreads
 from nao_sim_bridge.core.robot_runner import RobotRunner
-from nao_sim_bridge.naoqi.binding.arguments import number, one_of
+from nao_sim_bridge.naoqi.binding.arguments import limited, number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.sound.microphone_clients import MicrophoneClients
 from nao_sim_bridge.naoqi.sound.microphone_formats import ALL, HIGH, LOW, MicrophoneFormat, microphone_format
@@ -90,7 +90,7 @@ class ALAudioDevice:
     # --- loudspeakers ---------------------------------------------------------------------------------------------
 
     def setOutputVolume(self, volume: int) -> Task:
-        checked = number(volume, "volume", 0, 100)
+        checked = limited(volume, "volume", 0, 100)
         return self._do(lambda: setattr(self._speakers, "volume", checked), "setOutputVolume")
 
     def getOutputVolume(self) -> int:

@@ -8,7 +8,7 @@ from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.samples import Sound
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
-from nao_sim_bridge.naoqi.binding.arguments import number
+from nao_sim_bridge.naoqi.binding.arguments import limited, number
 from nao_sim_bridge.naoqi.binding.background import Background, Wanted
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.naoqi.sound.player import LoadedSound, Player
@@ -126,14 +126,14 @@ class ALAudioPlayer:
     # --- volume, panorama, pitch ----------------------------------------------------------------------------------
 
     def setVolume(self, sound_id: int, volume: float) -> Task:
-        loaded, checked = self._player.find(sound_id), number(volume, "volume", 0.0, 1.0)
+        loaded, checked = self._player.find(sound_id), limited(volume, "volume", 0.0, 1.0)
         return self._do(lambda: self._player.set_volume(loaded, checked), "setVolume")
 
     def getVolume(self, sound_id: int) -> float:
         return self._player.find(sound_id).volume
 
     def setMasterVolume(self, volume: float) -> Task:
-        checked = number(volume, "volume", 0.0, 1.0)
+        checked = limited(volume, "volume", 0.0, 1.0)
         return self._do(lambda: self._player.set_all(volume=checked), "setMasterVolume")
 
     def getMasterVolume(self) -> float:
@@ -209,7 +209,7 @@ class ALAudioPlayer:
 
 def _volume_and_pan(values: Any) -> tuple[float, float]:
     volume, pan = values or (1.0, 0.0)
-    return number(volume, "volume", 0.0, 1.0), number(pan, "pan", -1.0, 1.0)
+    return limited(volume, "volume", 0.0, 1.0), number(pan, "pan", -1.0, 1.0)
 
 
 def _position(position: float, sound: Sound) -> float:

@@ -11,7 +11,7 @@ from nao_sim_bridge.base.config import LARGEST_FILE, read_bounded
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.record_dir import ClientFiles
 from nao_sim_bridge.base.sizes import load_sizes
-from nao_sim_bridge.naoqi.binding.arguments import number, one_of
+from nao_sim_bridge.naoqi.binding.arguments import limited, number, one_of
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.speech import parameters
 from nao_sim_bridge.speech.clips import Style
@@ -117,7 +117,7 @@ class VoiceSettings:
         return self._volume
 
     def setVolume(self, volume: Any) -> None:
-        self._volume = number(volume, "volume", 0.0, 1.0)
+        self._volume = limited(volume, "volume", 0.0, 1.0)
 
     def getParameter(self, name: str) -> float:
         return self._values[parameters.known(name)]
