@@ -21,7 +21,7 @@ from nao_sim_bridge.testing import StackNotReady, wait_until
 DRIVER = "/usr/bin/chromedriver"
 OPTIONS = ("--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader", "--window-size=1400,1000", "--mute-audio")
 PROGRAM = Path(__file__).with_name("watched_console.py")
-LIMIT = 60.0
+LIMIT = 300.0
 """s of this computer for whatever is waited for."""
 
 

@@ -21,7 +21,7 @@ from websockets.sync.client import connect
 
 from nao_sim_bridge.testing import wait_until
 
-LIMIT = 60.0
+LIMIT = 300.0
 """s of this computer for whatever is waited for."""
 
 
@@ -235,13 +235,21 @@ class StopWatch:
     """Times from a stop to its cancel at a server, s. `topic`: of the cancels."""
 
     def __init__(self, topic="NaoLights/cancel"):
+        import rosgraph
         import rospy
         from actionlib_msgs.msg import GoalID
 
         self._came = threading.Event()
         self._stamp = 0.0
         self._subscriber = rospy.Subscriber(topic, GoalID, self._take, tcp_nodelay=True)
-        wait_until(self._subscriber.get_num_connections, LIMIT, f"the console at {topic}")
+        master, full = rosgraph.Master("/stop_watch"), rospy.resolve_name(topic)
+
+        def all_connected():
+            publishers = dict(master.getSystemState()[0]).get(full, [])
+            of_the_console = any(name.startswith("/nao_console") for name in publishers)
+            return of_the_console and self._subscriber.get_num_connections() >= len(publishers)
+
+        wait_until(all_connected, LIMIT, f"the console at {topic}")
 
     def _take(self, _):
         self._stamp = time.monotonic()

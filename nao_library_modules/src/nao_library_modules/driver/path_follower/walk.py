@@ -143,13 +143,15 @@ def lead(
         robot = locate()
         aim = course.aim(robot)
         report(robot, aim)
+        there = aim.final and reached(aim.place.seen_from(robot), settings)
         if not prepared:
-            if aim.final and reached(aim.place.seen_from(robot), settings) and not legs.walking():
+            if there and not legs.walking():
                 return
             legs.prepare(interrupt)
             prepared = True
             continue  # that took a while: look again
         if mode.round(robot, aim):
             return
-        stuck.check(clock.now(), aim.rest)
+        if not there:  # else it ends its last steps, which takes a while where time is slow
+            stuck.check(clock.now(), aim.rest)
     interrupt.check()
