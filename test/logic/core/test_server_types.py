@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 from actionlib.msg import TestAction
 
+from nao_library_modules.base.document_names import names_of
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.functions.chain import OF_THE_SERVER
 from nao_library_modules.functions.memory_functions import MemoryFunctions
@@ -16,6 +17,7 @@ from nao_library_modules.functions.server_types import (
     installed_message,
     require_fields,
     server_type,
+    servers_among,
 )
 from nao_library_msgs.msg import LedFunction
 from naoqi.errors import NaoError
@@ -56,3 +58,8 @@ def test_an_action_of_a_users_own_that_lacks_fields_is_refused_with_all_of_them(
         NaoError, match="TestAction lacks functions in its goal, .* results in its result, index in its"
     ):
         require_fields(TestAction)
+
+
+def test_a_server_that_is_found_by_two_names_is_one_server():
+    services = [f"/nao1/{name}/{word}" for name in names_of("nao_audio_out") for word in ("describe", "check")]
+    assert "/nao1/NaoAudioOut/describe" in services and servers_among(services) == ["/nao1/nao_audio_out"]

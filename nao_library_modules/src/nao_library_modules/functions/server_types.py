@@ -14,6 +14,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..base.document_names import is_second
 from ..base.errors import BadGoal
 from ..base.suggestion import of_those
 
@@ -43,8 +44,12 @@ ACTIONS = {name: action for name, (action, _) in SERVERS.items()}
 
 
 def servers_among(services: Iterable[str]) -> list[str]:
-    """Names of the servers that describe themselves by one of these services, in their order; full names of both."""
-    return [name[: -len(DESCRIBE)] for name in services if name.endswith(DESCRIBE)]
+    """Names of the servers that describe themselves by one of these services, in their order; full names of both.
+
+    A server that is found by two names is named once, by its own.
+    """
+    names = (name[: -len(DESCRIBE)] for name in services if name.endswith(DESCRIBE))
+    return [name for name in names if not is_second(name)]
 
 
 def those_in(space: str, names: Iterable[str]) -> list[str]:

@@ -16,8 +16,9 @@ from typing import Any
 
 import actionlib
 import rospy
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
+from ..base.document_names import names_of
 from ..processes.heap import Heap
 
 log = logging.getLogger(__name__)
@@ -37,10 +38,26 @@ OVER = frozenset(
 """States of goals that have ended."""
 
 
-class ActionServer(actionlib.ActionServer):
-    """actionlib's, whose status waits until the clients can have noted their goals.
+class _Topics:
+    """Topics of one server under its names, used as one publisher or subscriber."""
 
-    And whose timer does not raise when the node closes its topics while it tells of its goals.
+    def __init__(self, *topics: Any) -> None:
+        self._topics = topics
+
+    def publish(self, message: Any) -> None:
+        for topic in self._topics:
+            topic.publish(message)
+
+    def unregister(self) -> None:
+        for topic in self._topics:
+            topic.unregister()
+
+
+class ActionServer(actionlib.ActionServer):
+    """actionlib's, under a second name as well where `SECOND_NAMES` has one: clients of both share its goals.
+
+    Its status waits until the clients can have noted their goals, and its timer does not raise when the node closes its
+    topics while it tells of its goals.
     """
 
     def __init__(self, *arguments: Any, soonest_status: float = SOONEST_END, **options: Any) -> None:
@@ -50,6 +67,22 @@ class ActionServer(actionlib.ActionServer):
         self._waits_since: float | None = None  # when there was a first status that waits
         self._later: threading.Timer | None = None
         super().__init__(*arguments, **options)
+
+    def initialize(self) -> None:
+        """Make the topics of all names, and one timer."""
+        super().initialize()
+        for name in names_of(rospy.remap_name(self.ns))[1:]:
+            sizes = {"queue_size": self.pub_queue_size}
+            status = rospy.Publisher(f"{name}/status", GoalStatusArray, latch=True, **sizes)
+            self.status_pub = _Topics(self.status_pub, status)
+            self.result_pub = _Topics(self.result_pub, rospy.Publisher(f"{name}/result", self.ActionResult, **sizes))
+            feedback = rospy.Publisher(f"{name}/feedback", self.ActionFeedback, **sizes)
+            self.feedback_pub = _Topics(self.feedback_pub, feedback)
+            sizes = {"queue_size": self.sub_queue_size}
+            goal = rospy.Subscriber(f"{name}/goal", self.ActionGoal, self.internal_goal_callback, **sizes)
+            self.goal_sub = _Topics(self.goal_sub, goal)
+            cancel = rospy.Subscriber(f"{name}/cancel", GoalID, self.internal_cancel_callback, **sizes)
+            self.cancel_sub = _Topics(self.cancel_sub, cancel)
 
     def internal_goal_callback(self, goal: Any) -> None:
         with self.lock:
@@ -118,13 +151,15 @@ class PromptActionServer(actionlib.SimpleActionServer):
     Everything else is actionlib's.
     """
 
-    def __init__(self, name: str, action: type, *arguments: Any, **options: Any) -> None:
-        """As actionlib's; the option `soonest_end` is in s of wall time."""
-        self._soonest_end = options.pop("soonest_end", SOONEST_END)
+    def __init__(
+        self, name: str, action: type, execute: Callable[[Any], None], soonest_end: float = SOONEST_END
+    ) -> None:
+        """Make a server that is not started. `execute`: carries out a goal. `soonest_end`: s of wall time."""
+        self._soonest_end = soonest_end
         self._taken_up = 0.0
         self._no_goal = type(action().action_goal)()
         self._heap = Heap()
-        super().__init__(name, action, *arguments, auto_start=False, **options)
+        super().__init__(name, action, execute, auto_start=False)
         self.action_server = ActionServer(
             name,
             action,

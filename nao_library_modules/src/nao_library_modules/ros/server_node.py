@@ -74,9 +74,7 @@ class ServerNode:
         `execute` carries out a goal, in the server's own thread. `on_preempt` is called under actionlib's lock: it must
         do no more than set a flag.
         """
-        server = PromptActionServer(
-            name, action, execute_cb=execute, soonest_end=self.seconds("soonest_end", SOONEST_END)
-        )
+        server = PromptActionServer(name, action, execute, self.seconds("soonest_end", SOONEST_END))
         server.register_preempt_callback(on_preempt)
         return server
 

@@ -17,6 +17,7 @@ from naoqi.errors import NaoError
 from naoqi.limits import START_PATIENCE, Timing
 
 from ..base.answers import Outcome, values_of
+from ..base.document_names import names_of
 from ..base.errors import FunctionFailed, Preempted, RobotLost, cut
 from ..functions.chain import ChainStep, FunctionTable, require_callable
 from ..functions.check_service import CHECK, CheckService
@@ -230,8 +231,10 @@ class NaoBasic(FunctionRunner):
         description = DescribeService(
             lambda: Description(self.function_table, type(self), action, choices.of), self.robot, lambda: self._running
         )
-        self._node.serve_description(name, description.answer)
-        self._node.serve(name + CHECK, CheckGoals, CheckService(self, action).answer)
+        check = CheckService(self, action)
+        for each in names_of(name):
+            self._node.serve_description(each, description.answer)
+            self._node.serve(each + CHECK, CheckGoals, check.answer)
         self._tell_ready()
 
     def _take_types(self, action: type) -> None:
