@@ -65,7 +65,8 @@ for made in (moves, runs):
 print("went on", flush=True)
 """
 NEW = """
-rospy.wait_for_service("NaoMotion/describe", 60)
+for service in ("NaoMotion/describe", "NaoAudioOut/describe", "nao_controller/part_of_nao_driver"):
+    rospy.wait_for_service(service, 60)
 assert done(touches, NaoTactileAction, tactile("listOnTouch")).memList == ["hello"]
 done(client("NaoLights", NaoLedAction), NaoLedAction, led("on", lights=["FaceLeds"]))
 assert rospy.get_param("robot_description") and rospy.get_param("nao_walker/cmd_vel_timeout") == 0.5

@@ -31,6 +31,8 @@ def test_the_first_line_tells_how_the_robot_is(silent, connected, told):
     unknown = dict.fromkeys(("battery", "posture", "stiffness", "awake"))
     reports = {**dict.fromkeys(LEVELS, 0), "problems": []}
     found = {"robot": "/", "address": ADDRESS, "master": "here", "servers": {}, "diagnostics": reports, **unknown}
+    found["nodes"] = {"nao_driver": ["nao_controller", "nao_speech"]}
     lines = list(status_lines({**found, "silent": silent, "connected": connected}))
+    assert "  nao_driver  nao_controller, nao_speech" in lines
     assert lines[0].endswith(f"/ at {ADDRESS}, {told}")
     assert any(line.endswith("no answer") for line in lines) is bool(silent)

@@ -39,6 +39,19 @@ class Good:
         self.closed = True
 
 
+class Names:
+    """Keeps the names that were registered."""
+
+    def __init__(self):
+        self.registered = []
+
+    def add(self, name, offered):
+        self.registered.append(name)
+
+    def close(self):
+        self.registered.clear()
+
+
 @pytest.fixture
 def parts(monkeypatch):
     """Starts parts whose classes are what the test has for them."""
@@ -47,7 +60,7 @@ def parts(monkeypatch):
 
     def start(**classes):
         monkeypatch.setattr(nao_driver, "part_class", classes.__getitem__)
-        made.append(Driver(None, list(classes)))
+        made.append(Driver(None, list(classes), Names()))
         return made[-1]
 
     yield start
@@ -68,6 +81,7 @@ def test_a_part_that_cannot_be_started_is_tried_again_and_told_of_while_the_othe
     walker, leds = driver.parts
     assert leds.started.wait(60.0) and all(tried.acquire(timeout=60.0) for _ in range(3))
     report = walker.reports()["nao_walker: part"]()
+    assert driver._names.registered == ["/nao_leds"]
     assert report.level == Level.ERROR and report.message == "~cmd_vel_timeout is 'soon': 0 to 3600 s"
     assert leds.reports()["nao_leds: well"]().message == "it runs"
     mended.set()
@@ -108,6 +122,6 @@ def test_a_part_that_runs_is_closed(parts):
 
 def test_a_part_that_ends_while_it_cannot_be_started_ends(monkeypatch):
     monkeypatch.setattr(nao_driver, "part_class", lambda word: {}[word])
-    part = DriverPart("leds", None)
+    part = DriverPart("leds", None, Names())
     part.close()
     assert not part.started.is_set()

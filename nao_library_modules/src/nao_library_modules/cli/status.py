@@ -7,8 +7,10 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from ..driver.parts import PARTS
 from ..nao.body_devices import CHARGE
 from ..ros.health import SILENT
+from ..ros.part_names import PART_OF, parts_among
 from .errors import CommandFailed, StackMissing
 from .goals import start_node
 from .output import table
@@ -38,6 +40,7 @@ def read_status(stack: Stack) -> dict[str, Any]:
         "posture": None,
         "stiffness": None,
         "servers": servers,
+        "nodes": _parts(stack),
         "diagnostics": None,
     }
     found.update(_robot((ip, port)))
@@ -53,6 +56,16 @@ def _server(stack: Stack, name: str) -> dict[str, Any]:
         return {"up": False, "connected": False, "running": [], "index": 0, "problem": error.message}
     running = list(told.running)
     return {"up": True, "connected": told.connected, "running": running, "index": told.index, "problem": ""}
+
+
+def _parts(stack: Stack) -> dict[str, list[str]]:
+    """Node of the driver -> the nodes of nao_robot that are parts of it; relative names."""
+    nodes, found = parts_among(stack.graph.services()), {}
+    for part, _ in PARTS.values():
+        node = nodes.get(stack.namespace + part)
+        if node is not None:
+            found.setdefault(node, []).append(part)
+    return found
 
 
 def _robot(address: tuple[str, int]) -> dict[str, Any]:
@@ -149,6 +162,9 @@ def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
     yield from table(rows)
     yield "servers"
     yield from table([(name, _does(server)) for name, server in found["servers"].items()], "  ")
+    if found["nodes"]:
+        yield f"driver (rosservice call PART{PART_OF}NODE tells what a part has in ROS)"
+        yield from table([(node, ", ".join(parts)) for node, parts in found["nodes"].items()], "  ")
     reports = found["diagnostics"]
     yield "diagnostics: " + ", ".join(
         f"{reports[level]} {level}" for level in LEVELS if reports[level] or level == "ok"

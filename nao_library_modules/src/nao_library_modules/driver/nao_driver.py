@@ -16,6 +16,7 @@ from ..ros.driver_types import require_types
 from ..ros.health import Level, Report, connection_report
 from ..ros.node import own_as_node, robot_address, start_node, take_patience
 from ..ros.node_interface import NodeInterface
+from ..ros.part_names import PartNames
 from .base.node import keep
 from .parts import ALL, PARTS, chosen, part_class
 
@@ -29,12 +30,13 @@ RETRY = 5.0
 class DriverPart:
     """One part of the driver: started in a thread of its own, and tried again as long as that fails."""
 
-    def __init__(self, word: str, robot: Any) -> None:
+    def __init__(self, word: str, robot: Any, names: Any) -> None:
         self.name = PARTS[word][0]
         self._full_name = rospy.resolve_name(self.name)[1:]
         self.started = threading.Event()
         self._word = word
         self._robot = robot
+        self._names = names
         self._ended = threading.Event()
         self._problem = "it is being started"
         self._attempts = 0
@@ -73,6 +75,7 @@ class DriverPart:
                 if self._attempts:
                     log.info("%s: started", self.name)
                 self.started.set()
+                self._names.add(interface.name, interface.offered)
                 return
 
     def _failed(self, error: Exception) -> None:
@@ -86,9 +89,11 @@ class DriverPart:
 class Driver:
     """All chosen parts beside each other."""
 
-    def __init__(self, robot: Any, words: Sequence[str]) -> None:
+    def __init__(self, robot: Any, words: Sequence[str], names: Any) -> None:
+        """Start the parts. `names`: where their names are registered, see `PartNames`."""
         self._robot = robot
-        self.parts = [DriverPart(word, robot) for word in words]
+        self._names = names
+        self.parts = [DriverPart(word, robot, names) for word in words]
 
     def reports(self) -> Mapping[str, Callable[[], Report]]:
         connection = lambda: connection_report(self._robot.address, self._robot.connection)  # noqa: E731
@@ -104,6 +109,7 @@ class Driver:
             end.start()
         for end in ends:
             end.join()
+        self._names.close()
 
 
 def run(description: str, argv: Sequence[str] | None = None) -> int:
@@ -128,6 +134,6 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
         rospy.logfatal("%s", error)
         return 1
     own_as_node(robot, watches=bool(rospy.get_param("~watches", False)))
-    driver = Driver(robot, words)
+    driver = Driver(robot, words, PartNames())
     keep(robot, driver.reports, driver.close)
     return 0

@@ -11,6 +11,7 @@ import rospy
 
 from naoqi.errors import NaoError
 
+from ..base.document_names import names_of
 from ..base.errors import Preempted
 from ..processes.closing import close_all
 from .action_server import ActionServer
@@ -33,13 +34,15 @@ class NodeInterface:
 
     Names are as everywhere in ROS: "speech" is relative to the namespace of the part, "~rate" is the part's own. Types
     are those of this library; others see the names that `driver_types.spoken` gives them.
-    `name`: full name. `namespace`: that the name is in, with a slash at both ends.
+    `name`: full name. `namespace`: that the name is in, with a slash at both ends. `offered`: what was made so far,
+    kind -> full names.
     """
 
     def __init__(self, name: str = "") -> None:
         """Make nothing yet. `name`: of the part, relative to the node's namespace; empty: the node itself."""
         self.name = rospy.resolve_name(name) if name else rospy.get_name()
         self.namespace = self.name.rpartition("/")[0] + "/"
+        self.offered: dict[str, list[str]] = {"publishes": [], "subscribes": [], "services": [], "actions": []}
         self._ends: list[Callable[[], Any]] = []
 
     def resolve(self, name: str) -> str:
@@ -56,12 +59,14 @@ class NodeInterface:
     def publisher(self, name: str, kind: type, **options: Any) -> rospy.Publisher:
         """Publish on a topic; options as rospy.Publisher takes them."""
         publisher = rospy.Publisher(self.resolve(name), spoken(kind), **options)
+        self.offered["publishes"].append(publisher.resolved_name)
         self._ends.append(publisher.unregister)
         return publisher
 
     def subscriber(self, name: str, kind: type, callback: Callable[[Any], Any], **options: Any) -> rospy.Subscriber:
         """Have the messages of a topic; options as rospy.Subscriber takes them."""
         subscriber = rospy.Subscriber(self.resolve(name), spoken(kind), callback, **options)
+        self.offered["subscribes"].append(subscriber.resolved_name)
         self._ends.append(subscriber.unregister)
         return subscriber
 
@@ -75,6 +80,7 @@ class NodeInterface:
         if other:
             raise AlreadyOffered(self.resolve(name), other)
         service = rospy.Service(self.resolve(name), spoken(kind), answer)
+        self.offered["services"].append(service.resolved_name)
         self._ends.append(service.shutdown)
         return service
 
@@ -104,6 +110,7 @@ class NodeInterface:
         """Serve an action. `kind`: its type. `goals`: takes goals and cancels: a ConcurrentActionServer."""
         server = ActionServer(self.resolve(name), spoken(kind), goals.on_goal, goals.on_cancel, auto_start=False)
         server.start()
+        self.offered["actions"] += names_of(server.ns)
         self._ends.append(server.stop)
 
     def if_it_fails(self, action: Callable[[], Any]) -> None:

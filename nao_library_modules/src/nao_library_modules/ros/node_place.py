@@ -38,7 +38,7 @@ def wait_for_name() -> str:
     Returns the name; empty, at once, if none was taken.
     """
     name = os.environ.pop(WAITING, "")
-    while name and _in_use(name):
+    while name and in_use(name):
         time.sleep(PERIOD)
     parameters = json.loads(os.environ.pop(PARAMETERS, "{}"))
     if parameters:
@@ -46,7 +46,7 @@ def wait_for_name() -> str:
     return name
 
 
-def _in_use(name: str) -> bool:
+def in_use(name: str) -> bool:
     """Whether a node of that name runs; without a master nobody can tell, and the wait goes on."""
     try:
         uri = rosgraph.Master(f"{name}_waiting").lookupNode(name)
