@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import rospy
 
@@ -18,8 +17,7 @@ from ..ros.ros_clock import RosClock
 from .action_rules.values import a_place, a_point, a_position
 from .core.process_module import ProcessModule
 from .core.registry import start_process_modules as start_modules
-from .designators.patterns import Mismatch, Pattern
-from .language.failures import PlanError
+from .designators.patterns import taken
 from .language.plans import def_top_level_plan
 from .language.settings import numbers_of_nao
 from .language.space import Point3, Position
@@ -94,7 +92,7 @@ def move_head(
     head, words = Manipulation(this_robot()), numbers_of_nao().head
     if y is None and isinstance(x, str) and x in words:
         return head.turn_head(*words[x])
-    return head.move_head(_taken(a_position(), x if y is None else [x, y] if z is None else [x, y, z]))
+    return head.move_head(taken(a_position(), x if y is None else [x, y] if z is None else [x, y, z]))
 
 
 @def_top_level_plan
@@ -103,7 +101,7 @@ def move_arm(target: Point3 | Sequence[float], side: str) -> Point3:
 
     Returns where the hand is then, in the torso frame.
     """
-    return Manipulation(this_robot()).move_arm(_taken(a_point(), target), side)
+    return Manipulation(this_robot()).move_arm(taken(a_point(), target), side)
 
 
 @def_top_level_plan
@@ -118,7 +116,7 @@ def walk_to(target: Place | Sequence[float]) -> Place:
 
     Returns where the robot is then, in odom.
     """
-    place, frame = _taken(a_place(), target)
+    place, frame = taken(a_place(), target)
     return Navigation(this_robot()).walk_to(place, frame)
 
 
@@ -131,10 +129,3 @@ def text_to_speech(sentence: str) -> None:
 openGripper, closeGripper = open_gripper, close_gripper  # noqa: N816  names of the thesis, here and below
 moveHead, moveArm, goStable = move_head, move_arm, go_stable  # noqa: N816
 walkTo, textToSpeech = walk_to, text_to_speech  # noqa: N816
-
-
-def _taken(pattern: Pattern, value: Any) -> Any:
-    try:
-        return pattern.take(value)
-    except Mismatch:
-        raise PlanError(f"{value!r} is not {pattern.wanted}") from None

@@ -8,6 +8,7 @@ from numbers import Real
 from typing import Any
 
 from ...base.limits import limit
+from ..language.failures import PlanError
 from .designator import Designator
 
 SETTING = limit("setting")
@@ -29,6 +30,14 @@ class Pattern:
     def or_else(self, default: Any) -> Pattern:
         """The same pattern, for an optional key."""
         return Pattern(f"{self.wanted}, or nothing for {default!r}", self.take, default, self.exact)
+
+
+def taken(pattern: Pattern, value: Any) -> Any:
+    """What a pattern makes of a value outside of rules. Raises PlanError if it does not match."""
+    try:
+        return pattern.take(value)
+    except Mismatch:
+        raise PlanError(f"{value!r} is not {pattern.wanted}") from None
 
 
 def anything() -> Pattern:

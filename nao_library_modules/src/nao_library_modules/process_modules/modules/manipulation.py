@@ -22,6 +22,7 @@ from ..language.failures import (
     PtuGoalUnreachable,
 )
 from ..language.space import Point3, head_angles
+from ..robot.chains import Chain
 from ..robot.robot_link import TORSO
 from .robot_module import RobotModule
 
@@ -116,6 +117,11 @@ class Manipulation(RobotModule):
             raise self._not_reached(side, reached, opening)
         return reached
 
+    def gripper_goal(self, side: str, word: str) -> JointTrajectoryGoal:
+        """What the controller gets to open a hand or to close it. `word`: "open" or "closed"."""
+        settings = self.robot.settings
+        return _goal({f"{_letter(side)}Hand": settings.gripper[word]}, settings.gripper_time)
+
     def _gripper(self, side: str, opening: float) -> float:
         joint = f"{_letter(side)}Hand"
         if opening != self.robot.settings.gripper["closed"]:
@@ -136,26 +142,36 @@ class Manipulation(RobotModule):
             PtuGoalUnreachable: The head does not turn that far; `nearest` has the closest angles.
             PtuGoalNotReached: It did not get there.
         """
-        settings = self.robot.settings
-        point = self.robot.point_in(target, TORSO)
-        camera = [settings.camera[key] for key in ("forward", "up", "neck", "tilt")]
-        return self.turn_head(*head_angles(*point[:3], camera))
+        return self.turn_head(*self._gaze(target))
+
+    def head_goal(self, target: Point3) -> JointTrajectoryGoal:
+        """What the controller gets to look at a point. Raises PtuGoalUnreachable as `move_head`."""
+        angles = self._head(*self._gaze(target))
+        return _goal(angles, self._time(angles, self.robot.settings.head_speed))
 
     def turn_head(self, yaw: float, pitch: float) -> tuple[float, float]:
         """Turn the head to two angles, rad; returns the angles that it reached. Raises as `move_head`."""
-        settings, chain = self.robot.settings, self.robot.chain(TORSO, "Head")
-        wanted = (float(yaw), float(pitch))
-        nearest = tuple(min(max(each, low), high) for each, low, high in zip(wanted, chain.lower, chain.upper))
-        if max(abs(a - b) for a, b in zip(wanted, nearest)) > settings.head_tolerance:
-            text = f"the head cannot turn to yaw {yaw:.2f}, pitch {pitch:.2f} rad: the nearest is {_angles(nearest)}"
-            raise PtuGoalUnreachable(text, wanted=wanted, nearest=nearest)
-        goal = dict(zip(HEAD, map(float, nearest)))
+        settings, goal = self.robot.settings, self._head(yaw, pitch)
+        nearest = tuple(goal.values())
         reached = self._move(goal, self._time(goal, settings.head_speed), PtuGoalNotReached)
         got = (reached[HEAD[0]], reached[HEAD[1]])
         if max(abs(a - b) for a, b in zip(got, nearest)) > settings.head_tolerance:
             text = f"the head is at {_angles(got)} instead of {_angles(nearest)}: {LIMP}"
             raise PtuGoalNotReached(text, wanted=nearest, reached=got)
         return got
+
+    def _gaze(self, target: Point3) -> tuple[float, float]:
+        point = self.robot.point_in(target, TORSO)
+        camera = [self.robot.settings.camera[key] for key in ("forward", "up", "neck", "tilt")]
+        return head_angles(*point[:3], camera)
+
+    def _head(self, yaw: float, pitch: float) -> dict[str, float]:
+        chain, wanted = self.robot.chain(TORSO, "Head"), (float(yaw), float(pitch))
+        nearest = tuple(min(max(each, low), high) for each, low, high in zip(wanted, chain.lower, chain.upper))
+        if max(abs(a - b) for a, b in zip(wanted, nearest)) > self.robot.settings.head_tolerance:
+            text = f"the head cannot turn to yaw {yaw:.2f}, pitch {pitch:.2f} rad: the nearest is {_angles(nearest)}"
+            raise PtuGoalUnreachable(text, wanted=wanted, nearest=nearest)
+        return dict(zip(HEAD, map(float, nearest)))
 
     # --- arms ---------------------------------------------------------------------------------------------------------
 
@@ -167,11 +183,27 @@ class Manipulation(RobotModule):
                 of the target.
             ManipulationGoalNotReached: It did not get there.
         """
-        settings, letter = self.robot.settings, _letter(side)
-        chain = self.robot.chain(TORSO, f"{letter.lower()}_gripper")
-        point, now = self.robot.point_in(target, TORSO), self.robot.angles()
-        found = chain.reach(point[:3], now)
-        if found.distance > settings.arm_tolerance / 2.0:
+        settings, now = self.robot.settings, self.robot.angles()
+        point, angles = self.robot.point_in(target, TORSO), self._arm(target, side)
+        reached = self._move(angles, self._time(angles, settings.arm_speed), ManipulationGoalNotReached)
+        x, y, z = map(float, self._arm_chain(side).tip({**now, **reached})[:3, 3])
+        hand = Point3(x, y, z, TORSO)
+        if hand.distance_to(point) > settings.arm_tolerance:
+            text = f"the {side} hand is at {hand} instead of {point}: {LIMP}"
+            raise ManipulationGoalNotReached(text, target=target, reached=hand, side=side)
+        return hand
+
+    def arm_goal(self, target: Point3, side: str) -> JointTrajectoryGoal:
+        """What the controller gets to bring a hand to a point. Raises ManipulationPoseUnreachable as `move_arm`."""
+        angles = self._arm(target, side)
+        return _goal(angles, self._time(angles, self.robot.settings.arm_speed))
+
+    def _arm_chain(self, side: str) -> Chain:
+        return self.robot.chain(TORSO, f"{_letter(side).lower()}_gripper")
+
+    def _arm(self, target: Point3, side: str) -> dict[str, float]:
+        found = self._arm_chain(side).reach(self.robot.point_in(target, TORSO)[:3], self.robot.angles())
+        if found.distance > self.robot.settings.arm_tolerance / 2.0:
             nearest = self.robot.point_in(Point3(*found.point, TORSO), target.frame)
             raise ManipulationPoseUnreachable(
                 f"the {side} hand cannot get to {target}: the nearest point is {nearest}, {found.distance:.3f} m away",
@@ -180,13 +212,7 @@ class Manipulation(RobotModule):
                 distance=found.distance,
                 side=side,
             )
-        reached = self._move(found.angles, self._time(found.angles, settings.arm_speed), ManipulationGoalNotReached)
-        x, y, z = map(float, chain.tip({**now, **reached})[:3, 3])
-        hand = Point3(x, y, z, TORSO)
-        if hand.distance_to(point) > settings.arm_tolerance:
-            text = f"the {side} hand is at {hand} instead of {point}: {LIMP}"
-            raise ManipulationGoalNotReached(text, target=target, reached=hand, side=side)
-        return hand
+        return found.angles
 
     def point_at(self, target: Point3, side: str = "") -> Point3:
         """Point at something with the nearer arm, or that of a side; returns where the hand is then."""
@@ -230,6 +256,10 @@ class Manipulation(RobotModule):
             raise ManipulationGoalNotReached(text, wanted=wanted, reached=reached)
         return reached
 
+    def stable_goal(self) -> JointTrajectoryGoal:
+        """What the controller gets to take that pose."""
+        return _goal(dict(self.robot.settings.stable), self.robot.settings.stable_time)
+
     def _time(self, goal: Mapping[str, float], speed: float) -> float:
         now = self.robot.angles()
         unknown = [name for name in goal if name not in now]
@@ -239,14 +269,17 @@ class Manipulation(RobotModule):
         return max(way / speed, self.robot.settings.shortest_motion)
 
     def _move(self, angles: Mapping[str, float], time: float, failure: type[LowLevelFailure]) -> dict[str, float]:
-        point = JointTrajectoryPoint(positions=list(angles.values()), time_from_start=rospy.Duration.from_sec(time))
-        goal = JointTrajectoryGoal(trajectory=JointTrajectory(joint_names=list(angles), points=[point]))
-        end = self.robot.action(ACTION, JointTrajectoryAction).call(goal, time + MARGIN)
+        end = self.robot.action(ACTION, JointTrajectoryAction).call(_goal(angles, time), time + MARGIN)
         if not end.succeeded:
             raise failure(f"{', '.join(angles) if len(angles) < 7 else 'the body'}: {end}", status=end.status)
         state = end.result.goal_position
         self.robot.learn(state)
         return dict(zip(state.name, state.position))
+
+
+def _goal(angles: Mapping[str, float], time: float) -> JointTrajectoryGoal:
+    point = JointTrajectoryPoint(positions=list(angles.values()), time_from_start=rospy.Duration.from_sec(time))
+    return JointTrajectoryGoal(trajectory=JointTrajectory(joint_names=list(angles), points=[point]))
 
 
 def _letter(side: str) -> str:

@@ -38,19 +38,12 @@ class Navigation(RobotModule):
                 be, in odom.
         """
         settings = self.robot.settings
-        here = self.robot.place(frame)
-        if math.isnan(target.yaw):
-            far = here.distance_to(target) > settings.walk_tolerance[0]  # a robot that is there need not turn
-            target = target._replace(yaw=math.atan2(target.y - here.y, target.x - here.x) if far else here.yaw)
+        here, target = self.robot.place(frame), self._with_heading(target, frame)
         # The robot's own frames move along: what counts at the end is where the target was at the beginning.
         wanted = self.robot.place(ODOM).then(target.seen_from(here))
         way = target.seen_from(here)
         slowest = way.distance / settings.walk_speed[0] + math.pi / settings.walk_speed[1]
-        goal = MoveBaseGoal()
-        goal.target_pose.header.frame_id = frame
-        goal.target_pose.pose.position.x, goal.target_pose.pose.position.y = target.x, target.y
-        goal.target_pose.pose.orientation.z = math.sin(target.yaw / 2.0)
-        goal.target_pose.pose.orientation.w = math.cos(target.yaw / 2.0)
+        goal = self.walk_goal(target, frame)
         end = self.robot.action(ACTION, MoveBaseAction).call(goal, slowest + MARGIN, self._on_feedback)
         reached = self.robot.place(ODOM)
         if end.status == GoalStatus.REJECTED:
@@ -61,6 +54,22 @@ class Navigation(RobotModule):
             text = f"the robot did not get to {_shown(target, frame)}: {why}"
             raise NavigationGoalNotReached(text, target=target, frame=frame, reached=reached, wanted=wanted)
         return reached
+
+    def walk_goal(self, target: Place, frame: str = ODOM) -> MoveBaseGoal:
+        """What the path follower gets to walk to a place, as `walk_to` takes it."""
+        target, goal = self._with_heading(target, frame), MoveBaseGoal()
+        goal.target_pose.header.frame_id = frame
+        goal.target_pose.pose.position.x, goal.target_pose.pose.position.y = target.x, target.y
+        goal.target_pose.pose.orientation.z = math.sin(target.yaw / 2.0)
+        goal.target_pose.pose.orientation.w = math.cos(target.yaw / 2.0)
+        return goal
+
+    def _with_heading(self, target: Place, frame: str) -> Place:
+        if not math.isnan(target.yaw):
+            return target
+        here = self.robot.place(frame)
+        far = here.distance_to(target) > self.robot.settings.walk_tolerance[0]  # a robot that is there need not turn
+        return target._replace(yaw=math.atan2(target.y - here.y, target.x - here.x) if far else here.yaw)
 
     def _on_feedback(self, feedback: Any) -> None:
         stamped = feedback.base_position
