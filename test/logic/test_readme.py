@@ -14,6 +14,8 @@ LINK = re.compile(r"\]\((?!https?:)(?P<file>[^)#\s]*)(?:#(?P<anchor>[^)\s]+))?\)
 FENCED = re.compile(r"^ *```.*?^ *```$", re.MULTILINE | re.DOTALL)
 HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
 OTHERS = ("CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "test/faults/README.md")
+MOST_DEPARTURES = 20
+"""Of the code from what the two documents say."""
 LONGEST = 250
 """Lines of README.md: what takes more has a page of its own."""
 
@@ -37,6 +39,8 @@ def test_every_promise_of_the_documents_has_a_place_and_a_test():
             place = readme_tables.ROOT / file
             assert place.exists(), (number, file)
             assert not name or name.rpartition(".")[2] in place.read_text(encoding="utf-8"), (number, name)
+    departures = re.findall(r"^\| [PT]\d+ \|.*\*\*Departs:\*\*", text, re.MULTILINE)
+    assert f"there are\n  {len(departures)} departures" in text and len(departures) <= MOST_DEPARTURES
 
 
 def test_the_printed_client_is_the_example():

@@ -49,8 +49,10 @@ def test_a_point_or_several_are_a_trajectory_for_the_joints_of_names():
 
 
 def test_a_point_of_a_trajectory_has_its_time_first():
-    point = new.JointTrajectoryPoint(Duration(1), (0.5, 1))
-    assert point == new.JointTrajectoryPoint(1.0, [0.5, 1.0]) and (point.velocities, point.accelerations) == ([], [])
+    message = JointTrajectoryPoint(positions=[0.5, 1.0], time_from_start=Duration(1))
+    assert new.JointTrajectoryPoint(Duration(1), (0.5, 1)) == message == new.JointTrajectoryPoint(1.0, [0.5, 1.0])
+    message.velocities, message.accelerations = [0.1, 0.2], [0.3, 0.4]
+    assert new.JointTrajectoryPoint(1.0, [0.5, 1.0], (0.1, 0.2), (0.3, 0.4)) == message
 
 
 def test_goals_have_the_short_names_of_the_paper_as_well():
