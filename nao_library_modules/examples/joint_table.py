@@ -3,17 +3,19 @@
 
 import csv
 import sys
+from pathlib import Path
 
-import rosbag
+from sensor_msgs.msg import JointState
+
+from nao_library_modules.ros.bag_types import read_bag
 
 
 def main(place: str, joint: str) -> None:
     """Print the table. `place`: of the bag. `joint`: its name."""
     rows = csv.writer(sys.stdout)
     rows.writerow(["time", joint])
-    with rosbag.Bag(place) as bag:
-        for _topic, message, _time in bag.read_messages("/joint_states"):
-            rows.writerow([f"{message.header.stamp.to_sec():.3f}", message.position[message.name.index(joint)]])
+    for _, message in read_bag(Path(place), "/joint_states", JointState):
+        rows.writerow([f"{message.header.stamp.to_sec():.3f}", message.position[message.name.index(joint)]])
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from std_msgs.msg import String
 from nao_library_actions.msg import JointTrajectoryActionFeedback
 from nao_library_modules.cli.app import nao
 from nao_library_modules.nao.type_names import OURS, THEIRS
-from nao_library_modules.ros.bag_types import convert_bag
+from nao_library_modules.ros.bag_types import convert_bag, read_bag
 from nao_library_modules.ros.driver_types import as_theirs
 from nao_library_msgs.msg import Bumper, JointAnglesWithSpeed, TactileTouch
 from naoqi.errors import NaoError
@@ -159,6 +159,14 @@ def test_definitions_in_a_bag_are_copied_and_never_run(tmp_path):
     with rosbag.Bag(str(new)) as as_rosbag_does:
         list(as_rosbag_does.read_messages(raw=True))
     assert made.exists(), "the bag of this test does no harm: it proves nothing"
+
+
+def test_messages_are_read_by_the_classes_that_are_here_and_never_by_those_of_a_bag(old, tmp_path):
+    assert [(time.to_sec(), message.data) for time, message in read_bag(old, "speech", String)] == [(5.0, "hello")]
+    made = tmp_path / "made"
+    with pytest.raises(NaoError, match=r"t of .* is of crafted_msgs/Text .*, not of std_msgs/String as it is here"):
+        list(read_bag(crafted(tmp_path / "crafted.bag", made), "t", String))
+    assert not made.exists()
 
 
 def test_a_damaged_bag_is_refused_in_words(old, tmp_path):

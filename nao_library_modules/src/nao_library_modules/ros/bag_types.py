@@ -80,6 +80,25 @@ def convert_bag(source: Path, target: Path, names: str, overwrite: bool = False)
     return done
 
 
+def read_bag(source: Path, topic: str, kind: type) -> Iterator[tuple[genpy.Time, Any]]:
+    """The messages of a topic with the time of their arrival, as the installed class `kind` reads them.
+
+    rosbag's own way runs what the bag says its types are.
+
+    Raises:
+        NaoError: `source` is no bag that can be read, or the topic has another type.
+    """
+    wanted = kind()
+    try:
+        with rosbag.Bag(str(source)) as bag, _no_generated_classes():
+            for _, (name, content, md5sum, *_), time in bag.read_messages(topic, raw=True):
+                if md5sum != wanted._md5sum:
+                    raise NaoError(f"{topic} of {source} is of {name} ({md5sum}), not of {wanted._type} as it is here")
+                yield time, kind().deserialize(content)
+    except (rosbag.ROSBagException, OSError, genpy.MessageException) as error:
+        raise NaoError(f"{source} cannot be read: {error}") from error
+
+
 class _Raw:
     """What stands for the class of a message in a bag: its bytes, which nobody reads as fields."""
 
