@@ -109,7 +109,6 @@ def test_parameters_inputs_and_outputs(device):
 def test_what_is_refused_names_what_is_allowed(robot, device, refused):
     begun = robot.now.time
     rows = [
-        ("setOutputVolume", (101,), "ALAudioDevice::setOutputVolume volume is 101, allowed is 0 to 100"),
         ("sendRemoteBufferToOutput", (0, b""), "nbOfFrames is 0, allowed is 1 to 16384"),
         ("sendRemoteBufferToOutput", (16385, bytes(65540)), "nbOfFrames is 16385, allowed is 1 to 16384"),
         ("sendRemoteBufferToOutput", (100, b"abcd"), "length of pBuffer is 4, allowed is 4 bytes a frame, 400 in all"),
