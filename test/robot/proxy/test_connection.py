@@ -68,7 +68,8 @@ def test_a_loss_fails_the_call_under_way_in_time_and_the_same_proxy_works_again(
     error = call.exception(SOON)
     assert type(error) is errors.ConnectionLost and error.call == "ALTest.begin"
     followed.wait_for("lost")
-    assert proxy.connection.last_error == {"kill": "closed by the robot", "silence": "silent for 0.6 s"}[harm]
+    causes = {"kill": ["closed by the robot", "connection refused"], "silence": ["silent for 0.6 s"]}
+    assert proxy.connection.last_error in causes[harm]  # "refused" when it was tried again already
     assert proxy.connection.last_error in str(error) or harm == "kill"
     with pytest.raises(errors.RobotUnreachable, match="lost .* s ago .*reconnecting"):
         proxy.add(1, 2)

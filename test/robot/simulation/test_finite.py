@@ -75,7 +75,7 @@ def test_pushes_and_places_that_are_no_numbers_are_refused(bench, world_file):
         lambda: physics.place([0.0] * 25 + [NAN]),
         lambda: physics.place([0.0] * 26, xy=(NAN, 0.0)),
         lambda: physics.bodies.put("ball", Pose((NAN, 0.0, 0.0), HERE)),
-        lambda: physics.bodies.put("ball", Pose((0.0, 0.0, 1.0), HERE), (0.0, 0.0, math.inf)),
+        lambda: physics.bodies.carry("ball", Pose((0.0, 0.0, 1.0), HERE), Pose((0.0, 0.0, math.inf), HERE), 0.1),
     ):
         with pytest.raises(NotFinite):
             refused()

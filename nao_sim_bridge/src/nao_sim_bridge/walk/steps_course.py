@@ -38,7 +38,7 @@ class StepsCourse(Course):
         """Steps that are not begun."""
         return tuple(self._queue)
 
-    def add(self, placements: Sequence[Placement], clear: bool, on_the_clock: bool) -> None:
+    def add(self, placements: Sequence[Placement], clear: bool, on_the_clock: bool = False) -> None:
         """More steps, after those that are not begun or instead of them.
 
         Args:
