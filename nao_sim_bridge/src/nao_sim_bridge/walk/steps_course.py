@@ -51,11 +51,11 @@ class StepsCourse(Course):
         """
         kept = [] if clear else self._queue
         require_few("footSteps", len(kept) + len(placements), "steps")
-        first, *others = placements
+        added = list(placements)
         planned = self._planned + sum(each.period for each in kept)
-        if on_the_clock and first.period > planned:
-            first = first._replace(period=first.period - planned)
-        self._queue = [*kept, first, *others]
+        if on_the_clock and added and added[0].period > planned:
+            added[0] = added[0]._replace(period=added[0].period - planned)
+        self._queue = [*kept, *added]
 
     def first_side(self, feet: Mapping[int, FootPose]) -> int:
         """The foot of the first step; the other one before it, if that stands in no way from which steps count."""
