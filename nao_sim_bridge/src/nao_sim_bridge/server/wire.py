@@ -135,6 +135,7 @@ class Wires:
             key = tuple(endpoints)
             wire = self._wires.get(key)
             if wire is None or not wire.open:
+                self._wires = {each: kept for each, kept in self._wires.items() if kept.open}  # of programs that run
                 wire = self._wires[key] = _Wire(_addresses(endpoints))
         return wire.call(service, method, arguments)
 
