@@ -80,12 +80,13 @@ def _end_objects_of_the_program() -> None:
     What their `__del__` sends reaches the robot: Python calls it when the connections have closed.
     """
     main = vars(sys.modules["__main__"])
-    value = None
-    for name, value in list(main.items()):
-        if type(value).__module__ == "__main__" or isinstance(getattr(type(value), "__del__", None), FunctionType):
-            main[name] = None
-    del value
+    for name in [name for name, value in main.items() if _is_of_the_program(type(value))]:
+        main[name] = None
     gc.collect()
+
+
+def _is_of_the_program(kind: type) -> bool:
+    return kind.__module__ == "__main__" or isinstance(getattr(kind, "__del__", None), FunctionType)
 
 
 _registry = Registry()
