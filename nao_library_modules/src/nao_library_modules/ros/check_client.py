@@ -28,6 +28,10 @@ class NotAnswered(NaoError):
     """A service is not there, refuses, or does not answer in time."""
 
 
+class NoService(NotAnswered):
+    """A service is not there, or the ROS master is not."""
+
+
 def check_goals(server: str, *goals: Any, limit: float = LIMIT) -> GoalCheck:
     """What is wrong with goals; nothing is done, and a goal that runs goes on.
 
@@ -47,16 +51,16 @@ def check_goals(server: str, *goals: Any, limit: float = LIMIT) -> GoalCheck:
 def call_service(name: str, kind: type, request: Any, limit: float = LIMIT) -> Any:
     """Call a service, if it is there; rospy's calls have no limit.
 
-    `limit`: s of the computer for the answer. Raises NotAnswered if it is not there, refuses, or does not answer in
-    time.
+    `limit`: s of the computer for the answer. Raises NoService if it is not there, NotAnswered if it refuses or does
+    not answer in time.
     """
     full = rospy.resolve_name(name)
     try:
         code, _, _ = rospy.get_master().lookupService(full)
     except OSError as error:
-        raise NotAnswered(f"there is no ROS master: {error}") from None
+        raise NoService(f"there is no ROS master: {error}") from None
     if code != 1:
-        raise NotAnswered(f"there is no service {full}")
+        raise NoService(f"there is no service {full}")
     answers: list[Any] = []
     errors: list[Exception] = []
 

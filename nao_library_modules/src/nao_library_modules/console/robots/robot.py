@@ -24,7 +24,7 @@ from ...cli.output import plain
 from ...cli.progress import progress_text
 from ...functions.server_types import DESCRIBE, ServerType
 from ...owners.line import OwnerLine
-from ...ros.check_client import NotAnswered, call_service
+from ...ros.check_client import NoService, NotAnswered, call_service
 from ...ros.driver_types import spoken
 from ...ros.goal_tracker import GoalTracker, server_connection
 from .commands import CommandGoal, RobotCommand, goal_of, type_of
@@ -128,9 +128,9 @@ class RobotClient:
         full = name if name.startswith("/") else self.namespace + name
         try:
             return call_service(full, kind, kind._request_class(**fields))
+        except NoService as error:
+            raise NotThere(str(error)) from None
         except NotAnswered as error:
-            if "there is no" in str(error):
-                raise NotThere(str(error)) from None
             raise ServiceRefused(str(error)) from None
 
     def topic(self, name: str, kind: type, callback: Callable[[Any], None], queue_size: int = 1) -> Callable[[], None]:
