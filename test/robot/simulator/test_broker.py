@@ -113,7 +113,7 @@ def test_a_port_that_a_connection_has_is_waited_for_and_told_as_what_it_is(liste
     with socket.create_server(("127.0.0.1", 0)) as listener, socket.socket() as connection:
         connection.connect(listener.getsockname())
         port = connection.getsockname()[1]
-        with pytest.raises(RuntimeError, match="in use"):
+        with pytest.raises(RuntimeError, match=f"cannot listen on 127.0.0.1:{port}: {module.HELD}"):
             Broker().listen("127.0.0.1", port, lambda: False)
         assert f"port {port}: nobody listens, but {module.HELD}: waiting up to 65 s" in caplog.text
         monkeypatch.setattr(module, "BIND_PATIENCE", -1.0)

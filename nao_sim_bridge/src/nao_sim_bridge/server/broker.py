@@ -13,7 +13,7 @@ import qi
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import WorkThreads
 from nao_sim_bridge.naoqi.binding.client_calls import NoAnswer, answer, worth_telling
-from nao_sim_bridge.server.own_sockets import StuckClients, free_port_on_exit, has_clients, is_listened_on
+from nao_sim_bridge.server.own_sockets import StuckClients, free_port_on_exit, has_clients, is_listened_on, is_taken
 from nao_sim_bridge.server.wire import Wires, has_bytes, packed_arguments
 
 log = logging.getLogger("nao_sim.broker")
@@ -62,27 +62,21 @@ class Broker:
 
         A RuntimeError when the address cannot be had: at once where another program listens.
         """
+        cannot, warned = f"cannot listen on {address}:{port}", False
         give_up = time.monotonic() + BIND_PATIENCE
-        warned = False
-        while True:
-            try:
-                self._session.listenStandalone(f"tcp://{address}:{port}")
-                break
-            except RuntimeError as error:
-                in_use = "Address already in use" in str(error)
-                listens = in_use and is_listened_on(port)
-                if not in_use or listens or time.monotonic() > give_up:
-                    held = f"{LISTENS if listens else HELD}: choose another port, or 0"
-                    raise RuntimeError(
-                        f"cannot listen on {address}:{port}: {held if in_use else str(error).strip()}"
-                    ) from error
-                if not warned:
-                    log.warning("port %d: nobody listens, but %s: waiting up to %g s", port, HELD, BIND_PATIENCE)
-                    warned = True
-                if not still_wanted():
-                    raise
-                time.sleep(BIND_PAUSE)
-                self._session = qi.Session()
+        while is_taken(address, port):
+            listens = is_listened_on(port)
+            patient = not listens and time.monotonic() <= give_up
+            if patient and not warned:
+                log.warning("port %d: nobody listens, but %s: waiting up to %g s", port, HELD, BIND_PATIENCE)
+                warned = True
+            if not patient or not still_wanted():
+                raise RuntimeError(f"{cannot}: {LISTENS if listens else HELD}: choose another port, or 0")
+            time.sleep(BIND_PAUSE)
+        try:
+            self._session.listenStandalone(f"tcp://{address}:{port}")
+        except RuntimeError as error:
+            raise RuntimeError(f"{cannot}: {str(error).strip()}") from error
         self.port = int(self._session.endpoints()[0].rsplit(":", 1)[1])
         free_port_on_exit(self.port)
         self._watch = StuckClients(self.port)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import os
 import socket
@@ -50,6 +51,16 @@ def free_port_on_exit(port: int) -> None:
     for row in _rows(port, LISTENS):
         for found in _sockets(row.link):
             found.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+
+
+def is_taken(address: str, port: int) -> bool:
+    """Whether the system gives a port to nobody now: a program listens there, or a connection has it."""
+    with socket.socket() as probe:  # without SO_REUSEADDR, as libqi's
+        try:
+            probe.bind((address, port))
+        except OSError as error:
+            return error.errno == errno.EADDRINUSE
+    return False
 
 
 def is_listened_on(port: int) -> bool:
