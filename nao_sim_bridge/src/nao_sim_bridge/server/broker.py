@@ -119,18 +119,20 @@ class Broker:
 
         A RuntimeError when there is none, or its program does not answer.
         """
-        for further in reversed(range(ASKED)):
+        for _ in range(ASKED - 1):
             try:
-                found = self._session.service(module, _async=True)
-                return _Module(
-                    module, answer(found, threading.Condition(), lambda: True, FOUND), self._session, self._wires
-                )
+                return self._asked_for(module)
             except NoAnswer:
                 raise
             except RuntimeError:
-                if not further or module not in self.names():
+                if module not in self.names():
                     raise
-        raise AssertionError("the last time returns or raises")
+        return self._asked_for(module)
+
+    def _asked_for(self, module: str) -> _Module:
+        looked_for = self._session.service(module, _async=True)
+        found = answer(looked_for, threading.Condition(), lambda: True, FOUND)
+        return _Module(module, found, self._session, self._wires)
 
     def names(self) -> list[str]:
         """All services that there are, of the simulator and of clients."""
