@@ -6,6 +6,7 @@ import logging
 import threading
 import time
 from collections import deque
+from functools import cached_property
 from typing import Any, Callable
 
 import qi
@@ -221,14 +222,24 @@ class _Module:
 
     def _call_with_bytes(self, method: str, arguments: tuple) -> Any:
         """The future of a call; None if libqi makes it as well as this, or says what is wrong with it."""
-        served = next((each for each in self._session.services() if each["name"] == self._name), None)
-        if served is None:
-            return None
-        for number, declared in self._remote.metaObject()["methods"].items():
-            content = declared["name"] == method and packed_arguments(declared["parametersSignature"], arguments)
-            if content:
-                return self._wires.call(served["endpoints"], served["serviceId"], number, content)
+        for number, name, signature in self._methods:
+            content = name == method and packed_arguments(signature, arguments)
+            if content and self._served is not None:
+                return self._wires.call(self._served["endpoints"], self._served["serviceId"], number, content)
         return None
+
+    # Both stay as long as the service does: microphones call it six times a second.
+
+    @cached_property
+    def _served(self) -> Any:
+        """What the service directory says of it; None if it has left."""
+        return next((each for each in self._session.services() if each["name"] == self._name), None)
+
+    @cached_property
+    def _methods(self) -> list[tuple[int, str, str]]:
+        """Number, name and signature of the parameters of each method."""
+        methods = self._remote.metaObject()["methods"]
+        return [(number, each["name"], each["parametersSignature"]) for number, each in methods.items()]
 
 
 class _Caller:
