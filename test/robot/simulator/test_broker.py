@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import threading
+from contextlib import closing, suppress
 from pathlib import Path
 
 import av
@@ -20,8 +21,9 @@ from waits import hold
 from nao_library_modules.processes.process_tree import descendants, identify, kill_survivors
 from nao_sim_bridge.naoqi.binding import client_calls
 from nao_sim_bridge.server import broker as module
-from nao_sim_bridge.server import own_sockets
+from nao_sim_bridge.server import own_sockets, wire
 from nao_sim_bridge.server.broker import Broker
+from nao_sim_bridge.server.wire import Wires
 from nao_sim_bridge.testing import wait_until
 
 END_LIMIT = 60.0
@@ -161,6 +163,29 @@ def test_a_call_with_bytes_fails_as_its_method_does_and_when_its_program_has_end
     client.close()
     with pytest.raises(RuntimeError):
         picky.call("hear", b"\xff\xff")
+
+
+def test_a_program_that_does_not_answer_holds_up_bytes_of_no_other(listening, connect, monkeypatch):
+    broker, echo, wires = listening(), Echo(), Wires()
+    monkeypatch.setattr(wire, "_CONNECT", 1000.0)
+    client = connect(broker.port)
+    client.listen("tcp://127.0.0.1:0")
+    number = client.registerService("Echo", echo)
+    (served,) = [each for each in client.services() if each["name"] == "Echo"]
+    hear = next(n for n, each in broker.service("Echo").metaObject()["methods"].items() if each["name"] == "hear")
+    with socket.create_server(("127.0.0.1", 0)) as silent, closing(wires):
+        endpoint = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        threading.Thread(target=suppressed, args=(lambda: wires.call([endpoint], 2, 100, b""),), daemon=True).start()
+        held_up, _ = silent.accept()
+        with held_up:
+            assert held_up.recv(1)  # its greeting, which nobody answers
+            wires.call(served["endpoints"], number, hear, wire.packed_arguments("(m)", [b"\xff"])).value()
+            assert echo.calls.get(timeout=PATIENCE) == b"\xff"
+
+
+def suppressed(call):
+    with suppress(RuntimeError):
+        call()
 
 
 class Picky:

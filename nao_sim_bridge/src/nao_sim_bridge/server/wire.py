@@ -131,13 +131,21 @@ class Wires:
         Raises:
             RuntimeError: The program cannot be reached.
         """
+        return self._wire(tuple(endpoints)).call(service, method, arguments)
+
+    def _wire(self, endpoints: tuple[str, ...]) -> _Wire:
+        """The connection to a program; a new one is made without the lock: a program that hangs holds up no other."""
         with self._lock:
-            key = tuple(endpoints)
-            wire = self._wires.get(key)
-            if wire is None or not wire.open:
-                self._wires = {each: kept for each, kept in self._wires.items() if kept.open}  # of programs that run
-                wire = self._wires[key] = _Wire(_addresses(endpoints))
-        return wire.call(service, method, arguments)
+            wire = self._wires.get(endpoints)
+        if wire is not None and wire.open:
+            return wire
+        made = _Wire(_addresses(endpoints))
+        with self._lock:
+            self._wires = {each: kept for each, kept in self._wires.items() if kept.open}  # of programs that run
+            wire = self._wires.setdefault(endpoints, made)
+        if wire is not made:  # somebody else was faster
+            made.close()
+        return wire
 
     def close(self) -> None:
         with self._lock:
