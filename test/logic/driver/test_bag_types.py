@@ -163,6 +163,9 @@ def test_definitions_in_a_bag_are_copied_and_never_run(tmp_path):
 
 def test_messages_are_read_by_the_classes_that_are_here_and_never_by_those_of_a_bag(old, tmp_path):
     assert [(time.to_sec(), message.data) for time, message in read_bag(old, "speech", String)] == [(5.0, "hello")]
+    one, other = (read_bag(old, topic, kind) for topic, kind in (("speech", String), ("bumper", as_theirs(Bumper))))
+    own_way = rosbag.bag._get_message_type
+    assert (next(one)[1].data, next(other)[1].bumper) == ("hello", 1) and rosbag.bag._get_message_type is own_way
     made = tmp_path / "made"
     with pytest.raises(NaoError, match=r"t of .* is of crafted_msgs/Text .*, not of std_msgs/String as it is here"):
         list(read_bag(crafted(tmp_path / "crafted.bag", made), "t", String))

@@ -63,20 +63,12 @@ def convert_bag(source: Path, target: Path, names: str, overwrite: bool = False)
     if target.exists() and source.exists() and target.samefile(source):
         raise NaoError(f"{target} is the bag itself: another name for the new one")
     done = Conversion()
-    try:
-        with draft_in(target.parent) as draft:
-            with rosbag.Bag(str(source)) as old, _no_generated_classes():
-                compression = old.get_compression_info().compression
-                with rosbag.Bag(str(draft), "w", compression=compression) as new:
-                    _copy(old, new, _Names(names), done)
-            move_whole(draft, target, overwrite)
-    except rosbag.ROSBagUnindexedException:
-        raise NaoError(f"{source} has no index, as one whose recording was cut off: rosbag reindex it first") from None
-    except (rosbag.ROSBagException, OSError, genpy.MessageException) as error:
-        raise NaoError(f"{source} cannot be converted: {error}") from error
-    except (ValueError, LookupError, EOFError, OverflowError, struct.error) as error:  # of bytes that are no bag's
-        problem = f"{type(error).__name__}: {error}"
-        raise NaoError(f"{source} cannot be converted: it is damaged, or no bag ({problem})") from error
+    with _told_in_words(source, "converted"), draft_in(target.parent) as draft:
+        with rosbag.Bag(str(source)) as old, _no_generated_classes():
+            compression = old.get_compression_info().compression
+            with rosbag.Bag(str(draft), "w", compression=compression) as new:
+                _copy(old, new, _Names(names), done)
+        move_whole(draft, target, overwrite)
     return done
 
 
@@ -89,14 +81,31 @@ def read_bag(source: Path, topic: str, kind: type) -> Iterator[tuple[genpy.Time,
         NaoError: `source` is no bag that can be read, or the topic has another type.
     """
     wanted = kind()
+    with _told_in_words(source, "read"), rosbag.Bag(str(source)) as bag:
+        messages = bag.read_messages(topic, raw=True)
+        while True:
+            with _no_generated_classes():  # not while the caller has the message: others read bags as well
+                found = next(messages, None)
+            if found is None:
+                return
+            _, (name, content, md5sum, *_), time = found
+            if md5sum != wanted._md5sum:
+                raise NaoError(f"{topic} of {source} is of {name} ({md5sum}), not of {wanted._type} as it is here")
+            yield time, kind().deserialize(content)
+
+
+@contextmanager
+def _told_in_words(source: Path, what: str) -> Iterator[None]:
+    """NaoError for what rosbag raises of a bag that cannot be `what`."""
     try:
-        with rosbag.Bag(str(source)) as bag, _no_generated_classes():
-            for _, (name, content, md5sum, *_), time in bag.read_messages(topic, raw=True):
-                if md5sum != wanted._md5sum:
-                    raise NaoError(f"{topic} of {source} is of {name} ({md5sum}), not of {wanted._type} as it is here")
-                yield time, kind().deserialize(content)
+        yield
+    except rosbag.ROSBagUnindexedException:
+        raise NaoError(f"{source} has no index, as one whose recording was cut off: rosbag reindex it first") from None
     except (rosbag.ROSBagException, OSError, genpy.MessageException) as error:
-        raise NaoError(f"{source} cannot be read: {error}") from error
+        raise NaoError(f"{source} cannot be {what}: {error}") from error
+    except (ValueError, LookupError, EOFError, OverflowError, struct.error) as error:  # of bytes that are no bag's
+        problem = f"{type(error).__name__}: {error}"
+        raise NaoError(f"{source} cannot be {what}: it is damaged, or no bag ({problem})") from error
 
 
 class _Raw:
