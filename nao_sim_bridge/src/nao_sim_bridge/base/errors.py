@@ -75,14 +75,18 @@ class UnknownName(SimulationError):
         kind: What was looked for, for example "joint".
         name: The name as given.
         close: The closest names there are, best first.
+
+    Args:
+        listed: Words before all names that there are, where these are few enough to be told; empty: only close ones.
     """
 
-    def __init__(self, kind: str, name: Any, known: Iterable[str]) -> None:
+    def __init__(self, kind: str, name: Any, known: Iterable[str], listed: str = "") -> None:
         self.kind = kind
         self.name = name
         known = list(known)
         self.close = closest(name, known)
-        super().__init__(f"unknown {kind} {shortened(name)}{did_you_mean(name, known)}")
+        there = f" ({listed}: {', '.join(known) or 'none'})" if listed else ""
+        super().__init__(f"unknown {kind} {shortened(name)}{did_you_mean(name, known)}{there}")
 
 
 class BadValue(SimulationError):

@@ -141,7 +141,7 @@ class Things:
 
         taken = {FLOOR, *self.things}
         if thing.name in taken:
-            allowed = f"one that is free (remove that thing, or move it); taken: {_listed(taken)}"
+            allowed = f"one that is free (remove that thing, or move it); taken: {', '.join(sorted(taken))}"
             raise BadValue("name", thing.name, allowed)
         if not 1 <= len(thing.name) <= LONGEST_NAME:
             raise BadValue("name", thing.name, f"1 to {LONGEST_NAME} characters")
@@ -262,9 +262,7 @@ class Things:
 
     def _known(self, name: str) -> WorldObject:
         if name not in self.things:
-            error = UnknownName("object", name, self.things)
-            error.args = (f"{error} (there are: {_listed(self.things)})",)
-            raise error
+            raise UnknownName("object", name, sorted(self.things), "there are")
         return self.things[name]
 
     def _task(self, name: str) -> Task:
@@ -382,10 +380,6 @@ def slerp(first: Quaternion, second: Quaternion, share: float) -> Quaternion:
     near, far = (math.sin(part * angle) / math.sin(angle) for part in (1.0 - share, share))
     x, y, z, w = (near * a + far * b for a, b in zip(first, second))
     return (x, y, z, w)
-
-
-def _listed(names: object) -> str:
-    return ", ".join(sorted(names)) or "nothing"
 
 
 def _checked_place(position: Sequence[float]) -> Vector3:

@@ -261,9 +261,7 @@ def check_names(kind: str, given: Collection[str], known: Collection[str]) -> No
     """
     for name in given:
         if name not in known:
-            error = UnknownName(kind, name, known)
-            error.args = (f"{error} (allowed: {', '.join(known) or 'none'})",)
-            raise error
+            raise UnknownName(kind, name, known, "allowed")
 
 
 def check_options(given: Collection[str]) -> None:
