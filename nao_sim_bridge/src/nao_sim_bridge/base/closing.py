@@ -16,7 +16,7 @@ REFUSED, FAILED = 1, 3
 """Exit status of a simulator that cannot start, and of one whose simulation has failed."""
 LOOK_PERIOD = 0.5
 CLOSE_LIMIT = 8.0
-"""s that all steps together may take: 0.1 s on an idle computer, but a busy one lets everybody wait for his turn."""
+"""s that all steps together may take. On an idle computer they take 0.1 s, on a busy one each has to wait its turn."""
 EXIT_LIMIT = 9
 """s after which the process ends in any case: containers kill after 10 s, roslaunch after 15."""
 

@@ -38,9 +38,9 @@ LOOK_TIME, LONGEST_SWAY = 0.2, 2.0
 EXACT = 0.005
 # Straight to a posture, as fast as the joints can, without a thought about the floor.
 STRAIGHT = Ground((), LOOK_TIME)
-# Postures in which limp robots stay, by where they are (who lies stays as well), and the way to the second one: a share
-# of the joints' top speeds, and how many moves may miss.
-ON_FEET, ON_SEAT = "Crouch", "SitRelax"
+# In these postures a limp robot stays: the first one from its feet, the second one from its seat; who lies, stays as well.
+# The way to the second one goes at a share of the joints' top speeds, and so many of its moves may miss.
+CROUCHED, LEANING = "Crouch", "SitRelax"
 REST_SPEED, REST_TRIES = 0.6, 2
 # Moves on one way at most: the graph has no way longer than this, so more is a robot that goes round in circles.
 MOST_MOVES = 12
@@ -189,10 +189,10 @@ def rest(robot: SimulatedRobot, snapshot: Callable[[], Snapshot], on_end: Callab
         if not body_is_stiff(robot):
             return None
         if is_on_feet(robot, snapshot()):
-            return posture_task(robot, "rest", ON_FEET)
+            return posture_task(robot, "rest", CROUCHED)
         if recognise(robot.model, snapshot()).family != SITTING:
             return None
-        return PostureChange(robot, snapshot, ON_SEAT, REST_SPEED, REST_TRIES, load_moves()).start("rest")
+        return PostureChange(robot, snapshot, LEANING, REST_SPEED, REST_TRIES, load_moves()).start("rest")
 
     def release() -> Task:
         return stiffness_task(robot, "rest", range(len(robot.model.joints)), 0.0, STIFFEN_TIME)
