@@ -118,8 +118,8 @@ def load(text: str, name: str) -> Any:
         mark = getattr(error, "problem_mark", None)
         problem = " ".join(str(getattr(error, "problem", None) or error).split())
         line = 0 if mark is None else mark.line + 1
-        unquoted = "but got" in problem or "not allowed here" in problem
-        hint = "; a text with ? : , # or brackets in it needs quotes" if unquoted else ""
+        syntax = isinstance(error, (yaml.parser.ParserError, yaml.scanner.ScannerError))
+        hint = "; a text with ? : , # or brackets in it needs quotes" if syntax else ""
         raise BehaviorError(name, [Problem("", f"no YAML: {problem}{hint}", line)]) from error
 
 
