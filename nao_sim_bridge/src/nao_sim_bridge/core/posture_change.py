@@ -38,8 +38,8 @@ LOOK_TIME, LONGEST_SWAY = 0.2, 2.0
 EXACT = 0.005
 # Straight to a posture, as fast as the joints can, without a thought about the floor.
 STRAIGHT = Ground((), LOOK_TIME)
-# In these postures a limp robot stays: the first one from its feet, the second one from its seat; who lies, stays as well.
-# The way to the second one goes at a share of the joints' top speeds, and so many of its moves may miss.
+# In these postures a limp robot stays: the first one from its feet, the second one from its seat. Who lies stays as
+# well. The way to the second one goes at a share of the joints' top speeds, and so many of its moves may miss.
 CROUCHED, LEANING = "Crouch", "SitRelax"
 REST_SPEED, REST_TRIES = 0.6, 2
 # Moves on one way at most: the graph has no way longer than this, so more is a robot that goes round in circles.
