@@ -276,6 +276,15 @@ def test_a_robot_that_does_not_get_there_says_why(point, control, monkeypatch):
     assert careful.place.x < 0.45
 
 
+def test_who_has_arrived_and_ends_the_last_steps_slowly_is_not_stuck(point, monkeypatch):
+    control = dataclasses.replace(BY_POSES, stuck_time=1.0)
+    arrived = []
+    monkeypatch.setattr(point, "walking", lambda: not arrived or point.time < arrived[0] + 2.5)
+    report = lambda place, aim: arrived.append(point.time) if not arrived and aim.rest < 1e-3 else None  # noqa: E731
+    walk(point, target(0.3, 0.0, 0.0), control, report=report)
+    assert point.time > arrived[0] + 2.0
+
+
 def test_an_interrupt_ends_it_and_leaves_the_legs_as_they_are(point):
     interrupt = CancellationToken()
 
