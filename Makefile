@@ -1,7 +1,7 @@
 # Everything a user types. Each target installs and builds what it needs first; with nothing to do that takes no time.
 
 .DEFAULT_GOAL := help
-.PHONY: docs pictures urdf help setup build demo film test test-slow test-all bench soak faults lint format clean
+.PHONY: docs pictures urdf help setup build demo film test test-slow test-long test-all bench soak faults lint format clean
 
 # Tests to run: parts of their paths or names (make test TESTS="lights walk"). SEED: their random order.
 TESTS ?=
@@ -31,10 +31,13 @@ film: ## Film the ten behaviours that are bundled; behaviors.mp4 and a sheet of 
 test: build ## Run the tests of the levels logic, robot and ros; closes with "N passed, N failed" (TESTS="lights walk")
 	@scripts/test test $(TESTS)
 
-test-slow: build ## Run the level slow: soak, commands of the documents, real-time rates, several robots, big tables
+test-slow: build ## Run the level slow in its short form: examples, commands of the documents, several robots, parts of long tables
 	@scripts/test slow $(TESTS)
 
-test-all: build ## Run all levels, in random order (SEED=1: in the order of that seed)
+test-long: build ## Run the level slow in its long form: all animations, all rows of its tables, a bare Debian
+	@scripts/test long $(TESTS)
+
+test-all: build ## Run all levels in their long form, in random order (SEED=1: in the order of that seed)
 	@SEED="$(SEED)" scripts/test all $(TESTS)
 
 bench: build ## Print the benchmarks: ratios measured side by side

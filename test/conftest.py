@@ -8,6 +8,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from amount import LONG
 from hypothesis import settings
 from xdist.scheduler import LoadGroupScheduling
 
@@ -47,6 +48,7 @@ def pytest_addoption(parser):
 def pytest_configure(config):
     for level in LEVELS:
         config.addinivalue_line("markers", f"{level}: a test of the level {level}")
+    config.addinivalue_line("markers", "long: a test that only the long form of the level slow runs")
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(FailuresAtOnce(config))
 
@@ -70,10 +72,11 @@ class FailuresAtOnce:
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config, items):
     words = config.getoption("--words").lower().split()
-    if words:
-        left_out = [item for item in items if not any(word in item.nodeid.lower() for word in words)]
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in set(left_out)]
+    left_out = {item for item in items if words and not any(word in item.nodeid.lower() for word in words)}
+    if not words and not LONG:
+        left_out |= {item for item in items if item.get_closest_marker("long")}
+    config.hook.pytest_deselected(items=list(left_out))
+    items[:] = [item for item in items if item not in left_out]
     seed = config.getoption("--shuffle")
     if seed:
         random.Random(seed).shuffle(items)

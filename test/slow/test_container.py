@@ -67,6 +67,7 @@ def inside(tree: Path, commands: str, *, network: bool) -> str:
     return done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.timeout(1800)
 def test_the_steps_of_the_container_file_make_a_robot_in_a_bare_debian(tmp_path):
     tree = tmp_path / "tree"

@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "soak"))
 from nao_soak.ill_clients import IllClients
 from nao_soak.levels import Levels
 
-pytestmark = pytest.mark.timeout(1800)
+pytestmark = [pytest.mark.long, pytest.mark.timeout(1800)]
 # The short form; `make soak` is the long one. s of wall time.
 WARM, SECONDS, KILLED_EVERY, SAMPLED_EVERY = 90.0, 120.0, 6.0, 1.0
 

@@ -12,6 +12,7 @@ from xmlrpc.client import ServerProxy
 import pytest
 import qi
 import rosgraph
+from amount import amount
 from listening import listens
 
 from nao_library_modules.processes.own_master import OwnMaster
@@ -21,7 +22,7 @@ from nao_sim_bridge.testing import wait_until
 pytestmark = pytest.mark.timeout(1800)
 SCRIPT = Path(__file__).resolve().parents[1] / "soak/kills.py"
 LIMIT = 60.0
-KILLS = 18
+KILLS = amount(6, 18)
 """Of the first kinds; `test/soak/kills.py` takes all of them, and with `--kills 100` some again."""
 
 

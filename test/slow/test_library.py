@@ -78,6 +78,7 @@ def test_environments_are_what_their_page_says(library, tmp_path):
     library[1]("-m", "pytest", "-q", file, cwd=tmp_path)
 
 
+@pytest.mark.long
 @pytest.mark.timeout(900)
 def test_sweeps_outlive_a_lost_node_and_use_one_that_joins(library, tmp_path):
     told = library[1](Path(__file__).parent / "sweep_cluster.py", "--kills", 1, "--joins", 1, cwd=tmp_path)

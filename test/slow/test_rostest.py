@@ -15,10 +15,22 @@ FOLDER = Path(__file__).parents[1] / "rostest"
 ROSTEST = (sys.executable, "-c", "import rostest; rostest.rostestmain()")
 """rostest, but with the interpreter that runs this file: its program would put another one first."""
 LIMIT = 1500.0
+ROS = FOLDER.parent / "ros"
+
+
+def shown_elsewhere(suite):
+    """Whether all tests of a suite are run in the level ros as well, by its running stack."""
+    return all((ROS / test.get("type")).exists() for test in ElementTree.parse(suite).getroot().iter("test"))
 
 
 @pytest.mark.timeout(LIMIT + 60.0)
-@pytest.mark.parametrize("suite", sorted(path.stem for path in FOLDER.glob("*.test")))
+@pytest.mark.parametrize(
+    "suite",
+    [
+        pytest.param(path.stem, marks=[pytest.mark.long] * shown_elsewhere(path))
+        for path in sorted(FOLDER.glob("*.test"))
+    ],
+)
 def test_a_suite_of_rostest_passes(suite, tmp_path):
     environment = {name: value for name, value in os.environ.items() if name not in ("ROS_MASTER_URI", "ROS_NAMESPACE")}
     environment.update(

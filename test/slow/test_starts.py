@@ -6,10 +6,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from amount import amount
 
 pytestmark = pytest.mark.timeout(1200)
 SCRIPT = Path(__file__).resolve().parents[1] / "soak/starts.py"
-STARTS = 3
+STARTS = amount(1, 3)
 
 
 def test_all_stacks_come_up(tmp_path):

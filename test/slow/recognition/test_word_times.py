@@ -1,12 +1,10 @@
-"""A hundred words that begin 50 ms after the robot says that it listens: none is lost in a quiet room, their times are
-right."""
+"""Words that begin 50 ms after the robot says that it listens: none is lost in a quiet room, their times are right."""
 
 from __future__ import annotations
 
-import os
-
 import numpy as np
 import pytest
+from amount import amount, part_of
 from sounds import noise, put
 from word_trials import trial
 
@@ -15,7 +13,7 @@ from nao_library_modules.audio_in.server import NaoAudioInput
 
 WORDS = ["yes", "no", "stop", "start", "left", "right", "hello", "seven", "four", "good morning"]
 VOICES = ("slt", "rms", "awb")
-TRIALS = 100
+TRIALS = amount(20, 100)
 
 
 @pytest.fixture
@@ -24,14 +22,17 @@ def ears(robot, goals_to):
     return goals_to(NaoAudioInput, NaoAudioInGoal)
 
 
-@pytest.mark.parametrize("noise_db", [None, 45.0], ids=["quiet", "noise"])
+ROOMS = [pytest.param(None, id="quiet"), pytest.param(45.0, id="noise")]
+
+
+@pytest.mark.parametrize("noise_db", part_of(ROOMS, 2))
 def test_no_word_is_lost_and_its_times_are_told(robot, ears, noise_db):
     may_be_lost, may_be_wrong = (0, 5) if noise_db is None else (3, 15)
     if noise_db is not None:
         put(robot, (0.0, 1.5, 0.5), noise(2.0), noise_db, loop=True, name="fan")
         robot.advance(2.0)
     lost, wrong, rows = [], [], []
-    for number in range(int(os.environ.get("NAO_TRIALS", TRIALS))):
+    for number in range(TRIALS):
         text, voice = WORDS[number % len(WORDS)], VOICES[number // len(WORDS) % len(VOICES)]
         result, onset, end, answered = trial(robot, ears, text, voice, WORDS)
         if not result.words:

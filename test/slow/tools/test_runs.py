@@ -80,6 +80,7 @@ def test_walks_are_measured(tools):
     assert fall["fell"] and fall["impact"] and fall["early"] > 0.0
 
 
+@pytest.mark.long
 def test_moves_of_the_file_get_there_from_starts_no_search_has_seen(tools, run):
     def attempt(start, move, seed):
         attempts = tools.posture_attempt.Attempts(start)
@@ -105,6 +106,7 @@ def test_moves_of_the_file_get_there_from_starts_no_search_has_seen(tools, run):
     assert status == 0 and text.splitlines()[-1].split()[:5] == row
 
 
+@pytest.mark.long
 def test_a_search_leaves_a_state_goes_on_from_it_and_writes_only_when_asked(tools, run, tmp_path, monkeypatch):
     state, written = tmp_path / "state.json", []
     monkeypatch.setattr(tools.find_posture_moves, "put", lambda *arguments: written.append(arguments))
