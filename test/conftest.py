@@ -84,26 +84,34 @@ def pytest_collection_modifyitems(config, items):
         items.sort(key=lambda item: place[item.cls] if item.cls else 0)  # what a class sets up is set up once
     items.sort(key=lambda item: getattr(item.cls, "world", ""))  # the running stack starts once in each world
     for item in items:
-        # The cases of the running stack share it, and those of a file what takes long to start.
+        # The cases of a file share what takes long to start.
         file = item.path.relative_to(HERE).as_posix()
         limit = LIMITS.get(file.split("/")[0])
         if limit and item.get_closest_marker("timeout") is None:
             item.add_marker(pytest.mark.timeout(limit))
         if item.get_closest_marker("xdist_group") is None:
-            item.add_marker(pytest.mark.xdist_group(STACK if "stack" in item.fixturenames else file))
+            stack = [STACK, getattr(item.cls, "world", "")] if "stack" in item.fixturenames else []
+            item.add_marker(pytest.mark.xdist_group(" ".join([*stack, file])))
 
 
 class LongestFirst(LoadGroupScheduling):
-    """Hands out the running stack's cases, then the files that took longest when they last ran, or in random order."""
+    """Hands out the files that took longest when they last ran, or in random order.
+
+    One worker takes those of the running stack, world by world; another one starts a stack when nothing else is left.
+    """
 
     def _assign_work_unit(self, node):
         seed, took = self.config.getoption("--shuffle"), _durations()
+        own, *others = (
+            any(map(_on_stack, self.assigned_work[each]))
+            for each in sorted(self.nodes, key=lambda each: each is not node)
+        )
+        wants_stack = own or not any(others)
 
         def rank(group):
-            return (
-                group != STACK,
-                random.Random(seed + group).random() if seed else -took.get(group, 0.0),
-            )
+            *world, file = group.split(" ")
+            longest = random.Random(seed + group).random() if seed else -took.get(file, 0.0)
+            return (_on_stack(group) != wants_stack, world, longest)
 
         self.workqueue.move_to_end(min(self.workqueue, key=rank), last=False)
         super()._assign_work_unit(node)
@@ -128,6 +136,10 @@ class LongestFirst(LoadGroupScheduling):
 
 def pytest_xdist_make_scheduler(config, log):
     return LongestFirst(config, log)
+
+
+def _on_stack(group):
+    return group.startswith(f"{STACK} ")
 
 
 def _durations():

@@ -30,15 +30,15 @@ def self_contacts(physics):
 # Those of robots before NAOqi 2.8 are made of the same strokes: one in so many is played.
 OLDER_STEP = 5
 # One in so many of all of them is played in the short form.
-STEP = 8
+ONE_IN = 8
 
 
 def part(posture, number, parts):
-    group = pytest.mark.xdist_group(f"animations {posture} {number}")
+    group = pytest.mark.xdist_group(f"{posture} {number} slow/test_animations.py")
     own = [name for name in names() if is_for(name, posture)]
     older = [name for name in own if not names()[name].tags]
     played = [*(name for name in own if name not in older), *older[::OLDER_STEP]]
-    return pytest.param(posture, part_of(played[number::parts], STEP), marks=group)
+    return pytest.param(posture, part_of(played[number::parts], ONE_IN), marks=group)
 
 
 @pytest.mark.parametrize("posture, played", [*(part("Stand", k, PARTS) for k in range(PARTS)), part("Sit", 0, 1)])

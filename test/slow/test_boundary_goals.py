@@ -76,7 +76,7 @@ def ended(robot, goal):
     return goal.cancel() if goal.active else goal.finish()
 
 
-STEP = 5
+ONE_IN = 5
 """One in so many goals is tried in the short form."""
 CASES = [(name, number) for name, examples in EXAMPLES.items() for number in range(len(examples))]
 
@@ -89,7 +89,7 @@ def test_goals_with_a_number_that_nobody_means_end_and_the_server_works_afterwar
     strange = []
     empty = type(example)()
     fields = {field for field in example.__slots__ if getattr(example, field) != getattr(empty, field)} | {"time"}
-    for place, value, message in part_of([*variants(example, fields), *long_lists(example)], STEP):
+    for place, value, message in part_of([*variants(example, fields), *long_lists(example)], ONE_IN):
         if "header" in place:
             continue
         goal = ended(robot, server.send(message))

@@ -28,7 +28,7 @@ DEADLINE = 60.0
 """By when a call has answered that is cancelled, s."""
 MANY = 10**5
 """Items of a list in the place of its first."""
-STEP = 5
+ONE_IN = 5
 """One in so many numbers of a call is tried in the short form."""
 NUMBER = re.compile(r"[iIlLfd]")
 """Of a signature of libqi."""
@@ -141,7 +141,7 @@ def test_every_call_with_one_hostile_number_is_answered_and_time_goes_on(victim,
     for method, arguments in calls:
         if method[0] == "*" or method in ENDS or (method == "advance" and module != SIMULATION):
             continue
-        posted = [victim.call(module, method, bad) for bad in part_of(with_hostile_numbers(list(arguments)), STEP)]
+        posted = [victim.call(module, method, bad) for bad in part_of(with_hostile_numbers(list(arguments)), ONE_IN)]
         wrong += filter(None, (victim.wrong(*call) for call in posted))
         for bad in islice(with_long_lists(list(arguments)), 1):  # not with the others: to read it takes long enough
             wrong += filter(None, [victim.wrong(*victim.call(module, method, bad))])

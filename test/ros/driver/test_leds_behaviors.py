@@ -61,10 +61,10 @@ class DriverLedsBehaviors(unittest.TestCase):
 
     def test_fades_follow_each_other(self):
         # Red stays for long enough to be seen by a test that looks now and then.
-        for color, duration in ((RED, 0.5), (RED, 60.0), (GREEN, 0.5)):
+        for color, duration in ((RED, 0.5), (RED, 20.0), (GREEN, 0.5)):
             self.fade.publish(FadeRGB("ChestLeds", color, Duration(duration)))
         self.robot.wait_for_leds(rgb(CHEST, RED), LIMIT)
-        self.robot.advance(60.0)
+        self.robot.advance(20.0)
         self.robot.wait_for_leds(rgb(CHEST, GREEN), LIMIT)
 
     def test_states_tell_what_each_light_shows(self):

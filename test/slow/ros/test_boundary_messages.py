@@ -36,7 +36,7 @@ from nao_library_msgs.srv import PlaceObject, PlaceSound, RemoveObject, RemoveSo
 from nao_sim_bridge.naoqi.binding.binding import DEFECT
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
-STEP = 5
+ONE_IN = 5
 """One in so many messages is tried in the short form."""
 PATIENCE = 60.0
 """s of the computer that an answer may take."""
@@ -223,7 +223,7 @@ class Messages(unittest.TestCase):
             tried.append(name)
             publisher = rospy.Publisher(name, kind, queue_size=1000)
             wait_until(lambda p=publisher: p.get_num_connections() > 0, PATIENCE, f"subscriber of {name}")
-            for _, _, message in part_of([*variants(example), *long_lists(example)], STEP):
+            for _, _, message in part_of([*variants(example), *long_lists(example)], ONE_IN):
                 publisher.publish(message)
                 self.figures[name] += 1
             publisher.publish(example)
@@ -245,7 +245,7 @@ class Messages(unittest.TestCase):
                 continue
             call, (undo, *request) = service(name, kind), UNDO.get(name, (None,))
             self.within(lambda c=call, m=example: answer(c, m), f"{name}: a valid request")
-            for place, value, message in part_of([*variants(example), *long_lists(example)], STEP):
+            for place, value, message in part_of([*variants(example), *long_lists(example)], ONE_IN):
                 if undo:
                     answer(service(undo, request[0]), *request[1:])
                 text = self.within(lambda c=call, m=message: told(c, m), f"{name} {place} {value}")
@@ -260,7 +260,7 @@ class Messages(unittest.TestCase):
             client = actionlib.ActionClient(name, action)
             self.assertTrue(client.wait_for_server(rospy.Duration(PATIENCE)), name)
             for place, value, message in [
-                *part_of([*variants(example), *long_lists(example)], STEP),
+                *part_of([*variants(example), *long_lists(example)], ONE_IN),
                 ("valid", 0, example),
             ]:
                 self.end(client, message, f"{name} {place} {value}")

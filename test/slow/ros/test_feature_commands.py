@@ -32,7 +32,7 @@ SERVERS = {
     "NaoTactile": NaoTactileAction,
     "NaoBehavior": NaoBehaviorAction,
 }
-STEP = 5
+ONE_IN = 5
 """One in so many commands runs in the short form."""
 LIMIT = 90.0
 """s of wall time for one command."""
@@ -75,7 +75,7 @@ class FeatureCommands(unittest.TestCase):
         rows = [row for row in rows if not any(example in tested for example in re.findall(r"\w+\.py\b", row.command))]
         self.assertGreater(len(rows), 50)
 
-        rows = part_of(rows, STEP)
+        rows = part_of(rows, ONE_IN)
 
         def run_one(row):
             outcome = run(row, folder, os.environ, robot.port, LIMIT)

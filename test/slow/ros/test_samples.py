@@ -34,7 +34,7 @@ REFUSED = re.compile(r"^Traceback|^success: False", re.MULTILINE)
 """In an output: `rosservice` ends with status 0 also when a service has said no."""
 SOUND = ROOT / "nao_sim_bridge" / "src" / "nao_sim_bridge" / "sounds" / "nao_library" / "chime.ogg"
 """A file of music that the reader has."""
-STEP = 3
+ONE_IN = 3
 """One in so many blocks runs in the short form."""
 HERE = [sample for sample in ALL if not {"no", "part of", "run by"} & set(sample.marks)]
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
@@ -99,7 +99,7 @@ def folder(sample, stack, tmp_path):
         stack.broken = True
 
 
-@pytest.mark.parametrize("sample", part_of(HERE, STEP), ids=lambda sample: sample.name)
+@pytest.mark.parametrize("sample", part_of(HERE, ONE_IN), ids=lambda sample: sample.name)
 def test_a_block_does_what_its_page_says(sample, folder):
     {"python": runs_python, "shell": runs_shell, "yaml": runs_data, "json": runs_data}[sample.kind](sample, folder)
 

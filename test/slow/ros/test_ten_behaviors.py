@@ -22,7 +22,7 @@ RUNS = {
     "bow": ("StandInit", ["depth=small"]),
     "sit_and_rest": ("Stand", ["text=Hi"]),
 }
-STEP = 4
+ONE_IN = 4
 """One in so many is played in the short form."""
 STANDING, SITTING = 0.3, 0.2
 SEATED = ("sit_and_rest", "shake_head")
@@ -52,7 +52,7 @@ class TenBehaviors(unittest.TestCase):
             self.assertTrue(each.help and each.parameters and each.tags, each.name)
 
     def test_each_ends_well_and_the_robot_does_not_fall(self):
-        wrong = [f"{name}: {text}" for name, run in part_of(RUNS.items(), STEP) for text in self.faults(name, *run)]
+        wrong = [f"{name}: {text}" for name, run in part_of(RUNS.items(), ONE_IN) for text in self.faults(name, *run)]
         self.assertEqual(wrong, [])
 
     def faults(self, name, posture, parameters):
