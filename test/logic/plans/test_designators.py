@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 
 import pytest
 from diagnostic_msgs.msg import KeyValue
@@ -348,8 +350,9 @@ def test_designators_are_read_as_lisp_writes_them():
     place = desig["target"]
     assert (desig.kind, desig["type"], place.kind, place["at"]) == ("action", "looking", "location", "the table")
     assert place["height"] == 0.7
-    told = p.designator("(type: action (name:(to open)) (side :left))")
-    assert (told.kind, told["name"], told["side"]) == ("action", "to open", "left")
+    for text in ("(type: action (name:(to open)) (side :left))", "(type: action(name:(to open) (side :left)))"):
+        told = p.designator(text)
+        assert (told.kind, told["name"], told["side"]) == ("action", "to open", "left")
     for text, problem in (
         ("(an action (type opening)", r"the bracket at 1 is not closed"),
         ("(an action (type opening)))", r"a bracket too many at 27"),
@@ -358,3 +361,18 @@ def test_designators_are_read_as_lisp_writes_them():
     ):
         with pytest.raises(p.PlanError, match=problem):
             p.designator(text)
+
+
+def test_a_process_module_comes_with_the_rules_that_resolve_what_it_gets():
+    program = """if True:
+        import nao_library_modules.process_modules as p
+        assert p.ManipulationProcessModule
+        print(p.designator("(type: action(name:(to open)) (side :left))").reference())
+    """
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert done.stdout == "manipulation: open_gripper(side='left')\n", done.stderr
+
+
+def test_where_no_rules_are_imported_the_error_says_how_to_have_those_of_a_nao():
+    with pytest.raises(DesignatorError, match=r"no rules for actions: import .*action_rules"):
+        solve(Rules(), type="opening")

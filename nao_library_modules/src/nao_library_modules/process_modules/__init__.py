@@ -87,9 +87,10 @@ _LATER = {
     "StartProcessModules": "low_level:start_process_modules",
     # By way of the goals, so that `achieve` knows which of them each means.
     **{name: "nao_goals" for name in "openGripper closeGripper moveHead moveArm goStable walkTo textToSpeech".split()},
-    "ManipulationProcessModule": "modules.manipulation:Manipulation",
-    "NavigationProcessModule": "modules.navigation:Navigation",
-    "SpeechProcessModule": "modules.speech:Speech",
+    # By way of `low_level`, which imports the rules that resolve what the modules get.
+    "ManipulationProcessModule": "low_level:Manipulation",
+    "NavigationProcessModule": "low_level:Navigation",
+    "SpeechProcessModule": "low_level:Speech",
 }
 __getattr__ = doors.door(__name__, _LATER)
 __all__ = [name for name, value in globals().items() if not (name[0] == "_" or isinstance(value, types.ModuleType))]

@@ -2,7 +2,8 @@
 
 Two forms are read. CRAM's begins with a quantifier and a kind, followed by pairs. The other has pairs alone, as in
 `(type: action (name: (to open)) (side: left))`: there the first key and value may stand without brackets of their own.
-Colons before or after a word and the package of `desig:an` are ignored.
+Colons before or after a word and the package of `desig:an` are ignored. Pairs behind the words of a name, within its
+brackets, as in `(name: (to open) (side: left))`, are read as if they stood behind these.
 """
 
 from __future__ import annotations
@@ -108,6 +109,8 @@ def _pairs(forms: list[Any], text: str) -> dict[str, Any]:
             key, values = entry[0], entry[1:]
         else:
             raise PlanError(f"designator: {short_repr(text)}: {_shown(entry)} is no key with a value")
+        if str(key).lower() == "name" and all(isinstance(value, list) for value in values):
+            values, rest = values[:1], [*values[1:], *rest]  # a name is one text: these are further pairs
         pairs[key.lower()] = _meant(values, text)
     return pairs
 

@@ -187,7 +187,7 @@ def _several(solved: Any) -> Iterable[Any]:
 
 def _no_match(desig: Designator, misses: list[tuple[Rule, str]]) -> str:
     if not misses:
-        return f"there is no rule about {desig.kind}s"
+        return f"no rules for {desig.kind}s: import process_modules.action_rules, which has those of a NAO"
     near = sorted(misses, key=lambda miss: -miss[0].keys_that_fit(desig))[:MOST_SHOWN]
     nearest = "; ".join(f"rule {rule.name!r}: {miss}" for rule, miss in near)
     more = f" ({len(misses) - len(near)} more)" if len(misses) > len(near) else ""
