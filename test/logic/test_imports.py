@@ -10,6 +10,7 @@ from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterator
+from xml.etree import ElementTree
 
 import pytest
 from graphlib import TopologicalSorter
@@ -264,3 +265,16 @@ def test_messages_and_actions_are_apart():
         for name in OWN_DEFINITIONS
     }
     assert kinds == {"nao_library_msgs": {".msg", ".srv"}, "nao_library_actions": {".action"}}
+
+
+def test_the_three_packages_have_their_names_and_depend_on_each_other_one_way():
+    needed = {
+        "nao_library_msgs": set(),
+        "nao_library_actions": {"nao_library_msgs"},
+        "nao_library_modules": {"nao_library_msgs", "nao_library_actions", "actionlib"},
+    }
+    for name, others in needed.items():
+        package = ElementTree.parse(ROOT / name / "package.xml").getroot()
+        depends = {each.text for each in package.iter() if each.tag in ("depend", "exec_depend")}
+        assert package.findtext("name") == name
+        assert depends & {"actionlib", *needed} == others

@@ -19,6 +19,7 @@ from nao_library_modules.functions.server_types import (
     server_type,
     servers_among,
 )
+from nao_library_modules.server.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
 from naoqi.errors import NaoError
 
@@ -58,6 +59,16 @@ def test_an_action_of_a_users_own_that_lacks_fields_is_refused_with_all_of_them(
         NaoError, match="TestAction lacks functions in its goal, .* results in its result, index in its"
     ):
         require_fields(TestAction)
+
+
+def test_each_module_has_an_action_and_a_function_message_of_its_own_and_inherits_nao_basic():
+    servers = [server_type(name) for name in ACTIONS]
+    for kind, package in (("action", "nao_library_actions"), ("function", "nao_library_msgs")):
+        names = {getattr(server, kind)._type for server in servers}
+        assert len(names) == len(servers) and {name.partition("/")[0] for name in names} == {package}
+    for module in (server.module for server in servers):
+        assert issubclass(module, NaoBasic) and module is not NaoBasic
+        assert list(inspect.signature(module).parameters)[:4] == ["ip", "port", "autostart", "launchpath"]
 
 
 def test_a_server_that_is_found_by_two_names_is_one_server():

@@ -12,7 +12,7 @@ import pytest
 from actionlib import CommState
 from actionlib_msgs.msg import GoalStatus
 from fake_goals import FakeActionClient, FakeGoal
-from plan_tools import fails
+from plan_tools import Beside, fails
 
 import nao_library_modules.process_modules as p
 from nao_library_actions.msg import NaoLedAction
@@ -98,6 +98,18 @@ def test_a_goal_that_takes_too_long_is_cancelled_when_the_server_knows_it_or_has
         assert (client.goals[0].cancelled, ends[0].status) == ([CommState.ACTIVE], GoalStatus.PREEMPTED)
     else:
         assert p.top_level(plan) == ends[0] and ends[0].succeeded and client.goals[0].cancelled == []
+
+
+def test_a_plan_waits_for_a_server_until_it_is_there_and_not_for_ever(monkeypatch):
+    there = threading.Event()
+    client = FakeActionClient(lambda goal: None)
+    client.wait_for_server = there.wait
+    monkeypatch.setattr(actionlib, "ActionClient", lambda *_: client)
+    late = PlanActionClient("joint_trajectory", NaoLedAction)
+    fails(ActionlibActionTimedOut, "joint_trajectory after 0.01 s", lambda: late.wait_for_server(0.01))
+    waiting = Beside(late.wait_for_server)
+    there.set()
+    waiting.ended()
 
 
 def test_a_goal_of_which_the_server_never_tells_is_cancelled_all_the_same():

@@ -215,6 +215,22 @@ def test_goals_have_the_names_of_the_thesis(begin, robot, link, angle):
     assert begin(lambda: p.achieve(goals.closeGripper, "left")).ended() == pytest.approx(0.0, abs=0.05)
 
 
+def test_each_action_of_the_three_process_modules_has_a_goal(begin, robot, link, angle, on_its_feet):
+    def achieve(*goal):
+        return begin(lambda: p.achieve(*goal)).ended()
+
+    target = (0.16, 0.13, 0.08)
+    achieve(goals.moveArm, target, "left")
+    assert math.dist(hand_at(robot, "left"), target) < 0.02
+    achieve(goals.goStable)
+    assert angle("LShoulderPitch") == pytest.approx(1.4, abs=0.05)
+    achieve(goals.walkTo, p.Position(0.2, 0.0))
+    assert robot.now.torso.position[0] == pytest.approx(0.2, abs=0.08)
+    link.answers["speech_action"] = ActionEnd(GoalStatus.SUCCEEDED, "", None)
+    achieve(goals.textToSpeech, "Hello.")
+    assert [goal.say for goal in link.goals["speech_action"]] == ["Hello."]
+
+
 def test_procedures_of_the_thesis_act_when_they_are_called(begin, robot, link, angle):
     begin(lambda: p.openGripper("left")).ended()
     assert angle("LHand") > 0.9

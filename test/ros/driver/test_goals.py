@@ -3,7 +3,7 @@
 import unittest
 
 import rospy
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from rospy import Duration
 from sensor_msgs.msg import JointState
 from services import action_client, publisher, service
@@ -130,6 +130,15 @@ class DriverGoals(unittest.TestCase):
         self.assertAlmostEqual(run.result.goal_position.position[0], stopped, delta=0.05)
         stopped, _ = self.cancel_on_the_way(self.angles, angles(["HeadYaw"], [-1.5], 0.002), there)
         self.assertGreater(stopped, -1.4)
+
+    def test_the_status_tells_of_a_goal_that_runs(self):
+        def told():
+            return {each.status for each in rospy.wait_for_message(topic, GoalStatusArray, 60.0).status_list}
+
+        topic, run = "joint_trajectory/status", send(self.trajectories, trajectory(["HeadYaw"], (200.0, [1.5])))
+        self.addCleanup(run.wait)
+        self.addCleanup(run.cancel)
+        wait_until(lambda: GoalStatus.ACTIVE in told(), 60.0, "an active goal")
 
     def test_a_newer_goal_for_the_same_joint_ends_the_older_one(self):
         old = send(self.trajectories, trajectory(["Head"], (200.0, [1.0, 0.0])))
