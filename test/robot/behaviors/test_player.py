@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from unittest.mock import Mock
+
 import pytest
 
 from nao_sim_bridge.base.tasks import Task
@@ -30,7 +32,7 @@ class Stage:
         library = load_animations()
         self.installed = InstalledBehaviors(library)
         animator = Animator(self.simulation)
-        self.player = BehaviorPlayer(self.simulation, animator, library, self.speak, self.go_to)
+        self.player = BehaviorPlayer(self.simulation, animator, library, self.speak, self.go_to, Mock())
 
     @property
     def leds(self):

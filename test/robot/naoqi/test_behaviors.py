@@ -1,6 +1,7 @@
 """ALBehaviorManager, ALAnimationPlayer and ALFrameManager: behaviours of the robot, of clients and of Choregraphe."""
 
 import pytest
+from choregraphe import TOUCHED, link, memory, project, says, to_end, waits
 from simulator import PATIENCE
 
 MANAGER = "ALBehaviorManager"
@@ -86,6 +87,23 @@ def test_what_is_installed_is_told_runs_and_goes(manager, stiff_robot, begin):
     assert stiff_robot.ALMotion.getAngles("HeadYaw", True)[0] == pytest.approx(0.4, abs=0.03)
     assert manager.removeBehavior("mine") is True and manager.getUserBehaviorNames() == []
     assert {"mine/look", "mine/wait"} <= {removed.get(timeout=PATIENCE) for _ in both}
+
+
+def test_a_diagram_of_choregraphe_hears_events_until_its_end(stiff_robot, begin):
+    folder, manager = stiff_robot.server.files.folder / "touched", stiff_robot.ALBehaviorManager
+    folder.mkdir()
+    boxes = waits(1, 0.5) + says(2, "never") + waits(3, 9.0)
+    links = link(0, 1, end=TOUCHED) + to_end(1) + link(0, 3) + link(3, 2)
+    (folder / "behavior.xar").write_bytes(project(boxes, links, memory("FrontTactilTouched")))
+    with pytest.raises(RuntimeError, match="folder 'touched' has no manifest.xml, .* touched/behavior.xar"):
+        manager.installBehavior("touched")
+    manager.installBehavior("touched/behavior.xar")
+    future = begin(MANAGER, "runBehavior", "touched/behavior", after=1.0)
+    assert manager.getRunningBehaviors() == ["touched/behavior"]
+    stiff_robot.ALMemory.raiseEvent("FrontTactilTouched", 1.0)
+    stiff_robot.advance(0.6)
+    assert stiff_robot.answer(future) is None and manager.getRunningBehaviors() == []
+    assert stiff_robot.ALMemory.getSubscribers("FrontTactilTouched") == []
 
 
 def test_what_is_wrong_is_told(robot, refuses):

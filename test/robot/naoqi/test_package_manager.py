@@ -11,6 +11,8 @@ from simulator import PATIENCE
 TURN = """<ChoregrapheProject><Box name="root" id="-1"><Timeline enable="1" fps="10"><ActuatorList>
 <ActuatorCurve actuator="HeadYaw" mute="0" unit="0"><Key frame="5" value="20" /></ActuatorCurve></ActuatorList>
 </Timeline></Box></ChoregrapheProject>"""
+OWN = """<ChoregrapheProject><Box name="root" id="-1"><script><content>self.mine()</content></script></Box>
+</ChoregrapheProject>"""
 NAMES = '<names><name lang="en_US">Dance</name><name lang="fr_FR">Danse</name></names>'
 
 
@@ -36,7 +38,7 @@ def pack(robot):
         with zipfile.ZipFile(robot.server.files.folder / "dance.pkg", "w") as archive:
             archive.writestr("manifest.xml", manifest)
             for name in behaviors:
-                archive.writestr(f"{name}/behavior.xar", TURN)
+                archive.writestr(f"{name}/behavior.xar", OWN if name == "own" else TURN)
             if icon:
                 archive.writestr("icon.png", png())
         return "/home/nao/dance.pkg"
@@ -79,6 +81,18 @@ def test_a_package_that_cannot_be_installed_leaves_the_former_one(robot, package
     robot.settled()
     assert robot.ALBehaviorManager.getUserBehaviorNames() == ["animations/turn"]
     assert len(packages.packages2()) == 1
+
+
+def test_the_other_behaviours_are_installed_when_one_cannot_be_played(robot, packages, pack, caplog):
+    assert packages.install(pack("turn", "own")) is True
+    assert robot.ALBehaviorManager.getUserBehaviorNames() == ["dance-1/own", "dance-1/turn"]
+    refusal = "own/behavior.xar: 1 of its boxes cannot be played: 'root': a script of its own"
+    assert f"dance-1/own is installed with the others, but it fails when it runs: {refusal}" in caplog.text
+    with pytest.raises(RuntimeError, match=f"dance-1/own, which is not played: {refusal}"):
+        robot.ALBehaviorManager.runBehavior("dance-1/own")
+    with pytest.raises(RuntimeError, match="none of its behaviors can be played: own/behavior.xar: 1 of its boxes"):
+        packages.install(pack("own", uuid="dance-2"))
+    assert not packages.hasPackage("dance-2")
 
 
 def test_a_sum_is_compared_and_programs_of_a_package_are_not_started(robot, packages, pack, caplog):

@@ -33,6 +33,10 @@ class NoSuchFile(ValueError):
     """A file that a client names and that is not there."""
 
 
+class IsFolder(NoSuchFile):
+    """A folder where a client names a file."""
+
+
 class UnusableName(ValueError):
     """A file name that cannot be that of a file, or of one that can be written."""
 
@@ -144,7 +148,7 @@ class ClientFiles:
             if path.is_file():
                 return path
         if any(path.is_dir() for path in found):
-            raise NoSuchFile(f"{name!r} is a folder, not a file")
+            raise IsFolder(f"{name!r} is a folder, not a file")
         beside = [other.name for path in found if path.parent.is_dir() for other in path.parent.iterdir()]
         where = place.path if place.ours else self.folder / place.folder
         raise NoSuchFile(f"no file {name!r} in {where}{did_you_mean(posixpath.basename(inner), beside)}")

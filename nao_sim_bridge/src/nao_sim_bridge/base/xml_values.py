@@ -48,8 +48,12 @@ def parse_xml(content: bytes, where: str) -> Element:
     # Entities can make a short file one that fills the memory; Choregraphe writes none. UTF-16, of which every other
     # byte is 0, would hide them.
     most = load_sizes().xml.file_bytes
-    if len(content) > most or DOCTYPE in content or b"\0" in content:
-        raise ConfigError(where, f"is larger than {most} bytes, is not in UTF-8, or declares a document type")
+    if len(content) > most:
+        raise ConfigError(where, f"has {len(content)} bytes, at most {most} are allowed")
+    if b"\0" in content:
+        raise ConfigError(where, "is not in UTF-8")
+    if DOCTYPE in content:
+        raise ConfigError(where, "declares a document type, which is not allowed")
     parser = ElementTree.XMLParser(target=_BoundedBuilder())
     try:
         for begin in range(0, len(content), PIECE):

@@ -17,7 +17,7 @@ from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.xml_values import parse_xml
 from nao_sim_bridge.behaviors.reader import NATURES, checked_name, read_behaviors
-from nao_sim_bridge.behaviors.steps import NO_NATURE, Behavior
+from nao_sim_bridge.behaviors.steps import NO_NATURE, Behavior, Refused, Step
 from nao_sim_bridge.behaviors.xar import read_xar, xar_step
 
 MANIFEST, BEHAVIOR_FILE, ICON = "manifest.xml", "behavior.xar", "icon.png"
@@ -66,7 +66,13 @@ def package_info(path: Path) -> PackageInfo:
 
 
 def read_package(path: Path) -> list[Behavior]:
-    """The behaviours of a file, or of the package whose manifest.xml it is; a ConfigError for what cannot be played."""
+    """The behaviours of a file, or of the package whose manifest.xml it is.
+
+    A behaviour of a package that cannot be played says why when it is begun.
+
+    Raises:
+        ConfigError: It cannot be read, or none of its behaviours can be played.
+    """
     ending = path.suffix.lower()
     if ending in TEXT_FILES:
         return list(read_behaviors(path).values())
@@ -117,7 +123,7 @@ def _inside(folder: Path, name: str) -> bytes:
     except TooLarge as error:
         raise ConfigError(folder.name, f"{name!r} {error}") from error
     except OSError as error:
-        raise ConfigError(folder.name, f"{name} cannot be read: {error.strerror}") from error
+        raise ConfigError(folder.name, f"{name!r} cannot be read: {error.strerror}") from error
 
 
 def _package(read: Read, where: str) -> list[Behavior]:
@@ -125,12 +131,21 @@ def _package(read: Read, where: str) -> list[Behavior]:
     contents = root.findall("contents/behaviorContent")
     if not contents or not root.get("uuid"):
         raise ConfigError(where, "its manifest has no uuid, or no behaviorContent")
-    return [_behavior(read, entry, root.get("uuid", ""), where) for entry in contents]
+    behaviors = [_behavior(read, entry, root.get("uuid", ""), where) for entry in contents]
+    refused = [behavior.step.reason for behavior in behaviors if isinstance(behavior.step, Refused)]
+    if len(refused) == len(behaviors):
+        raise ConfigError(where, "none of its behaviors can be played: " + "; ".join(refused))
+    return behaviors
 
 
 def _behavior(read: Read, entry: Element, package: str, where: str) -> Behavior:
     folder = entry.get("path", "").strip("/")
-    step = xar_step(read(f"{folder}/{BEHAVIOR_FILE}" if folder not in ("", ".") else BEHAVIOR_FILE), where)
+    file = f"{folder}/{BEHAVIOR_FILE}" if folder not in ("", ".") else BEHAVIOR_FILE
+    step: Step
+    try:
+        step = xar_step(read(file), file)
+    except (ConfigError, BadArchive) as error:
+        step = Refused(str(error))
     nature = (entry.findtext("nature") or NO_NATURE).strip()
     tags = tuple(tag.text.strip() for tag in entry.iter("tag") if tag.text)
     name = checked_name(f"{package}/{folder}".rstrip("/."), where)

@@ -4,23 +4,29 @@ from __future__ import annotations
 
 import itertools
 import logging
-from typing import Any, Callable, Iterable, Sequence
+from typing import Any, Callable, Iterable, Protocol, Sequence
 
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.base.tasks import Task
+from nao_sim_bridge.behaviors.diagram_run import DiagramRun, TimelineRun
 from nao_sim_bridge.behaviors.run import BehaviorRun
 from nao_sim_bridge.behaviors.steps import (
     Behavior,
     BehaviorFailed,
+    Diagram,
     Gesture,
     GoToPosture,
     InTurn,
     Joints,
     JointWay,
+    Language,
     Lights,
+    Refused,
     Repeat,
     Say,
     Step,
+    Text,
+    Timeline,
     Together,
     Wait,
     words,
@@ -42,6 +48,19 @@ Speak = Callable[[str, bool], Task]
 GoTo = Callable[[str, float], Task]
 
 
+class Surroundings(Protocol):
+    """What boxes of Choregraphe need beside speech and postures."""
+
+    def language(self) -> str:
+        """In which the robot speaks, by its NAOqi name."""
+
+    def set_language(self, name: str) -> None:
+        """Speak and listen in another language; a SimulationError when the robot does not know it."""
+
+    def listen(self, key: str, listener: Callable[[Any], None]) -> Callable[[], None]:
+        """Call `listener(value)` in the simulation thread at each event, until the function returned is called."""
+
+
 class BehaviorPlayer:
     """Plays behaviours.
 
@@ -50,13 +69,21 @@ class BehaviorPlayer:
     """
 
     def __init__(
-        self, simulation: Any, animator: Animator, library: AnimationLibrary, speak: Speak, go_to: GoTo
+        self,
+        simulation: Any,
+        animator: Animator,
+        library: AnimationLibrary,
+        speak: Speak,
+        go_to: GoTo,
+        surroundings: Surroundings,
     ) -> None:
         self._simulation = simulation
         self._animator = animator
         self._library = library
         self._speak = speak
         self._go_to = go_to
+        self._surroundings = surroundings
+        self.listen = surroundings.listen
         self._runs: list[BehaviorRun] = []
         self._timers: list[tuple[float, Task]] = []
         simulation.after_tick.append(self._tick)
@@ -80,9 +107,23 @@ class BehaviorPlayer:
         for run in list(self._runs):
             run.task.kill()
 
+    @property
+    def time(self) -> float:
+        """Of the simulation, s."""
+        return self._simulation.time
+
+    def begin(self, step: Step, run: BehaviorRun, text: str = "") -> Task:
+        """Begin with a step of a diagram, which `text` is sent to; its task ends with it, an error ends `run`."""
+        return self._in_turn([step], run, text)
+
+    def text_of(self, text: Text) -> str:
+        """A text in the language of the robot; empty when there is none in it."""
+        texts = text.by_language
+        return texts[""] if "" in texts else texts.get(self._surroundings.language(), "")
+
     # --- steps ----------------------------------------------------------------------------------------------------
 
-    def _in_turn(self, steps: Iterable[Step], run: BehaviorRun) -> Task:
+    def _in_turn(self, steps: Iterable[Step], run: BehaviorRun, text: str = "") -> Task:
         """A task that ends when the steps have been done one after the other; never when the behaviour ends before."""
         left, whole = iter(steps), Task("steps", 0)
 
@@ -93,7 +134,7 @@ class BehaviorPlayer:
                     whole.finish()
                     return
                 try:
-                    task = self._begin(step, run)
+                    task = self._begin(step, run, text)
                 except SimulationError as error:
                     run.fail(_failure(run.behavior, step, error))
                     return
@@ -104,8 +145,15 @@ class BehaviorPlayer:
         proceed()
         return whole
 
-    def _begin(self, step: Step, run: BehaviorRun) -> Task:
+    def _begin(self, step: Step, run: BehaviorRun, text: str = "") -> Task:
         """Begin with a step; its task ends with it."""
+        if isinstance(step, Refused):
+            raise SimulationError(step.reason)
+        if isinstance(step, (Diagram, Timeline)):
+            return self._choregraphe(step, run)
+        if isinstance(step, Language):
+            self._surroundings.set_language(step.name)
+            return _ended()
         if isinstance(step, InTurn):
             return self._in_turn(step.steps, run)
         if isinstance(step, Repeat):
@@ -121,7 +169,29 @@ class BehaviorPlayer:
             return self._light(step, run)
         if isinstance(step, Wait):
             return run.watch(self._timer(step.duration))
-        return self._command(step, run)
+        return self._command(step, run, text)
+
+    def _choregraphe(self, step: Diagram | Timeline, run: BehaviorRun) -> Task:
+        """A behaviour of Choregraphe; the signals that leave it go nowhere."""
+
+        def told(done: Task) -> None:
+            if done.value is None and not run.over:
+                log.warning(
+                    "behavior %s ends: nothing in it is left to happen. No signal has reached its onStopped, so on a "
+                    "robot it would run until it is stopped",
+                    run.behavior.name,
+                )
+
+        part = run.branch()
+        if isinstance(step, Diagram):
+            whole = DiagramRun(step, part, self, lambda port, text: None)
+            whole.task.add_done_callback(told)
+            whole.load(step.starts)
+        else:
+            whole = TimelineRun(step, part, self, lambda port, text: None)
+            whole.task.add_done_callback(told)
+            whole.start()
+        return whole.task
 
     def _move(self, step: Joints, run: BehaviorRun) -> Task:
         """Joints without stiffness stay where they are, as on a robot; the others move."""
@@ -158,9 +228,12 @@ class BehaviorPlayer:
         fade = robot.leds.animate("behavior", [LedKeyframe(step.duration, values)], robot.time)
         return run.watch_lights(fade, values)
 
-    def _command(self, step: Say | GoToPosture, run: BehaviorRun) -> Task:
+    def _command(self, step: Say | GoToPosture, run: BehaviorRun, text: str) -> Task:
         if isinstance(step, Say):
-            return run.watch_command(self._speak(step.text, step.animated), lambda error: self._fail(run, step, error))
+            if step.given and not text.strip():
+                return _ended()
+            spoken = step.text + text if step.given else step.text
+            return run.watch_command(self._speak(spoken, step.animated), lambda error: self._fail(run, step, error))
 
         def settled(error: Exception | None, reached: bool = True) -> None:
             self._fail(run, step, error or (None if reached else SimulationError("the robot did not get there")))

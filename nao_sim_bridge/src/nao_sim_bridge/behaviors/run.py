@@ -18,9 +18,10 @@ SAME = 1e-6
 class BehaviorRun:
     """What a behaviour that is played has begun; its task ends with it."""
 
-    def __init__(self, behavior: Behavior, task: Task, leds: LedBank) -> None:
+    def __init__(self, behavior: Behavior, task: Task, leds: LedBank, whole: BehaviorRun | None = None) -> None:
         self.behavior = behavior
         self.task = task
+        self._whole = whole
         self._leds = leds
         self._ends: dict[Task, Callable[[], object]] = {}
         self._stopped = False
@@ -34,8 +35,32 @@ class BehaviorRun:
     def over(self) -> bool:
         return self._stopped or self.task.finished
 
+    def branch(self, failed: Callable[[], object] | None = None) -> BehaviorRun:
+        """A part of what is played, which can be stopped alone. Its error ends the whole, unless `failed` takes it."""
+        task = Task("branch", 0)
+        part = BehaviorRun(self.behavior, task, self._leds, self)
+        self._ends[task] = part.finish
+
+        def settle(done: Task) -> None:
+            self._ends.pop(done, None)
+            if done.killed and not self.over:
+                part.stop()
+                self.task.kill()
+            elif done.error is not None and not self.over:
+                if failed is None:
+                    self.fail(done.error)
+                else:
+                    log.info("%s", done.error)
+                    failed()
+
+        task.add_done_callback(settle)
+        return part
+
     def tell_limp(self, joints: Iterable[str]) -> None:
         """Tell in the log, once a run, of joints that stay where they are because they have no stiffness."""
+        if self._whole is not None:
+            self._whole.tell_limp(joints)
+            return
         names = list(joints)
         if names and not self._told_limp:
             self._told_limp = True

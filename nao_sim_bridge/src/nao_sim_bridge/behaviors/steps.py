@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
-from typing import Mapping, Tuple, Union
+from dataclasses import dataclass, field
+from enum import Enum
+from heapq import heappop, heappush
+from typing import Iterator, Mapping, Tuple, Union
 
 from nao_sim_bridge.base.errors import SimulationError
 from nao_sim_bridge.control.joints.bezier import PackedKeyPoints
@@ -65,10 +67,11 @@ class Lights:
 
 @dataclass(frozen=True)
 class Say:
-    """A text that is spoken, animated by gestures or not."""
+    """A text that is spoken, animated by gestures or not; with `given`, what the box before sends comes after it."""
 
     text: str
     animated: bool = False
+    given: bool = False
 
 
 @dataclass(frozen=True)
@@ -108,7 +111,127 @@ class Repeat:
     times: int | None
 
 
-Step = Union[Joints, Gesture, Lights, Say, GoToPosture, Wait, InTurn, Together, Repeat]
+@dataclass(frozen=True)
+class Text:
+    """A text that is sent to the next box: one for each language of ALTextToSpeech, or one under "" for all."""
+
+    by_language: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Language:
+    """The language in which the robot speaks and listens from now on."""
+
+    name: str
+
+
+class Act(Enum):
+    """What a signal does where it arrives."""
+
+    START = "start"  # begins a box
+    STOP = "stop"  # stops a box
+    PASS = "pass"  # goes on inside of a box that was begun before
+    OUT = "out"  # leaves the diagram by an output
+
+
+@dataclass(frozen=True)
+class Link:
+    """Where a signal goes: to an input of a box, which is counted in its diagram, or to an output of the diagram."""
+
+    act: Act
+    port: str
+    box: int = -1
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box of a diagram of Choregraphe.
+
+    Attributes:
+        step: What it does; None for nothing, and nothing that follows.
+        links: Where the signals of each output go, by the id of the output.
+        done: Outputs that send a signal at its end, `failed` when it fails, `stopped` when a link stops it; those of
+            diagrams and timelines are in `step`.
+        restarts: Whether it begins anew when it is begun while it runs; others run once more beside.
+    """
+
+    name: str
+    step: Step | None
+    links: Mapping[str, Tuple[Link, ...]]
+    done: Tuple[str, ...] = ()
+    failed: Tuple[str, ...] = ()
+    stopped: Tuple[str, ...] = ()
+    restarts: bool = False
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """Boxes that begin and stop one another.
+
+    Attributes:
+        links: Where the signals of each of its inputs go, by the id of the input; `starts` are those that begin it.
+        loaded: Where the signal goes that it is loaded.
+        events: Where the signals of events of ALMemory go, by their keys.
+        ends: Outputs that end it.
+    """
+
+    boxes: Tuple[Box, ...]
+    links: Mapping[str, Tuple[Link, ...]]
+    starts: Tuple[str, ...] = ()
+    loaded: Tuple[Link, ...] = ()
+    events: Mapping[str, Tuple[Link, ...]] = field(default_factory=dict)
+    ends: Tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class KeyFrame:
+    """A diagram of a timeline, loaded after `begin`, s, until the next one of its layer or the end of the timeline."""
+
+    begin: float
+    layer: int
+    diagram: Diagram
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """Joints that move, and diagrams that begin meanwhile.
+
+    Attributes:
+        end: When it ends, s, whatever runs; None: when nothing of it is left to happen.
+        ends: Outputs that send a signal at its end.
+        concludes: Whether it comes to an end by itself; on a robot others stay until they are stopped.
+    """
+
+    joints: Joints | None
+    frames: Tuple[KeyFrame, ...]
+    end: float | None
+    ends: Tuple[str, ...] = ()
+    concludes: bool = True
+
+
+@dataclass(frozen=True)
+class Refused:
+    """A behaviour of a package that cannot be played, for this reason."""
+
+    reason: str
+
+
+Step = Union[
+    Joints,
+    Gesture,
+    Lights,
+    Say,
+    GoToPosture,
+    Wait,
+    InTurn,
+    Together,
+    Repeat,
+    Text,
+    Language,
+    Diagram,
+    Timeline,
+    Refused,
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,26 +256,42 @@ def words(step: Step) -> str:
         return f"{'gesture' if isinstance(step, Gesture) else 'posture'} {step.name}"
     if isinstance(step, Say):
         return f"text {step.text[:40]!r}"
+    if isinstance(step, Refused):
+        return "which is not played"
     return f"lights {step.group}" if isinstance(step, Lights) else type(step).__name__
+
+
+def parts_of(step: Step) -> Iterator[Step]:
+    """The steps that a step is made of, one level down."""
+    if isinstance(step, (InTurn, Together)):
+        yield from step.steps
+    elif isinstance(step, Repeat):
+        yield step.step
+    elif isinstance(step, Diagram):
+        yield from (box.step for box in step.boxes if box.step is not None)
+    elif isinstance(step, Timeline):
+        yield from () if step.joints is None else (step.joints,)
+        yield from (frame.diagram for frame in step.frames)
 
 
 def bytes_of(step: Step) -> int:
     """Memory that a step takes, about."""
-    if isinstance(step, (InTurn, Together)):
-        return STEP_BYTES + sum(map(bytes_of, step.steps))
-    if isinstance(step, Repeat):
-        return STEP_BYTES + bytes_of(step.step)
+    own = STEP_BYTES
     if isinstance(step, Joints):
-        return STEP_BYTES + sum(STEP_BYTES + way.points.nbytes for way in step.ways.values())
-    return STEP_BYTES + (sys.getsizeof(step.text) if isinstance(step, Say) else 0)
+        own += sum(STEP_BYTES + way.points.nbytes for way in step.ways.values())
+    elif isinstance(step, (Say, Refused)):
+        own += sys.getsizeof(step.text if isinstance(step, Say) else step.reason)
+    elif isinstance(step, Text):
+        own += sum(map(sys.getsizeof, step.by_language.values()))
+    elif isinstance(step, Diagram):
+        own += STEP_BYTES * len(step.boxes)
+    return own + sum(map(bytes_of, parts_of(step)))
 
 
 def takes_time(step: Step) -> bool:
     """Whether a step cannot be over at once: what is repeated without end must not be."""
-    if isinstance(step, (InTurn, Together)):
-        return any(map(takes_time, step.steps))
-    if isinstance(step, Repeat):
-        return takes_time(step.step)
+    if isinstance(step, (InTurn, Together, Repeat)):
+        return any(map(takes_time, parts_of(step)))
     if isinstance(step, (Wait, Lights)):
         return step.duration > 0.0
     # Going to a posture that one is in takes a look or two, and what is spoken at least a breath.
@@ -161,11 +300,7 @@ def takes_time(step: Step) -> bool:
 
 def joints_of(step: Step) -> frozenset[str]:
     """Names of the joints that a step moves by key points."""
-    if isinstance(step, (InTurn, Together)):
-        return frozenset().union(*map(joints_of, step.steps))
-    if isinstance(step, Repeat):
-        return joints_of(step.step)
-    return frozenset(step.ways) if isinstance(step, Joints) else frozenset()
+    return frozenset(step.ways) if isinstance(step, Joints) else frozenset().union(*map(joints_of, parts_of(step)))
 
 
 def length_of(step: Step) -> float:
@@ -176,6 +311,33 @@ def length_of(step: Step) -> float:
         return max(map(length_of, step.steps), default=0.0)
     if isinstance(step, Repeat):
         return length_of(step.step) * (step.times or 1)
+    if isinstance(step, Diagram):
+        return _length_of_diagram(step)
+    if isinstance(step, Timeline):
+        moving = 0.0 if step.joints is None else step.joints.length
+        frames = (frame.begin + length_of(frame.diagram) for frame in step.frames)
+        return max(moving, *frames, 0.0) if step.end is None else step.end
     if isinstance(step, (Wait, Lights)):
         return step.duration
     return step.length if isinstance(step, Joints) else 0.0
+
+
+def _length_of_diagram(diagram: Diagram) -> float:
+    """Until each box that begins has been played once."""
+    begins = [link for port in diagram.starts for link in diagram.links.get(port, ())]
+    due = [(0.0, link.box) for link in (*begins, *diagram.loaded) if link.act is Act.START]
+    seen: set[int] = set()
+    end = 0.0
+    while due:
+        time, number = heappop(due)
+        box = diagram.boxes[number]
+        if number in seen or box.step is None:
+            continue
+        seen.add(number)
+        over = time + length_of(box.step)
+        end = max(end, over)
+        for links in box.links.values():
+            for link in links:
+                if link.act is Act.START:
+                    heappush(due, (over, link.box))
+    return end

@@ -16,6 +16,7 @@ from nao_sim_bridge.hearing.recogniser import SpareProcess
 from nao_sim_bridge.naoqi import motion
 from nao_sim_bridge.naoqi.behaviors import animation_player, behavior_manager, frame_manager
 from nao_sim_bridge.naoqi.behaviors.running import RunningBehaviors
+from nao_sim_bridge.naoqi.behaviors.surroundings import BehaviorSurroundings
 from nao_sim_bridge.naoqi.binding.later import Later, later, made
 from nao_sim_bridge.naoqi.binding.older import older_events
 from nao_sim_bridge.naoqi.body import leds
@@ -99,7 +100,10 @@ class RobotModules:
         self.speech = SpeechModules(runner, memory, files, broker, workers.voice, self._audio.play_sound)
         posture = ALRobotPosture(runner, memory)
         library = self.speech.library
-        player = BehaviorPlayer(simulation, self.speech.animator, library, self.speech.say, posture.goToPosture)
+        surroundings = BehaviorSurroundings(runner, memory, self.speech.settings, lambda: self.recognition)
+        player = BehaviorPlayer(
+            simulation, self.speech.animator, library, self.speech.say, posture.goToPosture, surroundings
+        )
         running = RunningBehaviors(player, InstalledBehaviors(library), memory)
         zone = TimeZone()
         self._life = LifeModules(runner, memory, broker, self.speech, posture, running, zone)

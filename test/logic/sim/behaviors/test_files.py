@@ -6,15 +6,31 @@ import math
 import zipfile
 
 import pytest
+from choregraphe import (
+    HEADER,
+    NOD,
+    OWN,
+    SAYS,
+    box,
+    curve,
+    diagram,
+    goes,
+    link,
+    parameters,
+    project,
+    says,
+    timeline,
+    waits,
+)
 
 from nao_sim_bridge.base.errors import ConfigError
 from nao_sim_bridge.behaviors.packages import read_package, renamed
 from nao_sim_bridge.behaviors.reader import behaviors_of
 from nao_sim_bridge.behaviors.steps import (
     GoToPosture,
-    InTurn,
     Joints,
     Lights,
+    Refused,
     Repeat,
     Say,
     Together,
@@ -23,6 +39,7 @@ from nao_sim_bridge.behaviors.steps import (
     length_of,
 )
 from nao_sim_bridge.behaviors.xar import xar_step
+from nao_sim_bridge.model.model_reader import load_model
 
 RED = {"lights": "FaceLeds", "color": "red"}
 
@@ -73,100 +90,58 @@ def test_what_is_wrong_is_told_with_its_place(entry, told):
     assert error.value.where.startswith("file: test: do[1]")
 
 
-HEADER = '<?xml version="1.0" encoding="UTF-8" ?>'
-SPACE = "http://www.aldebaran-robotics.com/schema/choregraphe/project.xsd"
-
-
-def project(boxes, links):
-    return f"""{HEADER}<ChoregrapheProject xmlns="{SPACE}" xar_version="3">
-    <Box name="root" id="-1"><Timeline enable="0"><BehaviorLayer name="l"><BehaviorKeyframe name="k" index="1">
-    <Diagram>{boxes}{links}</Diagram></BehaviorKeyframe></BehaviorLayer></Timeline></Box></ChoregrapheProject>
-    """.encode()
-
-
-def box(number, name, inside, script="", text_input=False):
-    kind = 3 if text_input else 1
-    return f"""<Box name="{name}" id="{number}"><script language="4"><content><![CDATA[{script}]]></content></script>
-    <Input name="onLoad" type="1" id="1"/><Input name="onStart" type="{kind}" id="2"/><Input name="onStop" id="3"/>
-    <Output name="onStopped" id="4"/><Output name="onError" id="5"/>{inside}</Box>"""
-
-
-def link(source, target, entry=2, end=4):
-    return f'<Link inputowner="{target}" indexofinput="{entry}" outputowner="{source}" indexofoutput="{end}"/>'
-
-
-def curve(joint, *keys, unit=0):
-    listed = "".join(f'<Key frame="{frame}" value="{value}">{"".join(rest)}</Key>' for frame, value, *rest in keys)
-    return f'<ActuatorCurve name="value" actuator="{joint}" mute="0" unit="{unit}">{listed}</ActuatorCurve>'
-
-
-def timeline(*curves, diagram=""):
-    layer = f'<BehaviorLayer><BehaviorKeyframe index="11">{diagram}</BehaviorKeyframe></BehaviorLayer>'
-    return f'<Timeline enable="1" fps="10">{layer}<ActuatorList>{"".join(curves)}</ActuatorList></Timeline>'
-
-
-def parameters(**values):
-    return "".join(f'<Parameter name="{name}" value="{value}"/>' for name, value in values.items())
-
-
-SAYS = "self.tts = self.session().service('ALTextToSpeech')"
-NOD = timeline(curve("HeadPitch", (5, 10.0), (10, 0.0)), curve("LHand", (10, 0.5), unit=1))
-
-
-def played(boxes, *links):
+def read(boxes, *links):
     return xar_step(project(boxes, "".join(link(*one) for one in ((0, 1), *links))), "file")
 
 
-def flat(step):
-    """The single steps of a sequence, in order."""
-    return [single for inner in step.steps for single in flat(inner)] if isinstance(step, InTurn) else [step]
+def inside(step):
+    """What the boxes of a diagram do."""
+    return [one.step for one in step.boxes]
 
 
 def test_a_timeline_becomes_joints_in_radians_and_seconds_shaped_by_tangents():
-    step = played(box(1, "Nod", NOD))
-    assert isinstance(step, Joints) and step.ways["LHand"].points[0].angle == 0.5
-    found = [(point.time, point.angle) for point in step.ways["HeadPitch"].points]
+    ways = inside(read(box(1, "Nod", NOD)))[0].joints.ways
+    assert ways["LHand"].points[0].angle == 0.5
+    found = [(point.time, point.angle) for point in ways["HeadPitch"].points]
     assert found == [(0.5, pytest.approx(math.radians(10.0))), (1.0, 0.0)]
     tangent = '<Tangent side="right" interpType="bezier" abscissaParam="2" ordinateParam="5"/>'
-    way = played(box(1, "Look", timeline(curve("HeadYaw", (5, 10.0, tangent), (10, 0.0))))).ways["HeadYaw"]
+    turns = timeline(curve("HeadYaw", (5, 10.0, tangent), (10, 0.0)))
+    way = inside(read(box(1, "Look", turns)))[0].joints.ways["HeadYaw"]
     after = way.points[0].after
     assert way.curved and (after.time, after.angle) == (0.2, pytest.approx(math.radians(5.0)))
 
 
-def test_boxes_follow_their_links_whatever_their_order_in_the_file():
-    text = box(1, "Text Edit", "<pluginContent><text>Good day</text></pluginContent>", "send()")
-    says = box(2, "Say Text", "", SAYS, text_input=True)
-    stands = box(3, "Goto Posture", parameters(**{"Posture name": "Stand"}), "ALRobotPosture")
-    waits = box(4, "Wait", parameters(**{"Timeout (s)": "1.5"}), "qi.async()")
-    links = link(2, 4) + link(3, 1) + link(0, 3) + link(1, 2) + link(4, 0)
-    found = flat(xar_step(project(says + waits + text + stands, links), "file"))
-    assert found == [GoToPosture("Stand", 0.8), Say("Good day"), Wait(1.5)]
-    both = played(box(1, "A", NOD) + box(2, "B", NOD), (0, 2))
-    assert isinstance(both, Together) and length_of(both) == 1.0, "what begins together runs together"
-    boxes = box(1, "A", NOD) + box(2, "B", NOD) + box(3, "C", NOD)
-    assert isinstance(played(boxes, (1, 2, 3), (1, 3, 2, 5)), Joints), "links to stop and from errors begin nothing"
+@pytest.mark.parametrize("unit", [0, -1, 1])
+def test_angles_are_in_degrees_whatever_the_unit_of_their_curve(unit):
+    turns = timeline(curve("HeadYaw", (5, 20.0), unit=unit), curve("LHand", (5, 0.5), unit=unit))
+    ways = inside(read(box(1, "Turn", turns)))[0].joints.ways
+    assert ways["HeadYaw"].points[0].angle == pytest.approx(math.radians(20.0))
+    assert ways["LHand"].points[0].angle == 0.5, "hands open by shares"
 
 
-def test_a_box_speaks_as_fast_as_it_says_and_on_a_timeline_at_its_frame():
-    fast = box(1, "Say", parameters(**{"Text": "Hi", "Speed (%)": "80"}), SAYS)
-    assert flat(played(fast)) == [Say("\\rspd=80\\ Hi")]
-    diagram = f"<Diagram>{box(1, 'Say', parameters(Text='Hi'), SAYS)}{link(0, 1)}</Diagram>"
-    step = played(box(1, "Move", timeline(curve("HeadYaw", (20, 1.0)), diagram=diagram)))
-    assert isinstance(step, Together) and flat(step.steps[1]) == [Wait(1.0), Say("Hi")]
+def test_a_joint_goes_as_far_as_it_can_and_that_is_told(caplog):
+    ways = inside(read(box(1, "Turn", timeline(curve("HeadYaw", (5, 150.0))))))[0].joints.ways
+    assert ways["HeadYaw"].points[0].angle == pytest.approx(load_model().joint("HeadYaw").upper)
+    assert "box 'Turn' moves HeadYaw to 2.618" in caplog.text
+
+
+def test_a_posture_is_that_of_the_parameter_name_or_of_the_script():
+    assert inside(read(goes(1, "Sit"))) == [GoToPosture("Sit", 0.5)]
+    script = 'ALRobotPosture\nresult = self.postureService.goToPosture("Stand", 0.8)'
+    assert inside(read(box(1, "Go to position Stand", "", script))) == [GoToPosture("Stand", 0.8)]
+
+
+def test_a_say_box_has_its_speed_and_voice_and_an_animated_one_its_mode():
+    given = {"Text": "Hi", "Speed (%)": 80, "Voice shaping (%)": 120}
+    assert inside(read(box(1, "Say", parameters(**given), SAYS))) == [Say("\\rspd=80\\ \\vct=120\\ Hi")]
+    given = {"Text": "Hi", "Speaking movement mode": "disabled", "Animation": "Hey_1"}
+    animated = box(1, "Animated Say", parameters(**given), "service('ALAnimatedSpeech')")
+    assert inside(read(animated)) == [Say("^mode(disabled) ^start(Hey_1) Hi ^wait(Hey_1)", True)]
 
 
 def test_a_chain_of_boxes_may_be_long():
-    boxes = "".join(box(number, "Wait", parameters(Timeout=number)) for number in range(1, 1001))
-    step = played(boxes, *((number, number + 1) for number in range(1, 1000)))
+    step = read("".join(waits(number, number) for number in range(1, 1001)), *((n, n + 1) for n in range(1, 1000)))
     assert length_of(step) == sum(range(1, 1001))
-
-
-def layers(count, width, inside):
-    """Boxes in layers, each linked to all of the next layer: there are width ** count ways through."""
-    numbers = [[1 + layer * width + place for place in range(width)] for layer in range(count)]
-    boxes = "".join(box(number, "Text", inside) for layer in numbers for number in layer)
-    links = [(a, b) for layer, after in zip([[0], *numbers], numbers) for a in layer for b in after]
-    return project(boxes, "".join(link(*each) for each in links))
 
 
 def moves(*keys, fps=10):
@@ -174,29 +149,59 @@ def moves(*keys, fps=10):
     return project(box(1, "Move", moving), link(0, 1))
 
 
+def nested(depth):
+    inner = says(1, "deep")
+    for _ in range(depth):
+        inner = box(1, "Box", diagram(inner, link(0, 1)))
+    return project(inner, link(0, 1))
+
+
+def told_once(*boxes):
+    return project("".join(boxes), "".join(link(0, number) for number in range(1, len(boxes) + 1)))
+
+
 @pytest.mark.parametrize(
     "content, told",
     [
-        (layers(12, 4, "<pluginContent><text>Good day</text></pluginContent>"), "too many boxes"),
-        (layers(12, 4, ""), "too many boxes"),
-        (layers(60, 2, ""), "nested too deep"),
+        (told_once(*(says(number, "Hi") for number in range(1, 2002))), "too many boxes"),
+        (nested(52), "nested too deep"),
         (moves((5, 1.0), fps="1e-310"), "frames a second is 1e-310, allowed is 1 to 100"),
         (moves((5, 1.0), fps="0"), "frames a second is 0"),
         (moves(("1e308", 1.0)), "frame of a key of HeadYaw is 1e308, allowed is -36000 to 36000"),
         (moves((5, "inf")), "a key of HeadYaw is inf"),
         (moves((5, 1.0, '<Tangent ordinateParam="1e308"/>')), "the tangent of a key of HeadYaw is 1e308"),
-        (project(box(1, "Wait", parameters(Timeout="1e9")), link(0, 1)), "the time of box 'Wait' is 1e9"),
-        (project(box(1, "Say", parameters(Text="x" * 10001), SAYS), link(0, 1)), "a text of 10001 characters"),
-        (project(box(1, "Mine", "", "os.remove('x')"), link(0, 1)), "box 'Mine' runs a script"),
-        (project(box(1, "A", NOD) + box(2, "B", NOD), link(0, 1) + link(1, 2) + link(2, 1)), "circles"),
-        (project(box(1, "A", timeline(curve("WheelB", (5, 1.0)))), link(0, 1)), "no joint of a NAO"),
+        (told_once(waits(1, 1e9)), "the time of box 'Wait' is 1000000000"),
+        (told_once(says(1, "x" * 10001)), "a text of 10001 characters"),
+        (told_once(box(1, "Mine", "", OWN)), "1 of its boxes cannot be played: 'Mine': a script of its own"),
+        (told_once(box(1, "Mine", diagram(says(1, "Hi"), link(0, 1)), OWN)), "'Mine': a script of its own"),
+        (told_once(box(1, "Say", parameters(Text="Hi"), f"{SAYS}; os.remove('x')")), "'Say': a script of its own"),
+        (told_once(box(1, "Talk", "<dialogFile>talk.dlg</dialogFile>")), "'Talk': a dialogue, which is not held"),
+        (told_once(goes(1, "Handstand")), "'Goto Posture': it goes to posture 'Handstand', there are Stand"),
+        (told_once(box(1, "A", timeline(curve("WheelB", (5, 1.0))))), "no joint of a NAO"),
         (b"<html/>", "no behaviour of Choregraphe"),
         (b'<!DOCTYPE a [<!ENTITY x "x">]><a/>', "document type"),
+        ("<a/>".encode("utf-16"), "is not in UTF-8"),
     ],
+    ids=lambda value: value if isinstance(value, str) else "",
 )
 def test_what_cannot_be_played_is_told(content, told):
     with pytest.raises(ConfigError, match=told):
         xar_step(content, "file")
+
+
+def test_one_refusal_names_all_boxes_that_cannot_play():
+    inner = box(2, "Part", diagram(box(1, "Mine", "", OWN) + says(2, "Hi"), link(0, 1) + link(0, 2)))
+    talk = box(3, "Talk", "<dialogFile>talk.dlg</dialogFile>")
+    with pytest.raises(ConfigError) as error:
+        xar_step(told_once(box(1, "Mine", "", OWN), inner, talk, says(4, "Hi")), "file")
+    refusal = str(error.value)
+    assert "3 of its boxes cannot be played" in refusal
+    assert "'Mine', 'Part/Mine': a script of its own" in refusal and "'Talk': a dialogue" in refusal
+
+
+def test_a_box_that_no_link_leads_to_is_left_out(caplog):
+    assert len(read(says(1, "Hi") + box(2, "Mine", "", OWN)).boxes) == 1
+    assert "no link leads to 'Mine': they are left out" in caplog.text
 
 
 MANIFEST = f"""{HEADER}<package uuid="greeter" version="1.0.0"><contents><behaviorContent path="behavior_1">
@@ -222,3 +227,20 @@ def test_a_package_is_read_from_its_folder_and_from_its_archive_and_from_nowhere
     for path, told in ((folder / "manifest.xml", "not in the package"), (song, "known are .yaml")):
         with pytest.raises(ConfigError, match=told):
             read_package(path)
+
+
+TWO = MANIFEST.replace("</contents>", '<behaviorContent path="other"/></contents>')
+
+
+def test_the_other_behaviours_of_a_package_are_read_when_one_cannot_be_played(tmp_path):
+    for name, script in (("behavior_1", OWN), ("other", SAYS)):
+        (tmp_path / name).mkdir()
+        content = told_once(box(1, "Mine", parameters(Text="Hi"), script))
+        (tmp_path / name / "behavior.xar").write_bytes(content)
+    (tmp_path / "manifest.xml").write_text(TWO)
+    refused, other = read_package(tmp_path / "manifest.xml")
+    assert isinstance(refused.step, Refused) and "'Mine': a script of its own" in refused.step.reason
+    assert other.name == "greeter/other" and not isinstance(other.step, Refused)
+    (tmp_path / "other" / "behavior.xar").unlink()
+    with pytest.raises(ConfigError, match="none of its behaviors can be played: .*'Mine'.*other/behavior.xar"):
+        read_package(tmp_path / "manifest.xml")

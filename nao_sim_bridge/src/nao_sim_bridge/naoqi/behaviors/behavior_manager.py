@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from pathlib import Path
 from typing import Sequence
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile
+from nao_sim_bridge.base.record_dir import ClientFiles, IsFolder, NoSuchFile
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.behaviors.packages import MANIFEST, read_package, renamed
-from nao_sim_bridge.behaviors.steps import Behavior
+from nao_sim_bridge.behaviors.packages import BEHAVIOR_FILE, MANIFEST, read_package, renamed
+from nao_sim_bridge.behaviors.steps import Behavior, Refused
 from nao_sim_bridge.core.robot_runner import RobotRunner
 from nao_sim_bridge.naoqi.behaviors.running import RUN, RunningBehaviors
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 
 NAME = "ALBehaviorManager"
 ADDED, REMOVED, UPDATED = (f"{NAME}/Behavior{what}" for what in ("Added", "Removed", "Updated"))
+log = logging.getLogger("nao_sim.behaviors")
 SEVERAL_ADDED = f"{NAME}/BehaviorsAdded"
 
 
@@ -85,6 +87,13 @@ class ALBehaviorManager:
         if name:
             behaviors = renamed(behaviors, name)
         added, updated = self._installed.install(behaviors, overwrite, gone)
+        for behavior in behaviors:
+            if isinstance(behavior.step, Refused):
+                log.warning(
+                    "%s is installed with the others, but it fails when it runs: %s",
+                    behavior.name,
+                    behavior.step.reason,
+                )
         if gone:
             self._end(gone)
         for event, names in ((ADDED, added), (UPDATED, updated)):
@@ -182,9 +191,12 @@ class ALBehaviorManager:
     def _file(self, path: str) -> Path:
         try:
             return self._files.to_read(path)
-        except NoSuchFile:
-            try:  # the folder of a package is known by its manifest
-                return self._files.to_read(f"{path.rstrip('/')}/{MANIFEST}")
+        except IsFolder as error:  # the folder of a package is known by its manifest
+            manifest = f"{path.rstrip('/')}/{MANIFEST}"
+            try:
+                return self._files.to_read(manifest)
             except NoSuchFile:
-                pass
-            raise
+                raise NoSuchFile(
+                    f"folder {path!r} has no {MANIFEST}, which the folder of a package has; install a single behavior "
+                    f"by its file: {path.rstrip('/')}/{BEHAVIOR_FILE}"
+                ) from error

@@ -86,7 +86,7 @@ class SpeechModules:
         self.animator = Animator(runner.simulation)
         self.library = load_animations()
         self.body_language = BodyLanguage()
-        settings = VoiceSettings(studio.engines, files)
+        self.settings = settings = VoiceSettings(studio.engines, files)
         events = SpeechEvents(memory, lambda: runner.simulation.sound.time)
         self.speaker.listeners.append(events)
         self._text_to_speech = ALTextToSpeech(self.speaker, studio, settings, events, runner, files)
