@@ -28,17 +28,20 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
+    from .behavior import ALBehavior
     from .broker import ALBroker
     from .calls import Call
     from .limits import Timing
-    from .module import ALModule
+    from .module import ALDocable, ALModule, createModule
     from .proxy import ALProxy
     from .registry import close_all, connection
     from .robot_connection import Connection
     from .state import State
 
 __all__ = [
+    "ALBehavior",
     "ALBroker",
+    "ALDocable",
     "ALModule",
     "ALProxy",
     "BadArguments",
@@ -57,11 +60,14 @@ __all__ = [
     "UnknownModule",
     "close_all",
     "connection",
+    "createModule",
     "motion",
 ]
 
 _HOMES = {
+    "ALBehavior": "behavior",
     "ALBroker": "broker",
+    "ALDocable": "module",
     "ALModule": "module",
     "ALProxy": "proxy",
     "Call": "calls",
@@ -70,6 +76,7 @@ _HOMES = {
     "Timing": "limits",
     "close_all": "registry",
     "connection": "registry",
+    "createModule": "module",
 }
 """What is loaded when it is first asked for: programs that know the errors alone need no libqi."""
 

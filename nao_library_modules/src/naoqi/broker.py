@@ -76,6 +76,11 @@ class ALBroker:
         with self._lock:
             return self._session.port
 
+    def session(self) -> Any:
+        """The session of libqi over which it serves; a BrokerError while there is none."""
+        with self._lock:
+            return self._session.raw
+
     def isModulePresent(self, name: str) -> bool:
         """Whether the robot, or this broker, has a module of that name."""
         return name in self._modules or name in self.connection.module_names()

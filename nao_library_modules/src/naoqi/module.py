@@ -2,16 +2,31 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any, List
+from weakref import WeakValueDictionary
 
 from .broker import ALBroker, current_broker
-from .errors import UnknownMethod
+from .errors import BrokerError, UnknownMethod
 from .served import public_methods, served_object
 from .translate import closest_names
 from .worker import Worker
 
+_modules: WeakValueDictionary[str, ALModule] = WeakValueDictionary()
+_kept: List[ALModule] = []
 
-class ALModule:
+
+class ALDocable:
+    """Base class of what is served with its documentation, as in the SDK.
+
+    All public methods of a module are served with their docstrings anyway; its constructor is there to be called.
+    """
+
+    def __init__(self, bindIfnoDocumented: bool = False) -> None:
+        """Nothing is left to do: methods without a docstring are served, too."""
+
+
+class ALModule(ALDocable):
     """Base class of modules: the public methods of a subclass are served under its name.
 
         class Buttons(ALModule):
@@ -36,8 +51,19 @@ class ALModule:
         self.__name = name
         self.__broker: ALBroker = current_broker()
         self.__worker = Worker(f"naoqi module {name}")
-        self.__methods: List[str] = public_methods(self, ALModule)
+        self.__methods: List[str] = public_methods(self)
+        self.logger = logging.getLogger(name)
         self.__broker.serve(name, self.__served(), self.__worker)
+        _modules[name] = self
+
+    @classmethod
+    def getModule(cls, name: str) -> ALModule:
+        """The module of this process with a name; a BrokerError when there is none."""
+        module = _modules.get(name)
+        if module is None:
+            known = ", ".join(sorted(_modules)) or "none"
+            raise BrokerError("", f"module {name!r} does not exist in this process; there are: {known}")
+        return module
 
     def getName(self) -> str:
         """Name of the module."""
@@ -69,3 +95,10 @@ class ALModule:
 
     def __served(self) -> Any:
         return served_object(self, self.__name, self.__methods, self.__worker)
+
+
+def createModule(name: str) -> ALModule:
+    """Make a module without methods of its own, and keep it until its broker is shut down or it exits."""
+    module = ALModule(name)
+    _kept.append(module)
+    return module

@@ -15,8 +15,12 @@ logger = logging.getLogger("naoqi")
 
 EVENT_ARGUMENTS = 3
 """ALMemory calls a callback with the name of the event, its value, and the message of the subscription."""
-NOT_SERVED = frozenset(("BIND_PYTHON", "exit"))
-"""Methods of ALModule itself that are for its own process; a subclass that defines its own is served."""
+NOT_SERVED = frozenset(
+    """BIND_PYTHON exit getModule log logger onLoad onUnload session playTimeline stopTimeline gotoAndPlay gotoAndStop
+    exitBehavior playTimelineParent stopTimelineParent gotoAndPlayParent gotoAndStopParent exitBehaviorParent
+    getParentTimeline""".split()
+)
+"""Methods of ALModule and ALBehavior themselves that are for their own process; those of a subclass are served."""
 DECLARED = {"processRemote": ["m", "m", "m", "r"]}
 """Methods that NAOqi calls with raw bytes (ALAudioDevice: channels, samples a channel, time, sound).
 
@@ -24,16 +28,14 @@ libqi 3.1.5 would turn bytes for a parameter of any type into the text of their 
 """
 
 
-def public_methods(module: Any, base: type) -> List[str]:
-    """Names of the methods that a module serves: the public ones of its class.
-
-    `module`: the module. `base`: the class whose `NOT_SERVED` methods are left out unless they are overridden.
-    """
+def public_methods(module: Any) -> List[str]:
+    """Names of the methods that a module serves: the public ones of its class, but for `NOT_SERVED` of this package."""
+    own = __name__.rpartition(".")[0]
     names = []
     for name in dir(type(module)):
         method = getattr(type(module), name)
         hidden = name.startswith("_") or inspect.isclass(method) or not callable(method)
-        if not hidden and not (name in NOT_SERVED and method is getattr(base, name)):
+        if not hidden and not (name in NOT_SERVED and getattr(method, "__module__", "").rpartition(".")[0] == own):
             names.append(name)
     return names
 

@@ -58,6 +58,13 @@ class ServingSession:
         return self._live is not None
 
     @property
+    def raw(self) -> Any:
+        """Libqi's own session; a BrokerError while there is none."""
+        if self._live is None:
+            raise BrokerError(self._broker, "its session is closed")
+        return self._live.session
+
+    @property
     def is_healthy(self) -> bool:
         """Whether the session stands, and is not left over from before a loss: then it may only seem to."""
         if self._live is None or self._generation != self._connection.generation:

@@ -10,7 +10,7 @@ import pytest
 import qi
 
 import naoqi
-from naoqi import ALBroker, ALModule, errors
+from naoqi import ALBehavior, ALBroker, ALDocable, ALModule, createModule, errors
 
 EVENT = "FrontTactilTouched"
 numbers = itertools.count()
@@ -225,3 +225,39 @@ def test_sound_arrives_as_bytes(robot, buttons):
     finally:
         session.close()
     assert buttons.heard == [(4, 128, [3, 170000], sound)]
+
+
+class Box(ALBehavior):
+    """The script of a box of Choregraphe."""
+
+    def onInput_onStart(self):
+        self.setParameter("Sum", self.session().service("ALTest").add(1, self.getParameter("Number")))
+        self.onStopped()
+
+    def onStopped(self):
+        self.log("stopped")
+
+    def onInput_onStop(self):
+        self.getParentTimeline().pause()
+
+
+def test_the_script_of_a_box_runs_in_a_program(robot, broker, caplog):
+    box = Box("Box")
+    with pytest.raises(errors.NaoError, match="box Box has no parameter 'Number'; set it by setParameter"):
+        box.onInput_onStart()
+    served = robot.proxy("Box")
+    served.setParameter("Number", 2)
+    with caplog.at_level("INFO", "Box"):
+        served.onInput_onStart()
+    assert served.getParameter("Sum") == 3 and "stopped" in caplog.text
+    with pytest.raises(errors.NaoError, match="box Box is in no timeline"):
+        box.onInput_onStop()
+    assert not {"session", "log", "onLoad", "playTimeline", "BIND_PYTHON"} & set(served.getMethodList())
+
+
+def test_a_bare_module_is_made_by_its_name_and_kept(robot, broker):
+    assert issubclass(ALModule, ALDocable)
+    createModule("Bare")
+    assert robot.proxy("Bare").ping() and ALModule.getModule("Bare").getName() == "Bare"
+    with pytest.raises(errors.BrokerError, match="module 'Other' does not exist in this process"):
+        ALModule.getModule("Other")
