@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import wave
 
 import pytest
 from goal_functions import led as f
@@ -61,8 +62,19 @@ def test_a_robot_that_is_watched_is_drawn_and_so_is_its_record(program, run, rob
     assert first.read_bytes() == second.read_bytes()
 
 
+def test_what_the_robot_has_recorded_is_fetched_and_the_log_tells_where_it_is(program, robot, tmp_path, caplog):
+    caplog.set_level("INFO", "nao_sim.files")
+    fetched = tmp_path / "mine.wav"
+    program("record_and_fetch", "--seconds", "0.2", fetched)
+    with wave.open(str(fetched)) as sound:
+        assert sound.getframerate() == 16000 and sound.getnframes() > 0
+    path, here = "/tmp/record_and_fetch.wav", robot.server.files.folder / ".robot/tmp/record_and_fetch.wav"
+    assert here.read_bytes() == fetched.read_bytes()
+    assert f"{path} is {here} on this computer; `nao files get {path}` fetches it" in caplog.text
+
+
 def test_without_a_robot_they_say_so(run):
-    for name in ("naoqi_walk", "naoqi_picture", "look_at_the_lab", "place_things", "plot_walk"):
+    for name in ("record_and_fetch", "naoqi_walk", "naoqi_picture", "look_at_the_lab", "place_things", "plot_walk"):
         status, output = run(name, "--port", "1")
         assert status == 1 and "NAOqi at 127.0.0.1:1" in output
 

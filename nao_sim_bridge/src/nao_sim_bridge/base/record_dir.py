@@ -68,7 +68,8 @@ def load_places() -> tuple[Place, ...]:
 class ClientFiles:
     """The robot's file system, kept in one folder of this computer.
 
-    That folder is the home of the robot's user, /home/nao; further places (/tmp, ...) are in a hidden folder in it.
+    That folder is the home of the robot's user, /home/nao; further places (/tmp, ...) are in a hidden folder in it. The
+    log tells once for each folder where it is, when a path from the root on is written.
 
     Attributes:
         folder: Absolute.
@@ -85,6 +86,7 @@ class ClientFiles:
         tidy(self.folder)
         # What modules of the robot have made or changed, and what was in it before; any thread.
         self._written: dict[Path, bytes | None] = {}
+        self._told: set[Path] = set()  # folders that the log has told of
 
     # --- from the robot's paths to those of this computer -------------------------------------------------------------
 
@@ -106,6 +108,9 @@ class ClientFiles:
         _make_ready(path, name)
         if not path.exists():
             self._written[path] = None
+        if name.startswith("/") and path.parent not in self._told:
+            self._told.add(path.parent)
+            log.info("%s is %s on this computer; `nao files get %s` fetches it", name, path, name)
         return path
 
     def to_change(self, name: str) -> Path:

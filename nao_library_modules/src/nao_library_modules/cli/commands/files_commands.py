@@ -11,6 +11,7 @@ import click
 
 from ...base.whole_file import NoPlaceForFile, draft_in, move_whole, require_new
 from ...nao.robot_files import HOME, full_path
+from ..address import address_of, url_option
 from ..errors import CommandFailed
 from ..files import overwrite_option, wanted_file
 from ..output import say_json, say_lines, table
@@ -29,19 +30,20 @@ def files_command() -> None:
 
 
 @contextmanager
-def _files(settings: CliSettings) -> Iterator[RobotFiles]:
-    address = settings.stack.robot_address()
+def _files(settings: CliSettings, url: str | None) -> Iterator[RobotFiles]:
+    address = address_of(settings, url)
     with DirectRobot(address) as robot:
         yield files_of(robot, address[0], settings.timeout, settings.json)
 
 
 @files_command.command("list")
 @click.argument("folder", default="~")
+@url_option
 @click.pass_context
-def list_files(context: click.Context, folder: str) -> None:
+def list_files(context: click.Context, folder: str, url: str | None) -> None:
     """What is in FOLDER of the robot, with bytes; without, in /home/nao."""
     settings = settings_of(context)
-    with _files(settings) as files:
+    with _files(settings, url) as files:
         found = files.listed(full_path(folder))
     if settings.json:
         entries = [{"name": entry.name, "size": entry.size, "folder": entry.folder} for entry in found]
@@ -54,8 +56,9 @@ def list_files(context: click.Context, folder: str) -> None:
 @click.argument("remote")
 @click.argument("local", default="", type=click.Path())
 @overwrite_option
+@url_option
 @click.pass_context
-def get_file(context: click.Context, remote: str, local: str, overwrite: bool) -> None:
+def get_file(context: click.Context, remote: str, local: str, overwrite: bool, url: str | None) -> None:
     """Bring the robot's file REMOTE to LOCAL, a file or a folder; without, to here."""
     settings = settings_of(context)
     wanted = wanted_file(local or ".", overwrite)
@@ -63,7 +66,7 @@ def get_file(context: click.Context, remote: str, local: str, overwrite: bool) -
     try:
         target = require_new(wanted / posixpath.basename(path) if wanted.is_dir() else wanted, overwrite)
         with draft_in(target.parent) as draft:
-            with _files(settings) as files:
+            with _files(settings, url) as files:
                 files.get(path, draft)
             target = move_whole(draft, target, overwrite)
     except (NoPlaceForFile, OSError) as error:
@@ -75,11 +78,12 @@ def get_file(context: click.Context, remote: str, local: str, overwrite: bool) -
 @click.argument("local", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.argument("remote", default=HOME + "/")
 @overwrite_option
+@url_option
 @click.pass_context
-def put_file(context: click.Context, local: Path, remote: str, overwrite: bool) -> None:
+def put_file(context: click.Context, local: Path, remote: str, overwrite: bool, url: str | None) -> None:
     """Bring the file LOCAL to REMOTE on the robot, a file or a folder; without, to /home/nao."""
     settings = settings_of(context)
-    with _files(settings) as files:
+    with _files(settings, url) as files:
         path, there = files.place(remote, local.name)
         if there and not overwrite:
             raise CommandFailed(f"{path} is on the robot already: another name, or --overwrite")

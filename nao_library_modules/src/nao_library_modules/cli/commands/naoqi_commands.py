@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import queue
-import re
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -16,20 +15,15 @@ from naoqi.signatures import readable_call, readable_type
 from ...base.answers import value_of_json
 from ...base.limits import limit
 from ...base.suggestion import did_you_mean
+from ..address import address_of, url_option
 from ..errors import CommandFailed
 from ..output import plain, say_json, say_lines, words
 from ..robot_link import DirectRobot
 from ..settings import CliSettings, NaoGroup, SignedCommand, settings_of
 
-URL = re.compile(r"(?:tcp://)?(?P<ip>[^:/]+)(?::(?P<port>\d+))?")
-PORT = 9559
 OWN = 100
 """Members below this number are those that every object of libqi has."""
 KINDS = ("methods", "signals", "properties")
-
-url_option = click.option(
-    "--qi-url", "url", metavar="URL", help="tcp://IP:PORT of the robot, without ROS; else that of the servers."
-)
 
 
 @click.group(cls=NaoGroup, name="naoqi")
@@ -121,12 +115,7 @@ def watch(context: click.Context, members: tuple[str, ...], count: int | None, u
 
 
 def _robot(settings: CliSettings, url: str | None) -> DirectRobot:
-    if url is None:
-        return DirectRobot(settings.stack.robot_address())
-    found = URL.fullmatch(url)
-    if found is None:
-        raise click.UsageError(f"--qi-url is {url!r}, allowed is tcp://IP:PORT")
-    return DirectRobot((found["ip"], int(found["port"] or PORT)))
+    return DirectRobot(address_of(settings, url))
 
 
 def _member(text: str) -> tuple[str, str]:
