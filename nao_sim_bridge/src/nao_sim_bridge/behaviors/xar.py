@@ -108,7 +108,8 @@ class _Xar:
             each = "; ".join(f"{', '.join(names)}: {reason}" for reason, names in self._refused.items())
             raise ConfigError(self._file, f"{count} of its boxes cannot be played: {each}")
         if self._unlinked:
-            log.warning("%s: no link leads to %s: they are left out", self._file, ", ".join(self._unlinked))
+            names = ", ".join(self._unlinked)
+            log.warning("%s: no link leads to %s: left out, with the onLoad of their scripts", self._file, names)
         if isinstance(box.step, (Diagram, Timeline)):
             return box.step
         return Diagram((box,), {"": (Link(Act.START, "", 0),)}, ("",))

@@ -201,7 +201,7 @@ def test_one_refusal_names_all_boxes_that_cannot_play():
 
 def test_a_box_that_no_link_leads_to_is_left_out(caplog):
     assert len(read(says(1, "Hi") + box(2, "Mine", "", OWN)).boxes) == 1
-    assert "no link leads to 'Mine': they are left out" in caplog.text
+    assert "no link leads to 'Mine': left out, with the onLoad of their scripts" in caplog.text
 
 
 MANIFEST = f"""{HEADER}<package uuid="greeter" version="1.0.0"><contents><behaviorContent path="behavior_1">
