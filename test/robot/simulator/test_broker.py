@@ -123,6 +123,21 @@ def test_a_port_that_a_connection_has_is_waited_for_and_told_as_what_it_is(liste
             listening(port=port)
 
 
+def test_the_port_is_free_at_its_end_also_of_who_connected_before_it_was_ready(listening, monkeypatch):
+    early, free = socket.socket(), module.free_port_on_exit
+
+    def ready(port):
+        early.connect(("127.0.0.1", port))
+        free(port)
+
+    monkeypatch.setattr(module, "free_port_on_exit", ready)
+    with early:
+        broker = listening()
+        broker.close()
+        # A connection that is not reset would have the port for a minute.
+        wait_until(lambda: not own_sockets.is_taken("127.0.0.1", broker.port), END_LIMIT / 2, "a free port")
+
+
 def test_modules_of_clients_are_called_in_order_and_one_that_hangs_holds_up_no_other(listening, connect):
     broker, stuck, echo = listening(), Echo(held_up=True), Echo()
     client = connect(broker.port)

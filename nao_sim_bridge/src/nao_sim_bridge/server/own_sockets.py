@@ -29,6 +29,10 @@ STUCK = load_sizes().clients.stuck_s
 # s between two looks while a client takes nothing, and otherwise: a look takes the kernel some ms.
 LOOK_PERIOD, IDLE_PERIOD = 0.5, 2.0
 FOLDER = "/proc/self/fd"
+# What /proc calls the socket of a connection that libqi has not accepted yet, and how long that is waited for, s; it
+# takes less than a millisecond.
+NOT_ACCEPTED = "socket:[0]"
+ACCEPT_LIMIT, ACCEPT_PAUSE = 5.0, 0.005
 
 
 @dataclass(frozen=True)
@@ -46,11 +50,21 @@ def free_port_on_exit(port: int) -> None:
     """Let the port be taken again at once after this process ends, however it ends.
 
     libqi binds without SO_REUSEADDR, so connections in TIME_WAIT would keep a killed simulator's port for a minute.
-    With a linger time of 0, which accepted sockets inherit from the listening one, they are reset instead.
+    With a linger time of 0, which accepted sockets inherit from the listening one, they are reset instead. Clients that
+    try again and again connect as soon as libqi listens: the sockets that were accepted before that are set one by one.
     """
     for row in _rows(port, LISTENS):
-        for found in _sockets(row.link):
-            found.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        _reset_at_end(row.link)
+    end = time.monotonic() + ACCEPT_LIMIT
+    while NOT_ACCEPTED in [_reset_at_end(row.link) for row in _rows(port, CONNECTED)] and time.monotonic() < end:
+        time.sleep(ACCEPT_PAUSE)
+
+
+def _reset_at_end(link: str) -> str:
+    """Have a connection reset when its socket is closed; returns the link."""
+    for found in _sockets(link):
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+    return link
 
 
 def is_taken(address: str, port: int) -> bool:
