@@ -244,6 +244,15 @@ def test_the_rate_at_which_data_is_read_is_told_beside_the_one_asked_for(watch, 
     until(lambda: watch.report().values.get("rate reached of 20 (1/s)"), step=0.025)
 
 
+def test_a_rate_is_measured_anew_after_a_loss(watch, driver_robot, topics, until):
+    watch.watch([MemoryRule(CHARGE, 20.0)])
+    topics[CHARGE].tell(True)
+    rate = lambda: watch.report().values.get("rate reached of 20 (1/s)")  # noqa: E731
+    until(rate, step=0.025)
+    driver_robot.lose()
+    until(lambda: rate() == "", step=0.025)  # it takes a second of readings to be known
+
+
 def test_data_is_published_at_its_rate_while_somebody_listens(watch, robot, topics, until, eventually):
     watch.watch([MemoryRule(CHARGE, 20.0), MemoryRule("Device/SubDeviceList/*/Position/Sensor/Value", 10.0)])
     assert watch.watched(CHARGE) == {CHARGE: CHARGE} and topics[CHARGE].kind == "float"

@@ -216,6 +216,8 @@ class MemoryWatch:
             self._relay.close()
             for key in self._keys.values():
                 key.subscribed = False
+            for meter in self._meters.values():
+                meter.restart()  # nothing could be read while there was no robot
             self._stale = True
         if self._stale:
             try:
