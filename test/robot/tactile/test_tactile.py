@@ -12,6 +12,8 @@ from sensor_msgs.msg import BatteryState
 
 from nao_library_actions.msg import NaoTactileGoal
 from nao_library_modules.base.kept import Kept
+from nao_library_modules.tactile.bindings import TouchBindings
+from nao_library_modules.tactile.reading import Senses
 from nao_library_modules.tactile.server import NaoTactile
 from nao_library_msgs.msg import TactileFunction
 
@@ -225,6 +227,20 @@ def test_a_touch_that_began_before_the_wait_has_its_startup_grace(robot, tactile
     assert seconds(release.onset, release.offset) == pytest.approx(truth[FRONT], abs=0.010)
 
 
+def test_the_contact_is_that_of_the_first_touch_however_late_the_robot_is_asked(
+    robot, tactile, press, truth, monkeypatch
+):
+    asked, event_time = threading.Event(), Senses.event_time
+    monkeypatch.setattr(Senses, "event_time", lambda senses, event: asked.wait(60.0) and event_time(senses, event))
+    goal = tactile.send(f("waitForTouch", timeout=60.0))
+    robot.advance(0.3)
+    for touched in ([MIDDLE], [], [MIDDLE]):
+        press(*touched)
+    asked.set()
+    (one,) = goal.finish().result.results
+    assert seconds(one.onset) == pytest.approx(truth[MIDDLE][:1], abs=0.010)
+
+
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_clicks_have_first_and_last_contact_however_late_they_are_told(robot, tactile, press, truth, count):
     goal = tactile.send(f("waitForChestButton", count=count, timeout=8.0))
@@ -243,6 +259,18 @@ def test_a_binding_knows_the_first_contact_of_the_touch_that_started_it(tactile,
     tactile.succeed(f("onTouch", sensors=["head"], touch="release", behavior="nod"))
     press(FRONT, duration=0.5)
     press()
+    started()
+    (binding,) = tactile.succeed(f("listOnTouch")).bindings
+    assert seconds(binding.touched) == pytest.approx(truth[FRONT][:1], abs=0.010)
+
+
+def test_a_binding_knows_it_however_late_the_robot_is_asked(tactile, press, truth, runner, started, monkeypatch):
+    asked, time_of = threading.Event(), TouchBindings._time_of
+    monkeypatch.setattr(TouchBindings, "_time_of", lambda links, event: asked.wait(60.0) and time_of(links, event))
+    tactile.succeed(f("onTouch", sensors=["head"], behavior="nod"))
+    for touched in ([FRONT], [], [FRONT]):
+        press(*touched)
+    asked.set()
     started()
     (binding,) = tactile.succeed(f("listOnTouch")).bindings
     assert seconds(binding.touched) == pytest.approx(truth[FRONT][:1], abs=0.010)

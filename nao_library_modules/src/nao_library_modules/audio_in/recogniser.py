@@ -11,7 +11,7 @@ from naoqi.errors import RobotError, UnknownMethod
 from ..base.once_per_connection import OncePerConnection
 from ..functions.memory_functions import MEMORY
 from ..functions.parts import Part
-from ..server.extractor_use import Event
+from ..robot.event_times import Event
 from ..server.nao_basic import NaoBasic
 from ..server.simulated_keys import SimulatedKey
 from .hearing import Hearing, Span

@@ -15,8 +15,8 @@ from naoqi.errors import NaoError
 
 from ..base.places import FOOTPRINT
 from ..functions.parts import Part
+from ..robot.event_times import Event
 from ..robot.robot_clock import same_clock
-from ..server.extractor_use import Event
 from ..server.nao_basic import NaoBasic
 from .events import LocatedSound, begun_sounds, located_sound
 from .fields import SENSES, BetterTime, Confidence, Sense, Sensitivity, Timeout, timeout_of

@@ -49,14 +49,15 @@ class RobotClock:
         self._offset: tuple[float, float, int] | None = None  # s; when it was found, and in which connection
 
     def event_time(self, call: Callable[..., Any], event: str, value: Any, arrived: float) -> float:
-        """ROS time at which an event was raised, as far as the robot knows it; otherwise that of its arrival.
+        """ROS time at which an event was raised last, if its last value is this one; otherwise that of its arrival.
 
-        If `value` is not its last one, it has been raised again since, and its own time is lost.
+        `EventTimes` knows the times of those before.
         """
         last, seconds, microseconds = call(self._robot.proxy("ALMemory"), "getTimestamp", event)
-        if last != value:
-            return arrived
-        robot_time = seconds + 1e-6 * microseconds
+        return arrived if last != value else self.raised(call, seconds + 1e-6 * microseconds, arrived)
+
+    def raised(self, call: Callable[..., Any], robot_time: float, arrived: float) -> float:
+        """ROS time of a time on the robot at which something was raised that arrived here at `arrived`."""
         if self._is_ours(robot_time):  # exact, while the time of arrival may be late
             return robot_time
         return min(self.ros_time(call, robot_time), arrived)
@@ -106,10 +107,18 @@ class RobotClock:
 
     def _look(self, call: Callable[..., Any]) -> tuple[float, float]:
         """ROS time less the robot's, s, at least and at most."""
-        memory = self._robot.proxy("ALMemory")
         before = self._clock.now()
-        call(memory, "insertData", KEY, before)
+        call(self._robot.proxy("ALMemory"), "insertData", KEY, before)
         after = self._clock.now()
-        _, seconds, microseconds = call(memory, "getTimestamp", KEY)
-        stamp = seconds + 1e-6 * microseconds
+        stamp = self._written(call)
         return before - stamp, after - stamp
+
+    def robot_time(self, call: Callable[..., Any]) -> float:
+        """The robot's time at some moment of the call."""
+        call(self._robot.proxy("ALMemory"), "insertData", KEY, self._clock.now())
+        return self._written(call)
+
+    def _written(self, call: Callable[..., Any]) -> float:
+        """The robot's time at which the key was written last."""
+        _, seconds, microseconds = call(self._robot.proxy("ALMemory"), "getTimestamp", KEY)
+        return seconds + 1e-6 * microseconds

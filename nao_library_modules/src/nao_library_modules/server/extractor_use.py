@@ -8,7 +8,7 @@ import socket
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import Any
 
 from naoqi.errors import NaoError
 from naoqi.limits import CLEAN_UP_LIMIT
@@ -17,18 +17,11 @@ from ..base.cancellation import CancellationToken
 from ..functions.memory_functions import MEMORY
 from ..functions.parts import Part
 from ..robot.event_relay import EventRelay
+from ..robot.event_times import Event, EventTimes
 from ..robot.robot_task import wait_for_call
 from .nao_basic import NaoBasic
 
 log = logging.getLogger(__name__)
-
-
-class Event(NamedTuple):
-    """An event of the robot's memory."""
-
-    name: str  # its name
-    value: Any  # what it says
-    arrived: float  # ROS time of its arrival, s; `event_time` knows when it was raised
 
 
 class Events:
@@ -37,15 +30,16 @@ class Events:
     Told from threads of libqi, asked from the one that executes goals.
     """
 
-    def __init__(self, clock: Any, interrupt: CancellationToken) -> None:
-        """Nothing has happened yet. `clock`: time of waits. `interrupt`: ends them."""
+    def __init__(self, clock: Any, interrupt: CancellationToken, times: EventTimes) -> None:
+        """Nothing has happened yet. `clock`: time of waits. `interrupt`: ends them. `times`: of these events."""
+        self._times = times
         self._clock = clock
         self._interrupt = interrupt
         self._news = CancellationToken()
         self._events: deque[Event] = deque()
 
     def tell(self, name: str, value: Any) -> None:
-        self._events.append(Event(name, value, self._clock.now()))
+        self._events.append(self._times.arrived(name, value, self._clock.now()))
         self._news.trigger()
 
     def until(self, end: float) -> Iterator[Event]:
@@ -155,16 +149,18 @@ class ExtractorUse(Part):
 
     def event_time(self, event: Event) -> float:
         """ROS time at which an event was raised on the robot, s; preemption ends the look at its clock."""
-        return self.robot_clock.event_time(self.call, *event)
+        return event.source.time_of(event)
 
     @contextmanager
     def events_of(self, *names: str) -> Iterator[Events]:
         """Have events of the robot's memory told during a block."""
-        events = Events(self.clock, self.interrupt)
+        times = EventTimes(self.robot, self.robot_clock, self.call)
+        events = Events(self.clock, self.interrupt, times)
         relay = EventRelay(lambda: self.robot.proxy(MEMORY), events.tell)
         try:
             for name in names:
                 relay.subscribe(name)
+            times.begin(*names)
             yield events
         finally:
             relay.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import threading
 from collections import deque
@@ -14,7 +15,7 @@ from naoqi.errors import NaoError
 from ..base.cancellation import CancellationToken
 from ..nao.touch_names import BY_EVENT, Sensor, names_of
 from ..robot.event_relay import EventRelay
-from ..server.extractor_use import Event
+from ..robot.event_times import Event, EventTimes
 from .touch import Contact, TouchWatch, WantedTouch
 
 log = logging.getLogger(__name__)
@@ -76,16 +77,14 @@ class TouchBindings:
         memory: Gives the proxy of ALMemory.
         runner: Runs behaviours.
         clock: ROS time.
-        event_time: ROS time at which an event was raised, s; may raise NaoError.
+        times: Knows when events were raised.
     """
 
-    def __init__(
-        self, memory: Callable[[], Any], runner: BehaviorRunner, clock: Any, event_time: Callable[[Event], float]
-    ) -> None:
+    def __init__(self, memory: Callable[[], Any], runner: BehaviorRunner, clock: Any, times: EventTimes) -> None:
         self._relay = EventRelay(memory, self._told)
         self._runner = runner
         self._clock = clock
-        self._event_time = event_time
+        self._times = times
         self._lock = threading.Lock()
         self._entries: dict[str, _Entry] = {}
         self._touches: deque[Event] = deque()
@@ -109,8 +108,11 @@ class TouchBindings:
         `binding`: the link. `pressed`: sensors that are pressed already. Raises NaoError if the robot cannot be asked
         for the events.
         """
-        for sensor in binding.sensors:
-            self._relay.subscribe(sensor.event)
+        new = [sensor.event for sensor in binding.sensors if sensor.event not in self._relay.names]
+        for event in new:
+            self._relay.subscribe(event)
+        if new:
+            self._times.begin(*new)
         names = names_of(binding.sensors)
         held = {contact.name: contact.begin for contact in pressed if contact.name in names}
         watch = TouchWatch(binding.wanted, held, self._clock.now())
@@ -133,6 +135,8 @@ class TouchBindings:
     def renew(self) -> None:
         """Ask a robot that has come back for the events."""
         self._relay.renew()
+        with contextlib.suppress(NaoError):  # it is lost again
+            self._times.begin(*self._relay.names)
 
     def close(self) -> None:
         with self._lock:
@@ -147,7 +151,7 @@ class TouchBindings:
 
     def _told(self, event: str, value: Any) -> None:
         """Called from a thread of libqi."""
-        self._touches.append(Event(event, value, self._clock.now()))
+        self._touches.append(self._times.arrived(event, value, self._clock.now()))
         self._news.trigger()
 
     def _follow(self) -> None:
@@ -167,7 +171,7 @@ class TouchBindings:
 
     def _time_of(self, event: Event) -> float:
         try:
-            return self._event_time(event)
+            return self._times.time_of(event)
         except NaoError as error:
             log.debug("when %s happened is not known: %s", event.name, error)
             return event.arrived

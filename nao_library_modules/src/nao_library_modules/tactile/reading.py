@@ -30,7 +30,7 @@ from ..nao.body_devices import (
     weight_keys,
 )
 from ..nao.touch_names import Sensor, sensors_of
-from ..server.extractor_use import Event, ExtractorUse, subscriber_name
+from ..server.extractor_use import ExtractorUse, subscriber_name
 from ..server.nao_basic import NaoBasic
 from .fields import FEET, Bumpers, Enable, Feet, Revert, Sensors, Sonars, Warm, words_of
 from .touch import Contact
@@ -120,7 +120,7 @@ class Senses(ExtractorUse):
     def _said(self, sensor: Sensor, value: float) -> float:
         """ROS time, s, at which the event of a sensor had this value, if it was its last; else infinity."""
         try:
-            return self.event_time(Event(sensor.event, value, math.inf))
+            return self.robot_clock.event_time(self.call, sensor.event, value, math.inf)
         except RobotError:  # it has not been raised yet
             return math.inf
 

@@ -12,6 +12,7 @@ from naoqi.errors import NaoError
 from ..base.answers import Outcome
 from ..functions.memory_functions import MEMORY
 from ..processes.launcher import LaunchPath
+from ..robot.event_times import EventTimes
 from ..server.nao_basic import NaoBasic
 from .binding_functions import BindingFunctions
 from .bindings import TouchBindings
@@ -58,8 +59,8 @@ class NaoTactile(NaoBasic):
             runner = BehaviorClient()
         super().__init__(ip, port, autostart, launchpath, **options)
         self.senses = Senses(self, str(self._node.namespace))
-        event_time = lambda event: self.robot_clock.event_time(self.call_now, *event)  # noqa: E731
-        bindings = TouchBindings(lambda: self.robot.proxy(MEMORY), runner, self.clock, event_time)
+        times = EventTimes(self.robot, self.robot_clock, self.call_now)
+        bindings = TouchBindings(lambda: self.robot.proxy(MEMORY), runner, self.clock, times)
         self.binding_functions = BindingFunctions(self.robot, self.senses, bindings, self.kept)
         self.add_parts(self.senses, self.binding_functions)
         self.add_parts(WaitingFunctions(self, self.senses), ReadingFunctions(self, self.senses))

@@ -10,7 +10,8 @@ from typing import NamedTuple
 PRESS, RELEASE, HOLD, COUNT = "press", "release", "hold", "count"
 KINDS = (PRESS, RELEASE, HOLD, COUNT)
 SWAPPED = 0.05
-"""s within which the release and the press of a short touch come in the wrong order: libqi tells each in a thread."""
+"""s by which a press may seem later than its release where only their arrivals are known: libqi tells each in a thread,
+and so in any order."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ class TouchWatch:
             self._since[name] = min(self._since.get(name, now), now)
             found = self._pressed(name, now)
             released = self._released.pop(name, None)
-            if released is None or abs(now - released) > SWAPPED:
+            if released is None or now - released > SWAPPED:
                 return [*held_enough, *found]
             return self.tell(name, False, max(now, released)) or found
         begin = self._since.pop(name)

@@ -20,7 +20,8 @@ from ...base.places import FOOTPRINT
 from ...functions.memory_functions import MEMORY
 from ...motion.facts import MOTION
 from ...nao.camera_facts import CAMERA_NAMES, RESOLUTIONS
-from ...server.extractor_use import Event, Events, ExtractorUse
+from ...robot.event_times import Event
+from ...server.extractor_use import Events, ExtractorUse
 from ..capture.base import Cameras, ChainResults
 from ..capture.cameras import CAMERAS, OPTICAL_FRAMES, VIDEO
 from .events import (
