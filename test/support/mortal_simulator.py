@@ -1,9 +1,11 @@
-"""A simulator that scenarios about lost robots start and kill."""
+"""A simulator that cases about lost robots start and kill: one for all cases of a program."""
 
 import os
 import signal
 import subprocess
 import sys
+import unittest
+from typing import ClassVar
 
 from naoqi.limits import START_PATIENCE
 
@@ -13,22 +15,37 @@ PORT = int(os.environ.get("NAO_PORT", "9559"))
 
 
 class MortalSimulator:
-    """To be mixed into a TestCase; `kill` belongs into its clean-up.
+    """Starts and kills the simulator.
 
     Attributes:
         simulator: The process; None while there is none.
     """
 
-    simulator = None
+    simulator: ClassVar = None
 
-    def start(self):
+    @classmethod
+    def start(cls):
         """Start a simulator; it may take a while until it answers."""
-        self.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", str(PORT)])
+        MortalSimulator.simulator = subprocess.Popen([sys.executable, "-m", "nao_sim_bridge", "--port", str(PORT)])
 
-    def kill(self):
+    @classmethod
+    def kill(cls):
         """Kill it if there is one, also if it was stopped."""
-        if self.simulator is not None:
-            self.simulator.send_signal(signal.SIGCONT)
-            self.simulator.kill()
-            self.simulator.wait()
-            self.simulator = None
+        if cls.simulator is not None:
+            cls.simulator.kill()
+            cls.simulator.wait()
+            MortalSimulator.simulator = None
+
+
+class LostRobotCase(MortalSimulator, unittest.TestCase):
+    """A case that finds a simulator, which may still be starting, and leaves one behind."""
+
+    def setUp(self):
+        if self.simulator is None:
+            self.start()
+        self.simulator.send_signal(signal.SIGCONT)  # where a case before failed
+
+    def kept(self, subscriber):
+        """A subscriber, or whatever else has `unregister`, until the end of the case."""
+        self.addCleanup(subscriber.unregister)
+        return subscriber

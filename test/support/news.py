@@ -66,10 +66,14 @@ class Reports:
         self._news.wait(lambda: name in self._last and fits(self._last[name]), f"{name} on /diagnostics")
         return self._last[name]
 
+    def wait_anew(self, name, fits):
+        """The first status of a name from now on that fits."""
+        self._last.clear()
+        return self.wait(name, fits)
+
     def values(self, name, message):
         """Values of the first status from now on that has this message."""
-        self._last.clear()
-        return {entry.key: entry.value for entry in self.wait(name, lambda status: status.message == message).values}
+        return {e.key: e.value for e in self.wait_anew(name, lambda status: status.message == message).values}
 
 
 def connected(subscriber):
