@@ -28,6 +28,9 @@ def test_protocols_that_come_along_can_be_run(path):
     "step, line, told",
     [
         ("- sai: hello", 4, "did you mean 'say'?"),
+        ("- {call: NaoLights.on, lights: [Eyes]}", 4, "fields of the function stand in with: {lights: ...}"),
+        ("- {run: hello, text: Hi}", 4, "parameters of the behaviour stand in with: {text: ...}"),
+        ("- {say: Hi, speed: 80}", 4, "call: nao_audio_out.say takes further fields, in with: {str_param: TEXT, speed"),
         ("- {wait: touch, sensors: [hed]}", 4, "did you mean 'head'?"),
         ("- {wait: word}", 4, "needs words"),
         ("- {wait: -1}", 4, "0..3600"),

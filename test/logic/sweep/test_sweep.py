@@ -64,6 +64,19 @@ def test_results_that_come_up_later_get_a_column(tmp_path):
     assert (tmp_path / "f.csv.part").read_text() == "somebody's"
 
 
+def test_runs_that_failed_run_again_and_the_others_do_not(tmp_path, capsys):
+    def made(seed):
+        runs.append(seed)
+        return {"made": 1 / (seed if broken else 1)}
+
+    for broken, expected in ((True, [0, 1]), (False, [0])):
+        runs = []
+        table = sweep(made, 2, tmp_path / "f.csv", **OPTIONS)
+        assert runs == expected and [bool(row["error"]) for row in table.rows] == [broken, False]
+        assert (tmp_path / "f.csv").read_text().count("ZeroDivisionError") == broken
+        assert ("the first run that failed (seed 0): ZeroDivisionError" in capsys.readouterr().err) == broken
+
+
 def test_a_file_of_another_sweep_is_left_alone(tmp_path):
     sweep(lambda seed, a: a, 1, tmp_path / "f.csv", a=[1], **OPTIONS)
     before = (tmp_path / "f.csv").read_text()
@@ -74,7 +87,7 @@ def test_a_file_of_another_sweep_is_left_alone(tmp_path):
 
 def test_what_no_file_can_keep_is_an_error_of_the_run():
     (row,) = sweep(lambda seed: {"where": [1, 2]}, 1, **OPTIONS).rows
-    assert row["error"] == "TypeError: where is a list, not a number, truth value or text"
+    assert row["error"] == "TypeError: 'where' is a list, not a number, truth value or text"
 
 
 @pytest.mark.parametrize("seeds, values", [(0, [1]), ([], [1]), (1, []), (1, "abc")])

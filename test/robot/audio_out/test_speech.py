@@ -51,6 +51,13 @@ def test_a_goal_lasts_as_long_as_its_texts_which_follow_each_other(robot, audio)
     assert (result.volume, result.memList, result.files) == (100.0, [], [])
 
 
+@pytest.mark.parametrize("stiffness, text", [(0.0, "no gestures, as head and arms are limp"), (1.0, "")])
+def test_gestures_that_limp_arms_do_not_make_are_told(robot, audio, stiffness, text):
+    robot.ALMotion.setStiffnesses("Arms", stiffness)
+    goal = audio.send(f("animatedSay", "Yes.")).finish()
+    assert goal.state == "succeeded" and goal.text.startswith(text) and bool(goal.text) == bool(text)
+
+
 def test_words_are_fed_back_as_they_are_spoken_and_those_of_others_are_not(robot, audio):
     goal = step(robot, audio.send(f("getVoice"), f("say", TEXT))).finish()
     assert goal.state == "succeeded" and words(goal) == WORDS

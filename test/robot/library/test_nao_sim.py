@@ -38,8 +38,15 @@ def stumble(sim):
 
 
 def test_it_walks_to_where_it_is_sent(nao):
-    assert nao.walk_to(0.3, 0.1, 0.4).wait() is True
+    assert nao.walk_to(0.3, 0.1, 0.4).result is True
     assert nao.pose_on_ground == pytest.approx((0.3, 0.1, 0.4), abs=0.03)
+
+
+def test_a_motion_is_no_truth_value_and_has_its_result_when_it_has_ended(nao):
+    motion = nao.move_angles("HeadYaw", 0.1, duration=0.1, wait=False)
+    assert (motion.done, motion.result) == (False, None)
+    with pytest.raises(TypeError, match="`result` tells"):
+        bool(motion)
 
 
 def test_joints_go_to_their_targets(nao):

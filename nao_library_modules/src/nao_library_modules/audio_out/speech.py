@@ -100,8 +100,16 @@ class SpeechFunctions(Part):
         arguments: list[Any] = [_tagged(str_param, speed, pitch)]
         if body_language.strip():
             arguments.append({"bodyLanguageMode": body_language.strip()})
+        if body_language.strip() != "disabled" or "^" in str_param:
+            self._remark_limpness()
         with self._spoken_with(language, voice, volume):
             self._speak(ANIMATED, "say", *arguments, background=background)
+
+    def _remark_limpness(self) -> None:
+        """NAOqi says a text without its gestures where the robot is limp, and does not tell."""
+        motion = self._module.robot.proxy("ALMotion")
+        if not any(self._module.call(motion, "getStiffnesses", ["Head", "Arms"])):
+            self._module.remark("no gestures, as head and arms are limp: wakeUp of NaoMotion first")
 
     def _check_say_to_file(self, file_name: str, language: str, voice: str, overwrite: bool) -> None:
         self._require_new_file(file_name.strip(), overwrite)

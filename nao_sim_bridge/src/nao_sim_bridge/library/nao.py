@@ -76,10 +76,23 @@ class Motion:
         self._session = session
         self._task = task
 
+    def __bool__(self) -> bool:
+        """Refuse `if nao.walk_to(...)`, which would hold wherever the robot got."""
+        raise TypeError("a Motion is neither true nor false: `result` tells what came of it, `done` whether it has ended")
+
     @property
     def done(self) -> bool:
         """Whether it has ended, in whatever way."""
         return self._task.finished
+
+    @property
+    def result(self) -> Any:
+        """What came of it: of `walk_to` and `go_to_posture` whether the robot is there; None while it goes on.
+
+        Raises:
+            SimulationError: What ended it.
+        """
+        return self._task.result(0.0) if self.done else None
 
     def wait(self, longest: float = LONGEST) -> Any:
         """Let time pass until it ends, and return its result.
@@ -320,7 +333,7 @@ class Nao:
     def go_to_posture(self, name: str, speed: float = 0.8, wait: bool = True) -> Motion:
         """Go to one of NAOqi's postures ("Stand", "Sit", "LyingBack"...), over others if need be; getting up included.
 
-        The result is whether it got there.
+        The `result` of the motion is whether it got there.
 
         Args:
             name: Of the posture.
@@ -357,7 +370,7 @@ class Nao:
         return self._begin(lambda: posture_change.rest(self.robot, lambda: self.snapshot, lambda: None), wait)
 
     def walk_to(self, x: float, y: float = 0.0, theta: float = 0.0, wait: bool = True) -> Motion:
-        """Walk to a pose as seen from the robot now; the result is whether it is there.
+        """Walk to a pose as seen from the robot now; the `result` of the motion is whether it is there.
 
         Args:
             x: Ahead, m.

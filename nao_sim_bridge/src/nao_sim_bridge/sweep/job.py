@@ -50,5 +50,5 @@ def _plain(name: str, value: Any) -> Value:
     """A value that a CSV file keeps; NumPy's become Python's."""
     value = value.item() if hasattr(value, "item") else value
     if not isinstance(value, (bool, int, float, str)):
-        raise TypeError(f"{name} is a {type(value).__name__}, not a number, truth value or text")
+        raise TypeError(f"{name!r} is a {type(value).__name__}, not a number, truth value or text")
     return value

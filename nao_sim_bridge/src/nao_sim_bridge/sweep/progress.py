@@ -7,7 +7,7 @@ import sys
 import time
 from typing import Any, Mapping
 
-from nao_sim_bridge.sweep.table import ERROR
+from nao_sim_bridge.sweep.table import ERROR, SEED
 
 PERIOD = 30.0
 """s between two lines where there is no terminal."""
@@ -54,6 +54,8 @@ class Progress:
     def add(self, row: Mapping[str, Any]) -> None:
         """Count a run that has ended."""
         self._done += 1
+        if row[ERROR] and not self._failed:
+            self.report(f"the first run that failed (seed {row[SEED]}): {row[ERROR]}")
         self._failed += bool(row[ERROR])
         if self._bar is not None:
             self._bar.update()

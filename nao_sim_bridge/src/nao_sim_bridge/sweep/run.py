@@ -30,7 +30,7 @@ def sweep(
 
     A run that raises is a row with its error. A run whose worker or computer is lost goes to another worker; after 4
     lost workers it is a row with the reason. Computers that join the cluster later are used. A file that exists is
-    continued: what it has is not run again.
+    continued: what it has is not run again, but for runs that failed.
 
     Args:
         function: Returns a number, a truth value, or a mapping of names to such and to short texts. Each worker has a
@@ -67,7 +67,8 @@ def sweep(
         for seed in numbers
     ]
     path = None if output is None else Path(output)
-    done = _read(path, names) if path is not None and path.exists() else []
+    rows = _read(path, names) if path is not None and path.exists() else []
+    done = [row for row in rows if not row[ERROR]]  # what was mended since then is to be seen
     finished = {_key(row, names) for row in done}
     left = [run for run in wanted if _key(run, names) not in finished]
     job = Job(function)
@@ -76,8 +77,8 @@ def sweep(
         for row in runs:
             writer.add(row)
             shown.add(row)
-    rows = {_key(row, names): row for row in writer.rows}
-    return Table(names, [rows[_key(run, names)] for run in wanted])
+    made = {_key(row, names): row for row in writer.rows}
+    return Table(names, [made[_key(run, names)] for run in wanted])
 
 
 class _Writer:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from naoqi.errors import NaoError
@@ -50,15 +50,25 @@ class FileReader:
         if self.problems:
             raise ConsoleFileError(self.name, sorted(self.problems, key=lambda each: each.line))
 
-    def mapping(self, value: Any, where: str, allowed: Iterable[str], needed: Sequence[str] = ()) -> Mapping:
-        """A mapping with the keys `allowed`; what it is not is noted, and unknown keys are left out."""
+    def mapping(
+        self,
+        value: Any,
+        where: str,
+        allowed: Iterable[str],
+        needed: Sequence[str] = (),
+        place_of: Callable[[str], str] = lambda key: "",
+    ) -> Mapping:
+        """A mapping with the keys `allowed`; what it is not is noted, and unknown keys are left out.
+
+        `place_of`: text to append to an unknown key that belongs elsewhere, else empty.
+        """
         known = list(allowed)
         if not isinstance(value, dict):
             self.note(where, f"a mapping with {', '.join(known)} is wanted, not {value!r}"[:300], line_of(value))
             return Mapping()
         for key in value:
             if key not in known:
-                hint = did_you_mean(str(key), known)
+                hint = place_of(str(key)) or did_you_mean(str(key), known)
                 self.note(
                     where, f"there is no key {key!r}{hint or ': there are ' + ', '.join(known)}", line_in(value, key)
                 )

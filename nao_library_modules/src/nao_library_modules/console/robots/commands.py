@@ -37,6 +37,13 @@ FORMS: Mapping[str, tuple[str, ...]] = {
 """First key of each form -> the keys that may stand beside it."""
 KEYS = (*FORMS, "animated", "with", "steps")
 """All keys of commands: a file may have others beside them."""
+_PLACES = {
+    "call": "fields of the function stand in with: {{{}: ...}}",
+    "run": "parameters of the behaviour stand in with: {{{}: ...}}",
+    "chain": "fields stand behind their function: steps: [{{FUNCTION: {{{}: ...}}}}]",
+    "say": "call: nao_audio_out.say takes further fields, in with: {{str_param: TEXT, {}: ...}}",
+}
+"""Where the fields belong that do not stand beside the first key of a form."""
 POSTURE_SPEED = 0.8
 _NAME = re.compile(r"\{(\w+)\}")
 
@@ -107,6 +114,18 @@ def walk_to(x: float, y: float, theta: float) -> RobotCommand:
     """Walk x m ahead, y m to the left, and turn by theta rad; a robot that does not stand stands up before."""
     steps = (("goToPosture", {"str_param": "StandInit"}), ("moveTo", {"values": [x, y, theta]}))
     return RobotCommand(MOTION, steps)
+
+
+def place_of_field(holder: Mapping[str, Any], key: str, known: Iterable[str]) -> str:
+    """Text to append to "there is no key ..." of a command: where a field of this name belongs; empty if nowhere.
+
+    `known`: keys that may stand there, one of which may have been meant.
+    """
+    places = [text.format(key) for kind, text in _PLACES.items() if kind in holder]
+    if not places:
+        return ""
+    hint = did_you_mean(key, known)
+    return f"{hint}{';' if hint else ':'} {places[0]}"
 
 
 def read_command(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:

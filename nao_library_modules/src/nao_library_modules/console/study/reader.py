@@ -15,7 +15,7 @@ from ...behaviors.language.expressions import IDENTIFIER
 from ...behaviors.language.yaml_text import line_in
 from ...nao.touch_names import sensors_of
 from ..files.yaml_file import ConsoleFileError, FileReader
-from ..robots.commands import FORMS, read_command
+from ..robots.commands import FORMS, place_of_field, read_command
 from ..robots.commands import KEYS as COMMAND_KEYS
 from .conditions import FORM, NOTHING, StudyCondition, unknown_names
 from .course import all_steps, steps_in
@@ -537,7 +537,8 @@ class _Reader(FileReader):
     def _keys(self, value: dict[str, Any], known: Sequence[str], where: str, line: int = 0) -> None:
         for key in value:
             if key not in known:
-                self.note(where, f"there is no {key!r}{of_those(str(key), known)}", line_in(value, key) or line)
+                hint = place_of_field(value, str(key), known) or of_those(str(key), known)
+                self.note(where, f"there is no {key!r}{hint}", line_in(value, key) or line)
 
     def _fail(self, where: str, text: str, line: int) -> Any:
         self.note(where, text, line)

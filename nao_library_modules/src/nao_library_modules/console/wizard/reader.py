@@ -31,7 +31,7 @@ from ...base.errors import BadGoal
 from ...base.suggestion import did_you_mean
 from ...behaviors.language.yaml_text import dump_line, line_in, line_of
 from ..files.yaml_file import FileReader
-from ..robots.commands import FORMS, KEYS, read_command
+from ..robots.commands import FORMS, KEYS, place_of_field, read_command
 from .key_names import BadKey, key_of
 from .model import ButtonAction, ButtonGroup, PlanDesignator, WizardButton, WizardLayout, hex_colour
 from .texts import NAME, names_in
@@ -120,7 +120,7 @@ class _LayoutReader:
         if not isinstance(value, dict):
             self._file.note(where, f"a mapping with {', '.join(BUTTON_KEYS)} is wanted", line)
             return None
-        self._file.mapping(value, where, BUTTON_KEYS)
+        self._file.mapping(value, where, BUTTON_KEYS, place_of=lambda key: place_of_field(value, key, BUTTON_KEYS))
         line = line_of(value) or line
         action = self._action(value, where, line)
         label = self._label(value, where, line, group[0], action)
