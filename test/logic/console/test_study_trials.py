@@ -381,6 +381,13 @@ def test_a_step_that_fails_waits_for_the_wizard(tmp_path):
     trial.end()
 
 
+def test_what_a_server_remarks_on_a_step_that_is_done_is_kept(tmp_path):
+    trial = steps_of(tmp_path, "- {say: Hi, animated: true}").begin()
+    trial.goal("animatedSay").end(text="no gestures")
+    (outcome,) = trial.end().outcomes
+    assert (outcome.outcome, outcome.error) == ("done", "no gestures")
+
+
 def test_a_choice_that_there_is_not_is_refused(trial):
     trial.begin().at("2.1")
     with pytest.raises(StudyError, match="no choice 'yes'"):

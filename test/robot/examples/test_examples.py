@@ -5,9 +5,13 @@ from __future__ import annotations
 import re
 import wave
 
+import av
+import genpy
 import pytest
+import rosbag
 from goal_functions import led as f
 from PIL import Image
+from sensor_msgs.msg import Image as RosImage
 from simulator import Simulator
 
 from nao_library_actions.msg import NaoLedGoal
@@ -71,6 +75,18 @@ def test_what_the_robot_has_recorded_is_fetched_and_the_log_tells_where_it_is(pr
     path, here = "/tmp/record_and_fetch.wav", robot.server.files.folder / ".robot/tmp/record_and_fetch.wav"
     assert here.read_bytes() == fetched.read_bytes()
     assert f"{path} is {here} on this computer; `nao files get {path}` fetches it" in caplog.text
+def test_the_pictures_of_a_bag_become_a_film_in_which_each_stands_at_its_time(run, tmp_path):
+    bag, film, topic = tmp_path / "walk.bag", tmp_path / "walk.mp4", "/nao_robot/camera/top/image_raw"
+    with rosbag.Bag(str(bag), "w") as file:
+        for stamp in (5.0, 5.1, 5.6):
+            picture = RosImage(height=48, width=64, encoding="bgr8", step=192, data=bytes(64 * 48 * 3))
+            picture.header.stamp = genpy.Time.from_sec(stamp)
+            file.write(topic, picture, genpy.Time(9))
+    assert run("bag_film", bag, film) == (0, f"written: {film}, 3 pictures in 1.1 s\n")
+    with av.open(str(film)) as container:
+        assert [frame.time for frame in container.decode(video=0)] == pytest.approx([0.0, 0.1, 0.6], abs=1e-3)
+    status, output = run("bag_film", bag, tmp_path / "other.mp4", "--topic", "/odom")
+    assert status == 1 and "no pictures of the topic /odom" in output and not (tmp_path / "other.mp4").exists()
 
 
 def test_without_a_robot_they_say_so(run):
@@ -88,6 +104,7 @@ def test_without_a_robot_they_say_so(run):
         ("plot_walk", ["--record"]),
         ("plot_sound", ["any.wav", "--output"]),
         ("naoqi_picture", []),
+        ("bag_film", ["any.bag"]),
     ],
 )
 def test_no_file_is_replaced_unasked(run, tmp_path, name, arguments):

@@ -78,7 +78,9 @@ class Motion:
 
     def __bool__(self) -> bool:
         """Refuse `if nao.walk_to(...)`, which would hold wherever the robot got."""
-        raise TypeError("a Motion is neither true nor false: `result` tells what came of it, `done` whether it has ended")
+        raise TypeError(
+            "a Motion is neither true nor false: `result` tells what came of it, `done` whether it has ended"
+        )
 
     @property
     def done(self) -> bool:

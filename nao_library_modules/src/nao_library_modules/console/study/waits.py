@@ -124,7 +124,7 @@ class CommandWait(Wait):
                 answer = _values_of(about.result) if self.step.asks else ""
                 last = (about.result.get("results") or [{}])[-1]
                 finished = _seconds(last.get("offset")) or _seconds(last.get("end"))
-                self.over = StepEnd(told.DONE, answer, finished=finished)
+                self.over = StepEnd(told.DONE, answer, finished=finished, error=about.text)
 
     def close(self) -> None:
         super().close()
