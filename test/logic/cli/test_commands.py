@@ -266,6 +266,13 @@ def test_of_the_answers_in_a_new_study_the_earliest_with_a_time_counts(run, tmp_
     assert first([]) == (unknown, "")
 
 
+def test_what_a_server_remarks_is_told_also_where_nobody_asked_for_an_answer(run, graph, sent):
+    graph()
+    sent.end = (GoalStatus.SUCCEEDED, "no gestures")
+    result = run("say", "hello", "--animated")
+    assert (result.exit_code, result.stdout, "no gestures" in result.stderr) == (0, "", True)
+
+
 def test_a_goal_that_fails_is_status_1_and_3_where_the_robot_is_gone(run, graph, sent):
     there = graph()
     sent.end = (ABORTED, "function 1 (setColor): no such light")

@@ -75,6 +75,8 @@ def test_what_the_robot_has_recorded_is_fetched_and_the_log_tells_where_it_is(pr
     path, here = "/tmp/record_and_fetch.wav", robot.server.files.folder / ".robot/tmp/record_and_fetch.wav"
     assert here.read_bytes() == fetched.read_bytes()
     assert f"{path} is {here} on this computer; `nao files get {path}` fetches it" in caplog.text
+
+
 def test_the_pictures_of_a_bag_become_a_film_in_which_each_stands_at_its_time(run, tmp_path):
     bag, film, topic = tmp_path / "walk.bag", tmp_path / "walk.mp4", "/nao_robot/camera/top/image_raw"
     with rosbag.Bag(str(bag), "w") as file:

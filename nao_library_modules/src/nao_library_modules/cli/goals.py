@@ -57,10 +57,12 @@ def run_functions(settings: CliSettings, server: str, functions: Sequence[Any]) 
 
 
 def carry_out(settings: CliSettings, server: str, functions: Sequence[Any], quiet: bool = False) -> GoalEnd:
-    """Run functions and print what came of it. `quiet`: nobody asked for anything: print nothing, except in JSON."""
+    """Run functions and print what came of it. `quiet`: print only what the server remarks."""
     end = run_functions(settings, server, functions)
     if settings.json or not quiet:
         show(settings, end)
+    elif end.text:
+        click.echo(end.text, err=True)
     return end
 
 
