@@ -21,10 +21,10 @@ AUTO = (vd.kCameraAutoExpositionID, vd.kCameraAutoWhiteBalanceID)
 )
 def test_a_picture_is_naoqis_container_with_raw_bytes(robot, video, image, camera, resolution, space, size, layers):
     taken = image(video.subscribeCamera("looker", camera, resolution, space, 30))
-    assert len(taken) == 12 and taken[:4] == (*size, layers, space) and taken[7] == camera
+    assert len(taken) == 12 and taken[:4] == [*size, layers, space] and taken[7] == camera
     assert taken[4] + taken[5] * 1e-6 == pytest.approx(robot.now.time, abs=1 / 30)
     assert isinstance(taken[6], (bytes, bytearray)) and len(taken[6]) == size[0] * size[1] * layers
-    assert taken[8:] == pytest.approx((HFOV / 2, VFOV / 2, -HFOV / 2, -VFOV / 2))
+    assert taken[8:] == pytest.approx([HFOV / 2, VFOV / 2, -HFOV / 2, -VFOV / 2])
     assert np.frombuffer(bytes(taken[6]), np.uint8).std() > 5, "there is something to see"
 
 
@@ -68,7 +68,7 @@ def test_what_a_subscriber_sees_can_be_changed_and_the_active_camera_is_that_of_
     assert video.setActiveCamera(handle, BOTTOM)
     assert (video.getResolution(handle), video.getColorSpace(handle), video.getFrameRate(handle)) == (0, 0, 30)
     assert video.getActiveCamera(handle) == BOTTOM and video.getActiveCamera() == TOP
-    assert image(handle)[:4] == (160, 120, 1, 0)
+    assert image(handle)[:4] == [160, 120, 1, 0]
     assert video.getResolution(BOTTOM) == 0 and video.getFrameRate(BOTTOM) == 30 and video.getColorSpace(BOTTOM) == 9
     assert video.setActiveCamera(BOTTOM) is True and video.getActiveCamera() == BOTTOM
     assert image(video.subscribe("old", vd.kQQVGA, GREY, 10))[7] == BOTTOM

@@ -21,7 +21,7 @@ from waits import hold
 from nao_library_modules.processes.process_tree import descendants, identify, kill_survivors
 from nao_sim_bridge.naoqi.binding import client_calls
 from nao_sim_bridge.server import broker as module
-from nao_sim_bridge.server import own_sockets, wire
+from nao_sim_bridge.server import messages, own_sockets, wire
 from nao_sim_bridge.server.broker import Broker
 from nao_sim_bridge.server.wire import Wires
 from nao_sim_bridge.testing import wait_until
@@ -194,7 +194,7 @@ def test_a_program_that_does_not_answer_holds_up_bytes_of_no_other(listening, co
         held_up, _ = silent.accept()
         with held_up:
             assert held_up.recv(1)  # its greeting, which nobody answers
-            wires.call(served["endpoints"], number, hear, wire.packed_arguments("(m)", [b"\xff"])).value()
+            wires.call(served["endpoints"], number, hear, messages.packed_arguments("(m)", [b"\xff"])).value()
             assert echo.calls.get(timeout=PATIENCE) == b"\xff"
 
 

@@ -14,8 +14,11 @@ import qi
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.tasks import WorkThreads
 from nao_sim_bridge.naoqi.binding.client_calls import NoAnswer, answer, worth_telling
+from nao_sim_bridge.naoqi.binding.wire_types import has_bytes
+from nao_sim_bridge.server.answers import Answers
+from nao_sim_bridge.server.messages import packed_arguments
 from nao_sim_bridge.server.own_sockets import StuckClients, free_port_on_exit, has_clients, is_listened_on, is_taken
-from nao_sim_bridge.server.wire import Wires, has_bytes, packed_arguments
+from nao_sim_bridge.server.wire import Wires
 
 log = logging.getLogger("nao_sim.broker")
 
@@ -51,6 +54,7 @@ class Broker:
         self._services: dict[str, tuple[int, Any]] = {}
         self._callers: dict[str, _Caller] = {}
         self._wires = Wires()
+        self._answers = Answers()
         self._gone: Callable[[str], None] = lambda module: None
         self._telling = WorkThreads("modules that have left")
         self._lost = 0
@@ -135,6 +139,14 @@ class Broker:
         found = answer(looked_for, threading.Condition(), lambda: True, FOUND)
         return _Module(module, found, self._session, self._wires)
 
+    def with_bytes(self, value: Any) -> Any:
+        """A libqi future of an answer that holds bytes; a client gets them as bytes.
+
+        Raises:
+            RuntimeError: The broker has closed.
+        """
+        return self._answers.future(value)
+
     def names(self) -> list[str]:
         """All services that there are, of the simulator and of clients."""
         return [served["name"] for served in self._session.services()]
@@ -201,6 +213,7 @@ class Broker:
         if self._watch is not None:
             self._watch.close()
         self._wires.close()
+        self._answers.close()
         self._session.close()
 
 

@@ -1,10 +1,4 @@
-"""Calls of modules of clients whose arguments hold bytes: libqi's messages, written here.
-
-libqi's Python binding sends bytes as text wherever a method takes any value, so a client gets the text of them. On the
-wire such a value says of itself that it is raw, as those of a robot do. The form of the messages is that of libqi
-(github.com/aldebaran/libqi, message.hpp and binarycodec.cpp): 28 bytes of header, then the arguments one after the
-other, little-endian, each value behind its signature.
-"""
+"""Calls of modules of clients whose arguments hold bytes, in libqi's own messages."""
 
 from __future__ import annotations
 
@@ -12,102 +6,15 @@ import socket
 import struct
 import threading
 from contextlib import suppress
-from typing import Any, Callable, Iterable, Iterator, Sequence
+from typing import Any, Iterable, Iterator, Sequence
 
 import qi
 
 from nao_sim_bridge.naoqi.binding.client_calls import GIVEN_UP
+from nao_sim_bridge.server.messages import AUTHENTICATE, CALL, MAIN_OBJECT, REPLY, Message, Messages, text
 
-_HEADER = struct.Struct("<4sIIHBBIII")
-"""Magic number, id, size of what follows, version, type, flags, service, object, method."""
-_MAGIC = b"\x42\xde\xad\x42"
-_CALL, _REPLY, _ERROR = 1, 2, 3
-_MAIN_OBJECT = 1
-_AUTHENTICATE = 8
 _CONNECT = 5.0
 """s for a connection to one address of a client, and for its greeting."""
-_LARGEST = 2**20
-"""bytes of an answer: callbacks answer nothing, or little."""
-
-
-def has_bytes(value: Any) -> bool:
-    """Whether bytes are somewhere in a value."""
-    if isinstance(value, (bytes, bytearray)):
-        return True
-    if isinstance(value, dict):
-        return has_bytes([*value.keys(), *value.values()])
-    return isinstance(value, (list, tuple)) and any(has_bytes(each) for each in value)
-
-
-def packed(value: Any) -> bytes:
-    """A value behind its signature, as libqi sends what a method takes as any value; a TypeError for others."""
-    signature, content = _value(value)
-    return _text(signature) + content
-
-
-def packed_arguments(signature: str, arguments: Sequence[Any]) -> bytes | None:
-    """The arguments of a method; None if some of its parameters are neither numbers, texts, bytes nor any value.
-
-    Args:
-        signature: Of its parameters, as its service has it: "(mm)", or "m" where it takes any number of values.
-    """
-    if signature == "m":
-        return packed(tuple(arguments))
-    codes = signature[1:-1]
-    if len(codes) != len(arguments) or not set(codes) <= {"m", *_FIXED}:
-        return None
-    return b"".join(packed(value) if code == "m" else _FIXED[code](value) for code, value in zip(codes, arguments))
-
-
-def _value(value: Any) -> tuple[str, bytes]:
-    if value is None:
-        return "v", b""
-    if isinstance(value, bool):
-        return "b", struct.pack("<?", value)
-    if isinstance(value, int):
-        return ("i", struct.pack("<i", value)) if -(2**31) <= value < 2**31 else ("l", struct.pack("<q", value))
-    if isinstance(value, float):
-        return "d", struct.pack("<d", value)
-    if isinstance(value, str):
-        return "s", _text(value)
-    if isinstance(value, (bytes, bytearray)):
-        return "r", _raw(value)
-    if isinstance(value, tuple):
-        return f"({'m' * len(value)})", b"".join(map(packed, value))
-    if isinstance(value, list):
-        return "[m]", struct.pack("<I", len(value)) + b"".join(map(packed, value))
-    if isinstance(value, dict):
-        return "{mm}", struct.pack("<I", len(value)) + b"".join(packed(k) + packed(v) for k, v in value.items())
-    raise TypeError(f"libqi has no type for {type(value).__name__}")
-
-
-def _raw(content: bytes) -> bytes:
-    return struct.pack("<I", len(content)) + content
-
-
-def _text(text: str) -> bytes:
-    return _raw(text.encode())
-
-
-_NUMBERS = {
-    "b": "?",
-    "c": "b",
-    "C": "B",
-    "w": "h",
-    "W": "H",
-    "i": "i",
-    "I": "I",
-    "l": "q",
-    "L": "Q",
-    "f": "f",
-    "d": "d",
-}
-_FIXED: dict[str, Callable[[Any], bytes]] = {
-    "s": _text,
-    "r": _raw,
-    **{code: struct.Struct(f"<{form}").pack for code, form in _NUMBERS.items()},
-}
-"""How a parameter of a declared type is written, by its signature."""
 
 
 class Wires:
@@ -166,13 +73,14 @@ class _Wire:
 
     def __init__(self, addresses: Iterable[tuple[str, int]]) -> None:
         self._socket = _connected(addresses)
+        self._messages = Messages(self._socket)
         self._lock = threading.Lock()
         self._calls: dict[int, Any] = {}
         self._last = 0
         self.open = True
         try:
-            self._send(0, 0, 0, _AUTHENTICATE, struct.pack("<I", 0))
-            if self._receive()[1] != _REPLY:
+            self._messages.send(Message(0, CALL, 0, 0, AUTHENTICATE, struct.pack("<I", 0)))
+            if self._messages.receive().kind != REPLY:
                 raise RuntimeError("it takes no calls without a login")
         except OSError as error:
             self._socket.close()
@@ -187,7 +95,7 @@ class _Wire:
             self._last += 1
             self._calls[self._last] = promise
             try:
-                self._send(self._last, service, _MAIN_OBJECT, method, arguments)
+                self._messages.send(Message(self._last, CALL, service, MAIN_OBJECT, method, arguments))
             except OSError as error:
                 self.open = False
                 del self._calls[self._last]
@@ -198,36 +106,16 @@ class _Wire:
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
 
-    def _send(self, number: int, service: int, target: int, method: int, content: bytes) -> None:
-        header = _HEADER.pack(_MAGIC, number, len(content), 0, _CALL, 0, service, target, method)
-        self._socket.sendall(header + content)
-
-    def _receive(self) -> tuple[int, int, bytes]:
-        """The id of a message, its type and its content; an OSError when the connection has ended."""
-        magic, number, size, _, kind, *_ = _HEADER.unpack(self._read_bytes(_HEADER.size))
-        if magic != _MAGIC or size > _LARGEST:
-            raise ConnectionError("it sent something else than libqi's messages")
-        return number, kind, self._read_bytes(size)
-
-    def _read_bytes(self, count: int) -> bytes:
-        read = bytearray()
-        while len(read) < count:
-            part = self._socket.recv(count - len(read))
-            if not part:
-                raise ConnectionError("it has closed the connection")
-            read += part
-        return bytes(read)
-
     def _read(self) -> None:
         with suppress(OSError):
             while True:
-                number, kind, content = self._receive()
+                message = self._messages.receive()
                 with self._lock:
-                    promise = self._calls.pop(number, None)
-                if promise is not None and kind == _REPLY:
+                    promise = self._calls.pop(message.number, None)
+                if promise is not None and message.kind == REPLY:
                     promise.setValue(None)
                 elif promise is not None:
-                    promise.setError(_error(content))
+                    promise.setError(_error(message.content))
         with self._lock:
             self.open = False
             calls, self._calls = list(self._calls.values()), {}
@@ -248,7 +136,7 @@ def _connected(addresses: Iterable[tuple[str, int]]) -> socket.socket:
 
 def _error(content: bytes) -> str:
     """The text of an error: a value that is a text, behind its signature."""
-    head = _text("s")
+    head = text("s")
     if not content.startswith(head):
         return "the call has failed"
     return content[len(head) + 4 :].decode(errors="replace")

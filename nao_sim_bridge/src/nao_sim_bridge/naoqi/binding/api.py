@@ -88,6 +88,20 @@ def qi_type(name: str) -> str:
     raise ConfigError(FILE, f"unknown type {name!r}")
 
 
+@lru_cache(maxsize=None)
+def published_type(returns: str) -> str:
+    """Libqi's letter code of what a method answers; pictures and their like are any value, as on a robot.
+
+    A C++ client takes each element of them as any value, which it cannot with those of a structure.
+    """
+    return SIMPLE_TYPES["ALValue"] if holds_buffer(returns) else qi_type(returns)
+
+
+def holds_buffer(returns: str) -> bool:
+    """Whether a method answers a list, or lists, with a buffer among other values."""
+    return "buffer" in returns and returns != "buffer"
+
+
 @lru_cache(maxsize=1)
 def older_tables() -> Mapping[str, Any]:
     """What is known of NAOqi before 2.8; `_meta` in the file tells its form."""
@@ -149,8 +163,13 @@ def _table(name: str, entries: Mapping[str, Any]) -> Table:
     # The common methods are of every module, also of one whose entry does not say so.
     shared = dict.fromkeys([COMMON, *entries.get("_inherits", ())])
     shared.pop(name, None)
-    own = {key: make_method(key, entry, _older(entries, entry)) for key, entry in entries.items() if key[0] != "_"}
+    own = {name: make_method(name, entry, _older(entries, entry)) for name, entry in _methods(entries)}
     return Table(tuple(shared), own)
+
+
+def _methods(entries: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    """Those entries of a table that are methods: one of a private method begins with _ as other things of it do."""
+    return [(name, entry) for name, entry in entries.items() if isinstance(entry, Mapping) and "returns" in entry]
 
 
 def _overload(takes: Sequence[str]) -> Overload:

@@ -17,25 +17,34 @@ from typing import Any, Callable, Iterable, Mapping, Sequence
 import qi
 
 from nao_sim_bridge.base.tasks import Task
-from nao_sim_bridge.naoqi.binding.api import Method, module_methods, own_methods, qi_type, tables_of
+from nao_sim_bridge.naoqi.binding.api import (
+    Method,
+    holds_buffer,
+    module_methods,
+    own_methods,
+    published_type,
+    tables_of,
+)
 from nao_sim_bridge.naoqi.binding.common import CommonModule
 from nao_sim_bridge.naoqi.binding.later import Later, made
 from nao_sim_bridge.naoqi.binding.limits import check_sizes
 from nao_sim_bridge.naoqi.binding.older import older_methods, warning_once
 from nao_sim_bridge.naoqi.binding.unfinished import Unfinished
-from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to
+from nao_sim_bridge.naoqi.binding.wire_types import fitted, fitted_to, has_bytes
 
 log = logging.getLogger("nao_sim.services")
 
 # Every libqi object has these by itself.
 NATIVE = frozenset({"isStatsEnabled", "clearStats", "isTraceEnabled"})
-ANY_ARGUMENTS = "m"
+ANY = ANY_ARGUMENTS = "m"
 # Characters of an error text; what is between its ends is left out when somebody sent a book as a name.
 LONGEST_ERROR = 1200
 # The answer where something else was raised than what is raised on purpose.
 DEFECT = "a defect of the simulator, whose log tells more"
 PACKAGE = __name__.partition(".")[0]
 Methods = Mapping[str, Callable[..., Any]]
+WithBytes = Callable[[Any], Any]
+"""Makes a libqi future of a value with bytes in it."""
 
 
 class Service:
@@ -49,7 +58,8 @@ class Service:
         parts: Objects whose methods do the work; those with the names of the table are published. One with an attribute
             `signals` publishes these libqi signals, by name; it has to keep them in `take_over(former)`. Of parts that
             are made `Later` all of the table is published, and the signals that they are given.
-        broker: What the methods that every module has need to know: its `name` and `unregister(module)`.
+        broker: What the methods that every module has need to know: its `name` and `unregister(module)`. Its
+            `with_bytes(value)` makes a libqi future of an answer that holds bytes.
     """
 
     def __init__(self, module: str, parts: Sequence[Any], broker: Any) -> None:
@@ -58,6 +68,8 @@ class Service:
         self._parts = parts
         self._targets = self._bound_to(parts)
         table = published_methods(module)
+        self._any = {name for name, method in table.items() if published_type(method.returns) == ANY}
+        self._pictures = {name for name, method in table.items() if holds_buffer(method.returns)}
         names = table.keys() - NATIVE if isinstance(parts, Later) else self._targets.methods
         body: dict[str, Any] = {}
         for name, functions in _functions(module).items():
@@ -73,7 +85,8 @@ class Service:
 
     def answer(self, method: str, args: Sequence[Any]) -> Any:
         """What goes back to who calls a method; see `answer`."""
-        return self._targets.answer(self._module, method, args)
+        with_bytes = self._broker.with_bytes if method in self._any else None
+        return self._targets.answer(self._module, method, args, with_bytes, method in self._pictures)
 
     def rebind(self, parts: Sequence[Any]) -> Callable[[], None]:
         """Have other objects of the same kinds do the work from now on.
@@ -119,9 +132,9 @@ class _Targets:
         self._unfinished = Unfinished()
         self._ended = False
 
-    def answer(self, module: str, method: str, args: Iterable[Any]) -> Any:
+    def answer(self, module: str, method: str, args: Iterable[Any], *about_bytes: Any) -> Any:
         call = self.methods.get(method) or partial(self._first, method)
-        result = answer(module, method, call, args, self._unfinished)
+        result = answer(module, method, call, args, self._unfinished, *about_bytes)
         if self._ended:  # by the time it was noted
             self.end()
         return result
@@ -185,7 +198,7 @@ def _published(method: Method) -> Methods:
     name = method.name
     if name == "pCall":
         return {name: _function(name, inspect.getdoc(CommonModule.pCall), qi.Dynamic, ANY_ARGUMENTS)}
-    ways = [_function(name, method.summary, qi_type(method.returns), way.signature) for way in method.overloads]
+    ways = [_function(name, method.summary, published_type(method.returns), way.signature) for way in method.overloads]
     return {name if i == 0 else f"{name}_{i}": way for i, way in enumerate(ways)}
 
 
@@ -226,11 +239,15 @@ def answer(
     call: Callable[..., Any],
     args: Iterable[Any],
     unfinished: Unfinished | None = None,
+    with_bytes: WithBytes | None = None,
+    bytes_later: bool = False,
 ) -> Any:
     """What libqi sends back for a call: a value, or a future for what takes simulated time.
 
     Errors go back as failed futures: raised through libqi they would carry a Python traceback in their text. The
-    `unfinished` calls of the module, which may be too many, have each task that the client waits for.
+    `unfinished` calls of the module, which may be too many, have each task that the client waits for. `with_bytes`
+    makes the future of an answer with bytes, where the method may answer any value; `bytes_later`: that of a task has
+    them.
     """
     args, label = tuple(args), f"{module}::{method}"
     try:
@@ -238,6 +255,8 @@ def answer(
         if unfinished is not None:
             unfinished.require_room(method)
         result = call(*args)
+        if with_bytes is not None and has_bytes(result):
+            return with_bytes(result)
     except Exception as error:
         promise = qi.Promise()
         promise.setError(_text(label, error))
@@ -246,10 +265,10 @@ def answer(
         return result
     if unfinished is not None:
         unfinished.note(result)
-    return _as_future(result, label)
+    return _as_future(result, label, with_bytes if bytes_later else None)
 
 
-def _as_future(task: Task, label: str) -> Any:
+def _as_future(task: Task, label: str, with_bytes: WithBytes | None) -> Any:
     """A libqi future that ends with the task, or with the one that is its value; cancelling it kills the task."""
     cancelled = threading.Event()
 
@@ -258,21 +277,26 @@ def _as_future(task: Task, label: str) -> Any:
         task.request_kill()
 
     promise = qi.Promise(cancel)
-    task.add_done_callback(partial(_settle, promise, cancelled, label))
-    return promise.future()
+    task.add_done_callback(partial(_settle, promise, cancelled, label, with_bytes))
+    return promise.future() if with_bytes is None else promise.future().unwrap()
 
 
-def _settle(promise: Any, cancelled: threading.Event, label: str, done: Task) -> None:
+def _settle(promise: Any, cancelled: threading.Event, label: str, with_bytes: WithBytes | None, done: Task) -> None:
     # Not a closure that names itself: such a cycle would keep the promise until the next garbage collection, and a
     # promise with a value that is still there when the interpreter ends makes libqi abort the process.
     if done.error is not None:
         promise.setError(_text(label, done.error))
     elif isinstance(done.value, Task):
-        done.value.add_done_callback(partial(_settle, promise, cancelled, label))
+        done.value.add_done_callback(partial(_settle, promise, cancelled, label, with_bytes))
     elif done.killed and cancelled.is_set():
         promise.setCanceled()
-    else:
+    elif with_bytes is None:
         promise.setValue(done.value)
+    else:
+        try:
+            promise.setValue(with_bytes(done.value))
+        except RuntimeError as error:
+            promise.setError(_text(label, error))
 
 
 def _checked(module: str, method: Method, target: Callable[..., Any]) -> Callable[..., Any]:

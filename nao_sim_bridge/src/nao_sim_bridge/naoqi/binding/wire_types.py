@@ -57,6 +57,15 @@ def _fitted(module: str, method: str, overloads: Sequence[Overload], values: Seq
     return way
 
 
+def has_bytes(value: Any) -> bool:
+    """Whether bytes are somewhere in a value."""
+    if isinstance(value, (bytes, bytearray)):
+        return True
+    if isinstance(value, dict):
+        return has_bytes([*value.keys(), *value.values()])
+    return isinstance(value, (list, tuple)) and any(has_bytes(each) for each in value)
+
+
 def _fits(value: Any, kind: str) -> bool:
     return kind not in _TYPES or _TYPES[kind][1](value) or (kind == TEXTS and _is_text(value))
 

@@ -141,18 +141,18 @@ class ALVideoDevice:
             )
 
 
-def container(frame: Frame) -> tuple:
+def container(frame: Frame) -> list:
     """A frame as NAOqi hands it over."""
     left, top = frame.hfov / 2.0, frame.vfov / 2.0
     size = (frame.width, frame.height, frame.layers)
-    return (*size, frame.color_space, *frame.stamp, frame.data, frame.camera, left, top, -left, -top)
+    return [*size, frame.color_space, *frame.stamp, frame.data, frame.camera, left, top, -left, -top]
 
 
-def _first(frames: list[Frame]) -> tuple:
+def _first(frames: list[Frame]) -> list:
     return container(frames[0])
 
 
-def _all(frames: list[Frame]) -> list[tuple]:
+def _all(frames: list[Frame]) -> list[list]:
     return list(map(container, frames))
 
 
