@@ -57,7 +57,7 @@ class _Counts:
 
     def __init__(self, module: str, parts: Sequence[Any]) -> None:
         self.last = older_tables()["modules"].get(module, {}).get("_last", NEWEST)
-        own = own_methods(module)
+        own = [name for name in own_methods(module) if not name.startswith("_")]
         answered, open_ = ([name for name in names if name in own] for names in offered(module, parts))
         self.refused = {name: why for name, why in refused(module).items() if name in answered}
         self.answered = [name for name in answered if name not in self.refused]

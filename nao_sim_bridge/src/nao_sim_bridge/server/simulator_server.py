@@ -21,6 +21,8 @@ from nao_sim_bridge.core.simulation import Scene, Simulation
 from nao_sim_bridge.naoqi.binding.arguments import number, vector
 from nao_sim_bridge.naoqi.binding.binding import Service
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
+from nao_sim_bridge.naoqi.system.log_manager import NAME as LOG_MANAGER
+from nao_sim_bridge.naoqi.system.log_manager import LogManager
 from nao_sim_bridge.naoqi.system.nao_simulation import NAME as NAO_SIMULATION
 from nao_sim_bridge.naoqi.system.nao_simulation import NaoSimulation
 from nao_sim_bridge.naoqi.system.system import ALSystem
@@ -82,6 +84,7 @@ class SimulatorServer:
         self._robot = self.modules_for(simulation)
         self.file_access = FilesControl(lambda: self.files)
         self.pictures = Pictures(self._robot.runner)
+        self._log = LogManager()
         self._services: dict[str, Service] = {}
         self._outlets: list[SoundFile | SoundCard] = []
         self._resetting = threading.Lock()
@@ -146,6 +149,7 @@ class SimulatorServer:
             service = self._services[name] = Service(name, parts, self.broker)
             self.broker.register(name, service.object)
         self.broker.register(NAO_SIMULATION, NaoSimulation(self))
+        self.broker.register(LOG_MANAGER, self._log)
         self.memory.raise_event(READY, None)
         if self.options.gui:
             self.pictures.open_window()
@@ -166,6 +170,7 @@ class SimulatorServer:
             self._workers.vision.close,  # first: who waits for an answer gets none
             *self._robot.leaving(FILM_LIMIT),
             self._workers.persons.close,
+            self._log.close,
             self.broker.close,
         ]
 

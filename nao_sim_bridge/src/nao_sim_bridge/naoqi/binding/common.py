@@ -15,7 +15,7 @@ from nao_sim_bridge.naoqi.binding.api import Method
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
 from nao_sim_bridge.naoqi.binding.unfinished import Unfinished
 
-VERSION = "2.8.5"
+VERSION = "2.8.5.10"
 # Finished posted calls that `wait` and `isRunning` still know.
 REMEMBERED = 1000
 

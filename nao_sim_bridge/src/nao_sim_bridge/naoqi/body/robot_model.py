@@ -10,6 +10,7 @@ from nao_sim_bridge.naoqi.memory.live_keys import constants
 NAME = "ALRobotModel"
 PREFERENCES = "RobotConfig/"
 KIND = PREFERENCES + "Body/Type"
+MICROPHONES = PREFERENCES + "Head/Device/Micro/Version"
 
 
 class ALRobotModel:
@@ -34,12 +35,17 @@ class ALRobotModel:
         """Preferences as NAOqi's XML has them: nested by name, each leaf with the key in ALMemory and its value."""
         root = ElementTree.Element("ModulePreference", name="ALRobotModel", domain="com.aldebaran", version="1.0")
         nodes = {"": root}
-        for key, value in sorted(constants(self._version).items()):
-            if key.startswith(PREFERENCES):
-                *groups, name = key.split("/")
-                parent = _group(nodes, groups)
-                ElementTree.SubElement(parent, "Preference", name=name, memoryName=key, value=str(value), type="string")
+        for key, value in sorted(self._getConfigMap().items()):
+            *groups, name = key.split("/")
+            parent = _group(nodes, groups)
+            ElementTree.SubElement(parent, "Preference", name=name, memoryName=key, value=value, type="string")
         return '<?xml version="1.0" encoding="UTF-8" ?>\n' + ElementTree.tostring(root, encoding="unicode")
+
+    def _getConfigMap(self) -> dict[str, str]:
+        return {key: str(value) for key, value in constants(self._version).items() if key.startswith(PREFERENCES)}
+
+    def _getMicrophoneConfig(self) -> int:
+        return int(constants(self._version)[MICROPHONES])
 
     def _has(self, *parts: str) -> bool:
         """Whether the robot has all of these chains or joints."""

@@ -88,9 +88,10 @@ def _snapshot_keys(model: RobotModel) -> dict[str, Read]:
     tables = key_tables()
     prefix = key_prefix()
     keys: dict[str, Read] = {}
-    for joint in tables["joints"]["names"]:
+    motors = {**{joint: joint for joint in tables["joints"]["names"]}, **tables["joints"]["same_motor"]}
+    for joint, motor in motors.items():
         for suffix in tables["joints"]["suffixes"]:
-            keys[f"{prefix}{joint}/{suffix}"] = JOINT_SUFFIXES[suffix](model.joint_index[joint])
+            keys[f"{prefix}{joint}/{suffix}"] = JOINT_SUFFIXES[suffix](model.joint_index[motor])
     for group, entry in tables["devices"].items():
         if not group.startswith("led_") and group != "sonar":  # `sonar.py` knows when these are measured
             for key in entry["keys"]:
@@ -146,6 +147,7 @@ _PATTERNS: tuple[tuple[str, Callable[..., Read]], ...] = (
 )
 
 _MODULE_KEYS: dict[str, Read] = {
+    "DCM/Time": lambda s: _milli(s.time),
     "footContact": lambda s: float(max(s.left_foot.total, s.right_foot.total) > CONTACT_LOAD),
     "leftFootContact": lambda s: float(s.left_foot.total > CONTACT_LOAD),
     "rightFootContact": lambda s: float(s.right_foot.total > CONTACT_LOAD),

@@ -22,7 +22,10 @@ STANDARD = "std"
 """The handler that writes to the log of the simulator; others have the name of their file."""
 MOST_FILES = 10
 LINE = "-" * 60
-_PYTHON = (logging.NOTSET, logging.CRITICAL, logging.ERROR, logging.WARNING, logging.INFO, logging.DEBUG, logging.DEBUG)
+PYTHON_LEVELS = (
+    *(logging.NOTSET, logging.CRITICAL, logging.ERROR, logging.WARNING),
+    *(logging.INFO, logging.DEBUG, logging.DEBUG),
+)
 log = logging.getLogger("nao_sim.programs")
 log.setLevel(logging.DEBUG)  # what is written is up to each robot's verbosity
 
@@ -120,7 +123,7 @@ class ALLogger:
         if level > limit:
             return
         if self._standard:
-            log.log(_PYTHON[level], "%s: %s", module, message)
+            log.log(PYTHON_LEVELS[level], "%s: %s", module, message)
         line = f"[{LEVELS[level][0].upper()}] {time.time():.6f} {os.getpid()} {module}: {message}\n".encode(
             errors="replace"
         )
