@@ -22,12 +22,16 @@ class Timing:
 
     heartbeat_period: float = 0.3  # pause between two heartbeats: what happens within 2 s is seen by then
     silence: float = 1.3  # one that leaves a heartbeat unanswered so long is reported as silent; a busy one seldom is
-    patience: float = 10.0  # one that is silent so long is lost; busy computers with two whole stacks reached 1.6 s
+    patience: float = 20.0  # one that is silent so long is lost: twice what programs have seen robots be, and go on
     first_delay: float = 0.2  # pause after the first failed attempt to connect; it doubles with each further one
     longest_delay: float = 2.0  # longest pause between two attempts
 
 
 DEFAULT_TIMING = Timing()
+"""Of programs, which have nothing better to do than to wait for their robot."""
+SERVER_PATIENCE = 10.0
+"""Of the nodes of this library: their clients want to know that the robot is lost. Busy computers with two whole stacks
+reached 1.6 s."""
 
 SILENT_SLICE = 0.05
 """Until the clock of a robot that was silent is read again."""
@@ -96,7 +100,7 @@ CANCELLED_LIMIT = 0.1
 """It ends by itself at once on a robot that knows cancellation."""
 STOPPED_LIMIT = 0.5
 """It was stopped by another call as well; a robot that knows neither must not hold up preemption."""
-GOAL_END_LIMIT = DEFAULT_TIMING.patience + 5.0
+GOAL_END_LIMIT = SERVER_PATIENCE + 5.0
 """A goal of a server ends when the robot stands still, also if it is silent at first."""
 
 # Of the end of a program: nobody waits for answers any more.

@@ -49,7 +49,7 @@ class ALProxy:
                 as the connection lives.
             connect_timeout: Limit of the wait for the robot, in s; None: the patience.
             patience: A robot that is silent so long, in s, is lost: calls under way fail. Of all proxies of this robot;
-                without one it stays as it is, 10 s at first.
+                without one it stays as it is, 20 s at first.
             lazy: Connect in the background; until that succeeds, calls fail at once.
         """
         if not isinstance(name, str) or not name:

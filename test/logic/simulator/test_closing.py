@@ -6,9 +6,12 @@ import socket
 import threading
 from unittest.mock import MagicMock
 
+import pytest
+import qi
 import rospy
 
 from nao_sim_bridge.base.guard import Guard
+from nao_sim_bridge.naoqi.binding.client_calls import answer
 from nao_sim_bridge.ros import node as ros_node
 from nao_sim_bridge.ros import side as ros_side
 from nao_sim_bridge.server import own_sockets
@@ -40,6 +43,46 @@ def test_a_client_that_closes_while_it_is_cut_off_does_not_end_the_watch(monkeyp
     watch = own_sockets.StuckClients(1)
     assert cut.wait(LIMIT)
     watch.close()
+
+
+@pytest.fixture
+def full(monkeypatch):
+    """The connection of a client that takes nothing."""
+    connection = MagicMock()
+    connection.getsockopt.return_value = own_sockets.SENT_AND_TAKEN.pack(0, 7)
+    row = own_sockets._Row("full", 1, own_sockets.CONNECTED, own_sockets.NO_ROOM, "full")
+    monkeypatch.setattr(own_sockets, "_rows", lambda *_: [row])
+    monkeypatch.setattr(own_sockets, "_sockets", lambda _: [connection])
+    return connection
+
+
+def test_time_in_which_the_simulator_was_stopped_is_not_counted_against_a_client(monkeypatch, full):
+    monkeypatch.setattr(own_sockets, "IDLE_PERIOD", 2.0)
+    monkeypatch.setattr(own_sockets.threading, "Thread", MagicMock())
+    watch = own_sockets.StuckClients(1)
+    for _ in range(3):
+        watch._look(60.0)
+    full.shutdown.assert_not_called()
+    for _ in range(round(own_sockets.STUCK / 0.5)):
+        watch._look(0.5)
+    full.shutdown.assert_called()
+
+
+def test_an_answer_that_is_read_after_the_limit_counts_for_a_process_that_was_stopped():
+    promise = qi.Promise()
+
+    class Stopped(threading.Condition):
+        """Continues when the limit is over, and reads the answer then."""
+
+        def wait_for(self, predicate, timeout=None):
+            if not predicate() and not promise.future().isFinished() and self.waits:
+                promise.setValue(5)
+            self.waits += 1
+            return predicate()
+
+        waits = 0
+
+    assert answer(promise.future(), Stopped(), lambda: True, 10.0) == 5
 
 
 def test_the_clock_goes_on_whatever_fails_beside_it(monkeypatch):

@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
+from dataclasses import asdict
 
 import pytest
 import qi
@@ -17,7 +18,7 @@ from waits import hold
 
 import naoqi
 from naoqi import directory, errors
-from naoqi.limits import Timing
+from naoqi.limits import SERVER_PATIENCE, Timing
 from naoqi.native_threads import wait_until_idle
 
 SILENT, SPEAKING = ("connected", True), ("connected", False)
@@ -176,7 +177,22 @@ def test_the_end_waits_for_a_thread_of_libqi_that_is_still_at_work():
 
 def test_a_robot_that_goes_is_noticed_within_two_seconds_and_one_that_is_slow_is_waited_for():
     timing = Timing()
-    assert timing.heartbeat_period < 2.0 and timing.heartbeat_period < timing.silence < timing.patience == 10.0
+    assert timing.heartbeat_period < 2.0 and timing.heartbeat_period < timing.silence < SERVER_PATIENCE == 10.0
+    assert timing.patience > SERVER_PATIENCE
+
+
+def test_a_program_goes_on_with_a_robot_that_was_silent_for_more_than_ten_seconds(robot, proxy, pool, begun):
+    fifth = {name: value / 5.0 for name, value in asdict(Timing()).items()}
+    proxy.connection.timing = Timing(**fifth)
+    under_way = pool.submit(proxy.begin)
+    begun()
+    robot.silence()
+    waiting = pool.submit(proxy.add, 1, 2)
+    time.sleep(11.0 / 5.0)
+    robot.speak()
+    assert waiting.result(SOON) == 3
+    proxy.finish(6)
+    assert under_way.result(SOON) == 6 and proxy.connection.generation == 1
 
 
 class Silence:

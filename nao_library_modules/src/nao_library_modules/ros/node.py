@@ -14,7 +14,7 @@ import rosgraph
 import rospy
 
 from naoqi.errors import NaoError
-from naoqi.limits import Timing
+from naoqi.limits import DEFAULT_TIMING, SERVER_PATIENCE, Timing
 
 from ..base.field_checks import number_parameter
 from ..base.limits import limit
@@ -231,6 +231,8 @@ def take_patience(robot: Any) -> None:
     if name is not None:
         patience = number_parameter(name, rospy.get_param(name), limit("patience"))
         robot.connection.timing = Timing(patience=patience)
+    elif robot.connection.timing is DEFAULT_TIMING:  # nobody has said anything else
+        robot.connection.timing = Timing(patience=SERVER_PATIENCE)
 
 
 def _start_patience() -> dict[str, float]:

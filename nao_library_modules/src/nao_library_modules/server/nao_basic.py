@@ -135,7 +135,7 @@ class NaoBasic(FunctionRunner):
             node: ROS side, where not that of this process's node.
             start_patience: s from now on for which goals wait for a robot that has never been reached.
             kept: Where what goals set up is kept beyond the death of the node, where not in the file of the node.
-            patience: s that the robot may be silent before it is lost; None: as it is, 10 at first.
+            patience: s that the robot may be silent before it is lost; None: as it is, 20 at first.
         """
         if not isinstance(autostart, bool):
             raise NaoError(f"autostart is {autostart!r}: True or False")

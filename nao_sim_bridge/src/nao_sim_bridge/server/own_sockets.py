@@ -92,7 +92,7 @@ class StuckClients:
 
     def __init__(self, port: int) -> None:
         self._port = port
-        self._since: dict[str, tuple[int, float]] = {}  # bytes that had been taken, and when the last ones were sent
+        self._full: dict[str, tuple[int, float]] = {}  # bytes that had been taken, and s for which none were
         self._over = threading.Event()
         threading.Thread(target=self._run, name="watch of clients", daemon=True).start()
 
@@ -101,22 +101,26 @@ class StuckClients:
         self._over.set()
 
     def _run(self) -> None:
-        while not self._over.wait(LOOK_PERIOD if self._since else IDLE_PERIOD):
-            self._look(time.monotonic())
+        looked = time.monotonic()
+        while not self._over.wait(LOOK_PERIOD if self._full else IDLE_PERIOD):
+            looked, before = time.monotonic(), looked
+            self._look(looked - before)
 
-    def _look(self, now: float) -> None:
+    def _look(self, passed: float) -> None:
+        """Look at all; `passed` is s since the last look: what is beyond a period this process was itself stopped."""
         full = [row for row in _rows(self._port, CONNECTED) if row.timer == NO_ROOM]
-        before, self._since = self._since, {}
+        before, self._full = self._full, {}
         for row in full:
             with suppress(OSError):  # it has closed meanwhile
-                self._look_at(row, now, *before.get(row.link, (-1, now)))
+                self._look_at(row, min(passed, IDLE_PERIOD), *before.get(row.link, (-1, 0.0)))
 
-    def _look_at(self, row: _Row, now: float, known: int, since: float) -> None:
+    def _look_at(self, row: _Row, passed: float, known: int, full: float) -> None:
         for connection in _sockets(row.link):
             sent, taken = SENT_AND_TAKEN.unpack(connection.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 128))
-            self._since[row.link] = (taken, since if known == taken else now - min(0.001 * sent, IDLE_PERIOD))
-            if known == taken and now - since >= STUCK:
-                log.warning("the client at %s has taken nothing for %.1f s: cut off", row.other_end, now - since)
+            full = full + passed if known == taken else min(0.001 * sent, IDLE_PERIOD)
+            self._full[row.link] = (taken, full)
+            if known == taken and full >= STUCK:
+                log.warning("the client at %s has taken nothing for %.1f s: cut off", row.other_end, full)
                 connection.shutdown(socket.SHUT_RDWR)
 
 

@@ -22,6 +22,9 @@ class NoAnswer(RuntimeError):
 def answer(future: Any, news: threading.Condition, wanted: Callable[[], bool], limit: float | None = None) -> Any:
     """The value of a libqi future, once it has one.
 
+    Waits twice: a process that was itself stopped finds the limit over and the answer waiting, and needs only a moment
+    to read it.
+
     Args:
         news: Notified when `wanted` may have changed.
         wanted: Whether anybody still waits; called with `news` held.
@@ -39,7 +42,8 @@ def answer(future: Any, news: threading.Condition, wanted: Callable[[], bool], l
 
     future.addCallback(tell)
     with news:
-        news.wait_for(lambda: future.isFinished() or not wanted(), limit)
+        for part in (0.8, 0.2):
+            news.wait_for(lambda: future.isFinished() or not wanted(), part * limit)
     if not future.isFinished():
         future.cancel()
         raise NoAnswer(f"no answer within {limit:g} s")
