@@ -25,7 +25,7 @@ SILENT = "silent: goals and calls wait, until the robot is lost after 10 s witho
 )
 def test_connection(facts, level, text):
     connection = {"state": "connected", "latency": 0.002, "silent": 0.0, "generation": 1, "last_error": None, **facts}
-    connection["timing"] = Timing()
+    connection["timing"] = Timing(patience=10.0)
     report = connection_report("10.0.0.7:9559", SimpleNamespace(**connection))
     assert (report.level, report.message, report.values["address"]) == (level, text, "10.0.0.7:9559")
     assert report.values["latency (ms)"] == (f"{1000 * connection['latency']:.1f}")
