@@ -80,9 +80,9 @@ class Answers:
             found = session.service(_SERVICE, _async=True)
             self._socket, _ = door.accept()
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        self._messages = Messages(self._socket)
-        _introduce(self._messages)
-        self._take = found.value().take
+        messages = Messages(self._socket)
+        _introduce(messages)
+        self._take, self._messages = found.value().take, messages
 
 
 def _introduce(messages: Messages) -> None:
