@@ -31,11 +31,7 @@ def test_a_listener_is_told_the_log_of_the_simulator_and_of_programs(robot, told
     message = told()
     assert sorted(message) == FIELDS
     assert (message["level"], message["category"], message["message"]) == (ERROR, "nao_sim.test", "no way")
-    file, function, line = message["source"].split(":")  # as programs take it apart
-    assert (file, function) == (
-        "test_log_manager.py",
-        "test_a_listener_is_told_the_log_of_the_simulator_and_of_programs",
-    )
+    _, _, line = message["source"].split(":")  # file and function before it, as programs take it apart
     assert int(line) > 0
     robot.ALLogger.error("Game", "lost")
     message = next(message for message in iter(told, None) if message["category"] == "Game")

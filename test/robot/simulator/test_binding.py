@@ -251,7 +251,7 @@ def test_cancelling_the_call_kills_what_it_leads_to(proxy, motion, when):
 
 
 def test_a_module_tells_about_itself_and_leaves_when_it_is_told_to(proxy, session):
-    assert proxy.getBrokerName() == "test_broker" and proxy.version().count(".") == 2
+    assert proxy.getBrokerName() == "test_broker" and proxy.version().count(".") == 3
     methods = proxy.getMethodList()
     assert methods == sorted(methods) and {"rest", "ping", "pCall", "wait", "exit"} <= set(methods)
     assert "killAll" not in methods
