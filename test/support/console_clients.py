@@ -43,8 +43,9 @@ class Visitor:
         address = self.base.replace("http", "ws", 1) + path
         headers = {"Cookie": self.cookie}
         made = connect(
-            address, origin=self.base, additional_headers=headers, proxy=None, open_timeout=LIMIT, ping_interval=None
-        )
+            address, origin=self.base, additional_headers=headers, proxy=None, open_timeout=LIMIT, ping_interval=None,
+            max_queue=None,  # it reads on, as a browser does: behind frames that nobody takes no end of it is heard of
+        )  # fmt: skip
         return made.__enter__()  # whoever has it closes it
 
 
