@@ -39,8 +39,9 @@ class ForeignGoals:
         for server in wanted - set(self._topics):
             action = server_type(server).action()
             name = self._namespace + server
-            self._cancels[server] = rospy.Publisher(f"{name}/cancel", GoalID, queue_size=2)
-            self._runs[server] = {}
+            cancels = rospy.Publisher(f"{name}/cancel", GoalID, queue_size=2)
+            with self._lock:  # a page may be reading them
+                self._cancels[server], self._runs[server] = cancels, {}
             self._topics[server] = [  # whose messages may come before the last of them is made
                 rospy.Subscriber(f"{name}/goal", type(action.action_goal), partial(self._sent, server)),
                 rospy.Subscriber(f"{name}/status", GoalStatusArray, partial(self._status, server)),
