@@ -145,6 +145,31 @@ def test_the_robot_is_drawn_as_it_stands_and_what_it_sees(stack, browser):
     browser.until(lambda: len(browser.script(PICTURES)) == 2 and all(browser.script(PICTURES)), "two pictures")
 
 
+BUSY = """
+const done = arguments[0], context = WebGL2RenderingContext.prototype, answer = context.getSyncParameter;
+const view = document.querySelector("nao-robot-view"), { renderer } = view, { render } = renderer;
+let begun = 0, frames = 0;
+renderer.render = (...all) => { begun += 1; render(...all); };
+context.getSyncParameter = () => context.UNSIGNALED;
+const look = () => {
+  view.dirty = true;
+  frames += 1;
+  if (frames < 10) return requestAnimationFrame(look);
+  const meanwhile = begun;
+  context.getSyncParameter = answer;
+  const again = () => { view.dirty = true; begun > meanwhile ? done(meanwhile) : requestAnimationFrame(again); };
+  again();
+};
+look();
+"""
+
+
+def test_no_picture_of_the_robot_is_begun_before_the_last_is_there(browser):
+    browser.open("/")
+    browser.until(lambda: browser.script(YAW) is not None, "the drawn robot")
+    assert browser.driver.execute_async_script(BUSY) <= 1  # and goes on behind that
+
+
 def test_a_text_that_is_typed_is_said(browser, heard):
     goals, results = (
         heard("nao_audio_out/goal", NaoAudioOutActionGoal),

@@ -11,6 +11,7 @@ const LOOKS = {
 const FEET = ["l_sole", "r_sole"];
 const OFF = new THREE.Color(0.3, 0.31, 0.33);
 const TOUCH_RADIUS = 0.014; // m
+const SLOW = 50; // ms that a picture takes without a graphics processor
 const STYLE = `
 :host { display: block; position: relative; height: 420px; border-radius: 6px; overflow: hidden; }
 canvas { display: block; width: 100%; height: 100%; touch-action: none; }
@@ -120,6 +121,7 @@ class NaoRobotView extends HTMLElement {
       this.say("this browser draws nothing in three dimensions (WebGL)");
       throw new Error("no WebGL");
     }
+    this.gl = this.renderer.getContext();
     this.scene = new THREE.Scene();
     this.eye = new THREE.PerspectiveCamera(40, 1, 0.02, 60);
     this.eye.up.set(0, 0, 1);
@@ -145,13 +147,29 @@ class NaoRobotView extends HTMLElement {
     this.canvas.addEventListener("pointerdown", (event) => (this.down = [event.clientX, event.clientY]));
     this.canvas.addEventListener("click", (event) => this.click(event));
     this.canvas.addEventListener("keydown", (event) => this.key(event));
+    this.restsUntil = 0;
     const draw = () => {
       this.frame = requestAnimationFrame(draw);
-      if (!this.dirty) return;
+      if (!this.dirty || !this.isDrawn() || performance.now() < this.restsUntil) return;
       this.dirty = false;
       this.renderer.render(this.scene, this.eye);
+      this.began = performance.now();
+      this.drawing = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+      this.gl.flush();
     };
     draw();
+  }
+
+  // Without a graphics processor a picture takes long after the call that draws it. Pictures that queued up would hold
+  // up the page, and its connection would break: none is begun before the last is there, and behind a slow one is a rest.
+  isDrawn() {
+    if (!this.drawing) return true;
+    if (this.gl.getSyncParameter(this.drawing, this.gl.SYNC_STATUS) !== this.gl.SIGNALED && !this.gl.isContextLost()) return false;
+    this.gl.deleteSync(this.drawing);
+    this.drawing = null;
+    const took = performance.now() - this.began;
+    if (took > SLOW) this.restsUntil = performance.now() + 2 * took;
+    return true;
   }
 
   recolor() {
