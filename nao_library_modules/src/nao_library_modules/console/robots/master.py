@@ -13,6 +13,8 @@ from ...ros.master_watch import GONE
 
 FRESH, PATIENCE = 1.0, 0.5
 """s of this computer: for which an answer is good, and for which one is waited."""
+FIRST_PATIENCE = 10.0
+"""s for which the first answer is waited: without any, each robot would be told to be none."""
 CANCEL, CANCEL_TYPE = "/cancel", "actionlib_msgs/GoalID"
 
 
@@ -66,7 +68,8 @@ class MasterLook:
         with self._lock:
             if time.monotonic() - self._read < FRESH:
                 return
-            patience = 0.0 if self._asking else PATIENCE
+            known = self._read > float("-inf")
+            patience = FIRST_PATIENCE if not known else 0.0 if self._asking else PATIENCE
             if not self._asking:
                 self._asking = True
                 self._answered.clear()
