@@ -50,4 +50,4 @@ def _names(browser):
     """What the choice of the robot has."""
     browser.open("/functions", "nao1")
     browser.click(".nao-robot")
-    return [each.text for each in browser.all(".q-menu .q-item")]
+    return browser.texts(".q-menu .q-item")

@@ -11,10 +11,10 @@ from urllib.parse import urlencode, urlsplit
 
 from ros_stack import start_program
 from selenium import webdriver
-from selenium.common.exceptions import StaleElementReferenceException, WebDriverException
+from selenium.common.exceptions import WebDriverException
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.action_chains import ActionChains
-from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 
 from nao_sim_bridge.testing import StackNotReady, wait_until
 
@@ -23,6 +23,16 @@ OPTIONS = ("--headless=new", "--no-sandbox", "--enable-unsafe-swiftshader", "--w
 PROGRAM = Path(__file__).with_name("watched_console.py")
 LIMIT = 300.0
 """s of this computer for whatever is waited for."""
+LINES = 10
+"""Of what browser and console have said, where something does not come."""
+
+SHOWN = """
+const [css, text] = arguments, seen = { opacityProperty: true, visibilityProperty: true };
+return [...document.querySelectorAll(css)].filter((each) => each.checkVisibility(seen) && each.getClientRects().length
+  && each.innerText.toLowerCase().includes(text.toLowerCase()))"""
+CONNECTED = "return Boolean(document.querySelector('.nao-stop')?.checkVisibility() && window.socket?.connected);"
+TEXT = "return document.body?.innerText ?? '';"
+STATE = "return `${location.href}, connected: ${window.socket?.connected}`;"
 
 
 class ConsoleProgram:
@@ -73,7 +83,11 @@ class ConsoleProgram:
 
 
 class ConsoleBrowser:
-    """One browser with one page. Elements are found by CSS, waited for, and never kept."""
+    """One browser with one page. Elements are found by CSS, waited for, and never kept.
+
+    What is read is read by one script: between two commands a page draws elements anew, and a busy one takes its time
+    for each.
+    """
 
     def __init__(self, program):
         self.program = program
@@ -91,20 +105,15 @@ class ConsoleBrowser:
     def open(self, path, robot="/", **more):
         """Open a page, and wait until it is connected. `more`: of its address."""
         self.driver.get(f"{self.program.base}{path}?{urlencode({'robot': robot, **more})}")
-        self.until(
-            lambda: self.all(".nao-stop") and self.script("return window.socket && window.socket.connected"), path
-        )
+        self.until(lambda: self.script(CONNECTED), path)
 
     def all(self, css, text=""):
         """The elements of a selector that are shown and have a text in them."""
-        found = []
-        for element in self.driver.find_elements(By.CSS_SELECTOR, css):
-            try:
-                if element.is_displayed() and text.lower() in element.text.lower():
-                    found.append(element)
-            except StaleElementReferenceException:
-                continue  # the page has drawn it anew
-        return found
+        return self.script(f"{SHOWN};", css, text)
+
+    def texts(self, css):
+        """What the elements of a selector say that are shown."""
+        return self.script(f"{SHOWN}.map((each) => each.innerText);", css, "")
 
     def one(self, css, text=""):
         """Wait for an element."""
@@ -127,9 +136,19 @@ class ConsoleBrowser:
 
     def type(self, css, text):
         """Replace what a field holds."""
-        field = self.one(css)
-        ActionChains(self.driver).click(field).key_down("\ue009").send_keys("a").key_up("\ue009").perform()
-        field.send_keys(text)
+
+        def try_it():
+            (field,) = self.all(css)[:1] or [None]
+            if field is None:
+                return False
+            keys = ActionChains(self.driver).click(field)  # which is in vain where it was drawn anew meanwhile
+            try:
+                keys.key_down(Keys.CONTROL).send_keys("a").key_up(Keys.CONTROL).send_keys(text).perform()
+            except WebDriverException:
+                return False
+            return True
+
+        self.until(try_it, f"a field {css}")
 
     def keys(self, *keys):
         """Press keys wherever the focus is."""
@@ -140,14 +159,14 @@ class ConsoleBrowser:
 
     def text(self):
         """What is to be read on the page."""
-        return self.driver.find_element(By.TAG_NAME, "body").text
+        return self.script(TEXT)
 
     def reads(self, *texts):
         """Wait until the page says all of these."""
         self.until(lambda: all(text in self.text() for text in texts), f"the page says {texts}")
 
     def until(self, condition, what):
-        """Wait for something; a screenshot is left beside the log of the console where it does not come."""
+        """Wait for something; where it does not come, the error says what is there, and a screenshot is left."""
         found = None
 
         def holds():
@@ -156,11 +175,18 @@ class ConsoleBrowser:
             return bool(found)
 
         try:
-            wait_until(holds, LIMIT, what)
+            wait_until(holds, LIMIT, lambda: f"{what}; there is {self._state()}")
         except StackNotReady:
             self.driver.save_screenshot(str(self.program.folder / "page.png"))
             raise
         return found
+
+    def _state(self):
+        """The page and what browser and console have to say about it, for people."""
+        said = [entry["message"] for entry in self.driver.get_log("browser")]
+        return "\n".join(
+            [self.script(STATE), self.text()[:500], *said[-LINES:], *self.program.log.read_text().splitlines()[-LINES:]]
+        )
 
     def online(self, there):
         """Take the network away, or give it back."""

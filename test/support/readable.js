@@ -40,6 +40,9 @@ function contrast(element) {
   return (light + 0.05) / (dark + 0.05);
 }
 
+for (const each of document.getAnimations()) { // colours that change are read as they will be
+  if (Number.isFinite(each.effect.getComputedTiming().endTime)) each.finish();
+}
 const found = [];
 const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
 while (walker.nextNode()) {

@@ -120,6 +120,7 @@ def test_everything_can_be_read_and_has_a_name(browser, dark):
     for path, text in PAGES.items():
         browser.open(path)
         browser.until(lambda text=text: text in browser.text() or browser.all(f"[aria-label='{text}']"), text)
+        browser.until(lambda: browser.script(is_dark) == dark, "its colours")
         hard[path] = browser.script(READABLE)
     assert hard == {path: [] for path in PAGES}
 
