@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 
 import numpy as np
 import pytest
@@ -36,7 +37,7 @@ class Robots:
         return [session.service(module) for session in self.sessions]
 
     def advance_until(self, condition, limit=10.0):
-        simulation, begin = self.of("NaoSimulation")[0], self.server.runner.snapshot.time
+        simulation, begin = self.sessions[-1].service("NaoSimulation"), self.server.runner.snapshot.time
         while not condition():
             assert self.server.runner.snapshot.time < begin + limit
             simulation.advance(0.25)
@@ -213,14 +214,21 @@ def test_a_robot_hears_another_with_its_sonars_and_walks_into_it(made):
 
 def test_robots_shut_down_one_by_one_and_stay_limp_in_a_new_world(made):
     robots = made()
-    robots.of("ALSystem")[0].shutdown()
-    first = robots.server.servers[0]
-    assert first.ended.wait(PATIENCE) and not robots.server.ended.is_set()
-    second = robots.of("NaoSimulation")[1]
-    assert second.advance(0.1) > 0.0
-    second.factoryReset()
-    assert second.advance(0.1) == pytest.approx(0.1) and set(first.runner.snapshot.stiffnesses) == {0.0}
-    robots.of("ALSystem")[1].shutdown()
+    systems, simulation = robots.of("ALSystem"), robots.of("NaoSimulation")[1]
+    robots.wake()
+    left = threading.Event()
+    robots.sessions[0].disconnected.connect(lambda *_: left.set())
+
+    def stiff():
+        """Whether each robot has stiff joints."""
+        return [any(server.runner.snapshot.stiffnesses) for server in robots.server.servers]
+
+    systems[0].shutdown()
+    assert left.wait(PATIENCE) and not robots.server.ended.is_set()
+    robots.advance_until(lambda: stiff() == [False, True])
+    simulation.factoryReset()
+    assert simulation.advance(0.1) == pytest.approx(0.1) and stiff() == [False, False]
+    systems[1].shutdown()
     assert robots.server.ended.wait(PATIENCE)
 
 
