@@ -4,20 +4,35 @@ import os
 import signal
 import subprocess
 import sys
-import time
+from collections import Counter
 
 import pytest
 from listening import listens
 from named_port import named_port
+from waits import hold
 
 from nao_library_modules.processes.own_stack import OwnStack
-from nao_library_modules.ros.master_watch import LOOKS, PERIOD
+from nao_sim_bridge.testing import wait_until
 
 LIMIT = 60.0
-STOPPED = 60.0
-"""s for which it hangs."""
-DOWN, UNDER_WAY = 3.0, 20.0
-"""s for which there is none, and for which what is under way goes on longer."""
+SILENT = "the ROS master at {} does not answer"
+"""What the watch says when it has noticed that."""
+MASTER = """
+import sys
+from rosmaster import rosmaster_main
+from rosmaster.master_api import ROSMasterHandler
+
+answer = ROSMasterHandler.getParam
+
+def told(self, caller, name):
+    if name == "/":
+        print("all read by", caller, flush=True)
+    return answer(self, caller, name)
+
+ROSMasterHandler.getParam = told
+rosmaster_main(["rosmaster", "--core", "-p", sys.argv[1]])
+"""
+"""A master that tells who has read all that it knows."""
 USER = """
 import sys, time
 import rospy
@@ -27,7 +42,6 @@ sys.path.insert(0, sys.argv[1])
 from goal_functions import behavior, led, motion, tactile
 
 rospy.init_node("user", anonymous=True, disable_signals=True)
-began = time.monotonic()
 
 def client(name, action):
     made = actionlib.SimpleActionClient(name, action)
@@ -39,7 +53,8 @@ def goal(action, function):
     setattr(made, made.__slots__[0], [function])
     return made
 
-rospy.wait_for_service("nao_sim/reset", 60)
+for service in ("nao_sim/reset", "NaoMotion/describe", "NaoAudioOut/describe", "nao_controller/part_of_nao_driver"):
+    rospy.wait_for_service(service, 60)
 moves, touches = client("NaoMotion", NaoMotionAction), client("NaoTactile", NaoTactileAction)
 runs = client("NaoBehavior", NaoBehaviorAction)
 
@@ -51,22 +66,20 @@ def done(client, action, function):
 """
 LONG = """
 done(touches, NaoTactileAction, tactile("onTouch", sensors=["chest"], behavior="hello"))
-seconds = float(sys.argv[2])
-turn = motion("angleInterpolation", names=["HeadYaw"], angles=[0.5], times=[seconds], stiffness=1.0)
+turn = motion("angleInterpolation", names=["HeadYaw"], angles=[0.5], times=[600.0], stiffness=1.0)
 moves.send_goal(goal(NaoMotionAction, turn))
-wait = f"help: A wait. \\ndo:\\n  - wait: {seconds - 5.0}\\n"
-runs.send_goal(goal(NaoBehaviorAction, behavior("runBehavior", text=wait)))
+runs.send_goal(goal(NaoBehaviorAction, behavior("runBehavior", text="{help: A wait., do: [{wait: 600}]}")))
 while moves.get_state() != 1 or runs.get_state() != 1:
     time.sleep(0.05)
 print("under way", flush=True)
+sys.stdin.readline()
 for made in (moves, runs):
-    assert made.wait_for_result(rospy.Duration.from_sec(seconds + 60))
-    assert made.get_state() == 3, made.get_goal_status_text()
-print("went on", flush=True)
+    made.cancel_goal()
+    assert made.wait_for_result(rospy.Duration(60))
+    assert made.get_state() == 2, (made.get_state(), made.get_goal_status_text())
+print("went on until it was cancelled", flush=True)
 """
 NEW = """
-for service in ("NaoMotion/describe", "NaoAudioOut/describe", "nao_controller/part_of_nao_driver"):
-    rospy.wait_for_service(service, 60)
 assert done(touches, NaoTactileAction, tactile("listOnTouch")).memList == ["hello"]
 done(client("NaoLights", NaoLedAction), NaoLedAction, led("on", lights=["FaceLeds"]))
 assert rospy.get_param("robot_description") and rospy.get_param("nao_walker/cmd_vel_timeout") == 0.5
@@ -77,20 +90,61 @@ print("all is back", flush=True)
 class Master:
     def __init__(self, folder):
         self.port = named_port()
-        self._folder = folder
+        self._output = folder / "master.txt"
+        self._readers = Counter()
         self.start()
 
     def start(self):
-        with (self._folder / "master.txt").open("ab") as output:
-            command = ["rosmaster", "--core", "-p", str(self.port)]
+        with self._output.open("ab") as output:
+            command = [sys.executable, "-c", MASTER, str(self.port)]
             self.process = subprocess.Popen(command, stdout=output, stderr=output, stdin=subprocess.DEVNULL)
-        deadline = time.monotonic() + LIMIT
-        while not listens(self.port):
-            assert time.monotonic() < deadline, "the ROS master does not come up"
+        wait_until(lambda: listens(self.port), LIMIT, "the ROS master")
+
+    def wait_until_known(self):
+        """Wait until each watch has read all that it knows, since this was last called."""
+        before = self._readers or self._read()
+        wait_until(lambda: all(self._read()[each] > before[each] for each in before), LIMIT, "watches that have read")
+        self._readers = self._read()
+
+    def _read(self):
+        """How often each watch has read all."""
+        return Counter(line for line in self._output.read_text().splitlines() if line.startswith("all read by"))
 
     def kill(self):
         self.process.kill()
         self.process.wait(LIMIT)
+
+    def hang(self):
+        hold(self.process.pid)
+
+    def go_on(self):
+        self.process.send_signal(signal.SIGCONT)
+
+
+class User:
+    """A program of a user's."""
+
+    def __init__(self, program, errors):
+        self._errors = errors
+        support = os.path.join(os.path.dirname(__file__), "..", "support")
+        command = [sys.executable, "-c", USER + program, support]
+        pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+        with errors.open("ab") as output:
+            self.process = subprocess.Popen(command, stderr=output, **pipes)
+
+    def says(self, line):
+        """Whether this is the next line that it prints; with what it failed of, if not."""
+        said = self.process.stdout.readline()
+        assert said == f"{line}\n", f"{said!r} in place of {line!r}: {self._errors.read_text()}"
+        return True
+
+    def go_on(self):
+        self.process.stdin.write("\n")
+        self.process.stdin.flush()
+
+    def close(self):
+        self.process.kill()
+        self.process.communicate()
 
 
 @pytest.fixture
@@ -100,47 +154,40 @@ def master(tmp_path, monkeypatch):
     made = Master(tmp_path)
     monkeypatch.setenv("ROS_MASTER_URI", f"http://127.0.0.1:{made.port}")
     yield made
-    made.process.send_signal(signal.SIGCONT)
+    made.go_on()
     made.kill()
 
 
 @pytest.fixture
-def user():
-    """Starts a program of a user's; what it says line by line."""
-    support = os.path.join(os.path.dirname(__file__), "..", "support")
+def user(tmp_path):
+    """Starts a program of a user's."""
     started = []
 
-    def start(program, *arguments):
-        command = [sys.executable, "-c", USER + program, support, *map(str, arguments)]
-        started.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
-        return started[-1].stdout
+    def start(program):
+        started.append(User(program, tmp_path / "user.txt"))
+        return started[-1]
 
     yield start
-    for process in started:
-        process.kill()
-        process.communicate()
+    for program in started:
+        program.close()
 
 
 def test_a_master_that_dies_or_hangs_knows_everybody_again(master, user, tmp_path):
     with OwnStack(tmp_path / "stack.txt", {}, master_uri=os.environ["ROS_MASTER_URI"]) as stack:
         stack.wait_for_robot()
-        long = user(LONG, DOWN + UNDER_WAY)
-        assert long.readline() == "under way\n"
-        time.sleep((LOOKS + 1) * PERIOD)  # by then the watch has read what there is
-        master.kill()
-        time.sleep(DOWN)
-        master.start()
-        began = time.monotonic()
-        assert user(NEW).readline() == "all is back\n"
-        print(f"a master that was killed: all is back after {time.monotonic() - began:.1f} s")
-        assert long.readline() == "went on\n"
 
-        long = user(LONG, STOPPED + UNDER_WAY)
-        assert long.readline() == "under way\n"
-        master.process.send_signal(signal.SIGSTOP)
-        time.sleep(STOPPED)
-        master.process.send_signal(signal.SIGCONT)
-        began = time.monotonic()
-        assert user(NEW).readline() == "all is back\n"
-        print(f"a master that hung for {STOPPED:g} s: all is back after {time.monotonic() - began:.1f} s")
-        assert long.readline() == "went on\n"
+        def noticed():
+            """How often a watch has said that the master does not answer."""
+            return stack.log.read_text(errors="replace").count(SILENT.format(stack.master_uri))
+
+        long = user(LONG)
+        assert long.says("under way")
+        for leave, come in (master.kill, master.start), (master.hang, master.go_on):
+            master.wait_until_known()
+            silent = noticed()
+            leave()
+            wait_until(lambda silent=silent: noticed() > silent, LIMIT, "a watch that misses the master")
+            come()
+            assert user(NEW).says("all is back")
+        long.go_on()
+        assert long.says("went on until it was cancelled")
