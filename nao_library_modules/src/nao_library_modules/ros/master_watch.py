@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import http.client
 import logging
+import socket
 import threading
 import xmlrpc.client
 from collections.abc import Iterator
@@ -150,6 +151,8 @@ def _is_there(name: str, uri: str, master: Api, caller: str) -> bool:
         pass
     try:
         Api(uri, caller).ask("getPid")
+    except socket.timeout:
+        return True  # it has no time just now, or was stopped; of one that has ended the address is refused
     except (*GONE, Refused):
         return False
     return True
