@@ -132,13 +132,16 @@ def restore(book: Book, master: Api, caller: str) -> int:
     # Publishers first: who listens is told of all of them at once, and drops none meanwhile.
     for topic, node, uri in each(book.publishers):
         master.ask("registerPublisher", topic, book.types.get(topic, ANY_TYPE), uri, caller=node)
+    untold: dict[str, tuple[Exception, list[str]]] = {}
     for topic, node, uri in each(book.subscribers):
         kind = book.types.get(topic, ANY_TYPE)
         found = master.ask("registerSubscriber", topic, kind, uri, caller=node)
         try:
             Api(uri, "/master").ask("publisherUpdate", topic, found)
         except (*GONE, Refused) as error:
-            log.warning("%s is not told who publishes %s: %r", node, topic, error)
+            untold.setdefault(node, (error, []))[1].append(topic)
+    for node, (error, topics) in untold.items():
+        log.warning("%s is not told who publishes %s: %r", node, ", ".join(topics), error)
     return len(nodes)
 
 
