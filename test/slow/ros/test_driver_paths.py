@@ -237,6 +237,8 @@ class DriverPaths(WalkingTest):
             transform.rotation.z, transform.rotation.w = math.sin(yaw / 2), math.cos(yaw / 2)
             return transform
 
+        self.addCleanup(call, "set_odometry_pose", SetTransform, offset(0.0, 0.0, 0.0))
+        self.addCleanup(self.robot.reset)
         call("set_odometry_pose", SetTransform, offset(2.0, 1.0, math.pi / 2))
         self.there(torso(), Place(2.0, 1.0, math.pi / 2))
         call("odometry_offset", SetTransform, offset(0.5, 0.0, 0.0))
