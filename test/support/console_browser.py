@@ -184,9 +184,8 @@ class ConsoleBrowser:
     def _state(self):
         """The page and what browser and console have to say about it, for people."""
         said = [entry["message"] for entry in self.driver.get_log("browser")]
-        return "\n".join(
-            [self.script(STATE), self.text()[:500], *said[-LINES:], *self.program.log.read_text().splitlines()[-LINES:]]
-        )
+        told = self.program.log.read_text().splitlines()
+        return "\n".join([self.script(STATE), self.text()[:2000], *said[-LINES:], *told[-LINES:]])
 
     def online(self, there):
         """Take the network away, or give it back."""

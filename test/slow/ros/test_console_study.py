@@ -9,6 +9,7 @@ import pytest
 import rospy
 from console_browser import ConsoleBrowser, ConsoleProgram
 from geometry_msgs.msg import Point
+from selenium.webdriver.common.keys import Keys
 
 from nao_library_actions.msg import NaoAudioInAction
 from nao_library_modules.base.paths import config_file
@@ -116,10 +117,10 @@ class ConsoleStudy(RobotTestCase):
         self.browser.reads("wait for a touch")
         self.at("1.3")
         folder = self.files.trial(TRIAL).path
-        self.limit_files((folder / EVENTS).stat().st_size)  # as a disk that is full
         self.browser.type("input[aria-label='Note']", "looks away")
-        self.browser.click("button", "Note")
-        self.browser.reads("events wait in memory")
+        self.limit_files((folder / EVENTS).stat().st_size)  # as a disk that is full
+        self.browser.keys(Keys.ENTER)  # what is said of the disk moves buttons
+        self.browser.reads("events wait in memory", "looks away")  # the note among them
         self.assertNotIn("looks away", (folder / EVENTS).read_text())
         self.limit_files(resource.RLIM_INFINITY)
         self.browser.reads("waited in memory, and were written then")
