@@ -228,8 +228,8 @@ def test_the_forms_of_a_module_hold_the_channels_of_a_file_that_stands_for_the_m
     device.setFileAsInput("")
     robot.advance(0.4)
     hearing.heard = queue.Queue()
-    robot.advance(0.4)
-    assert loudness(hearing.blocks(1)[0][3]) < 100.0
+    robot.advance(0.8)
+    assert loudness(hearing.blocks(2)[-1][3]) < 100.0  # the last block of the file may come late
 
 
 def test_a_module_of_the_naoqi_package_gets_bytes(robot, device):

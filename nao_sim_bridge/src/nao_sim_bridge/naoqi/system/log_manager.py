@@ -17,9 +17,15 @@ import qi
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.naoqi.binding.binding import typed
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
-from nao_sim_bridge.naoqi.system.logger import DEBUG, ERROR, FATAL, INFO, PYTHON_LEVELS, VERBOSE, WARNING
-from nao_sim_bridge.naoqi.system.logger import log as programs
 
+SILENT, FATAL, ERROR, WARNING, INFO, VERBOSE, DEBUG = range(7)
+"""Levels of NAOqi's messages."""
+PYTHON_LEVELS = (
+    *(logging.NOTSET, logging.CRITICAL, logging.ERROR, logging.WARNING),
+    *(logging.INFO, logging.DEBUG, logging.DEBUG),
+)
+programs = logging.getLogger("nao_sim.programs")
+programs.setLevel(logging.DEBUG)  # what is written is up to each robot's verbosity
 NAME, LISTENER = "LogManager", "LogListener"
 FIELDS = ("source", "level", "category", "location", "message", "id", "date", "systemDate")
 MESSAGE = f"(sisssILL)<LogMessage,{','.join(FIELDS)}>"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import time
 from contextlib import suppress
@@ -14,20 +13,15 @@ from nao_sim_bridge.base.record_dir import ClientFiles, NoSuchFile, OutsideRecor
 from nao_sim_bridge.base.sizes import load_sizes
 from nao_sim_bridge.base.written_numbers import written_number
 from nao_sim_bridge.naoqi.binding.errors import NaoqiError
+from nao_sim_bridge.naoqi.system.log_manager import DEBUG, ERROR, FATAL, INFO, PYTHON_LEVELS, SILENT, VERBOSE, WARNING
+from nao_sim_bridge.naoqi.system.log_manager import programs as log
 
-SILENT, FATAL, ERROR, WARNING, INFO, VERBOSE, DEBUG = range(7)
 LEVELS = ("silent", "fatal", "error", "warning", "info", "verbose", "debug")
 """By NAOqi's numbers of them: a message is written if its level is not above the verbosity."""
 STANDARD = "std"
 """The handler that writes to the log of the simulator; others have the name of their file."""
 MOST_FILES = 10
 LINE = "-" * 60
-PYTHON_LEVELS = (
-    *(logging.NOTSET, logging.CRITICAL, logging.ERROR, logging.WARNING),
-    *(logging.INFO, logging.DEBUG, logging.DEBUG),
-)
-log = logging.getLogger("nao_sim.programs")
-log.setLevel(logging.DEBUG)  # what is written is up to each robot's verbosity
 
 
 class ALLogger:
