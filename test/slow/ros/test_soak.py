@@ -8,8 +8,6 @@ import unittest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from amount import amount
-
 SOAK = Path(__file__).resolve().parents[2] / "soak" / "run.py"
 
 
