@@ -42,7 +42,7 @@ def library(tmp_path_factory):
 
 
 @pytest.mark.timeout(1800)
-def test_every_example_of_the_library_runs_without_ros(library, tmp_path):
+def test_the_page_of_the_library_and_its_floor_run_without_ros(library, tmp_path):
     sources, python = library
     blocks = BLOCK.findall((ROOT / "docs" / "library.md").read_text(encoding="utf-8"))
     assert len(blocks) >= 8
@@ -56,6 +56,12 @@ def test_every_example_of_the_library_runs_without_ros(library, tmp_path):
     told = python(sources / "examples" / "tilting_floor.py", cwd=tmp_path)
     assert [line.rpartition(" ")[2] for line in told.splitlines() if "fallen" in line] == ["False", "True"]
     assert (tmp_path / "tilting_floor.png").stat().st_size > 10_000
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1800)
+def test_a_policy_is_trained_and_compared(library, tmp_path):
+    sources, python = library
     example = sources / "examples" / "train_stand.py"
     told = python(example, "--iterations", 1, "--directions", 1, "--episodes", 1, cwd=tmp_path)
     assert "own balance" in told and (tmp_path / "train_stand" / "compared.png").exists()

@@ -9,6 +9,7 @@ GOAL = (1.6, -0.1)
 NEAR = 0.15
 
 
+@pytest.mark.long
 class PlanExamplesAtTheWall(PlanExampleTest):
     world = "wall"
 
@@ -23,7 +24,6 @@ class PlanExamplesAtTheWall(PlanExampleTest):
         self.assertIn("Something is in my way.", output)
         self.assert_stands()
 
-    @pytest.mark.long
     def test_a_way_that_is_free_needs_no_detour(self):
         _, trace = self.run_plan("detour_plan.py", "0.3", "0.0")
         self.assertEqual([walk.state for walk in trace.named("walk")], ["succeeded"])
