@@ -13,7 +13,6 @@ from .translate import closest_names
 from .worker import Worker
 
 _modules: WeakValueDictionary[str, ALModule] = WeakValueDictionary()
-_kept: List[ALModule] = []
 
 
 class ALDocable:
@@ -98,7 +97,5 @@ class ALModule(ALDocable):
 
 
 def createModule(name: str) -> ALModule:
-    """Make a module without methods of its own, and keep it until its broker is shut down or it exits."""
-    module = ALModule(name)
-    _kept.append(module)
-    return module
+    """Make a module without methods of its own; its broker keeps it, as all modules, until it exits."""
+    return ALModule(name)
