@@ -102,7 +102,7 @@ class _Xar:
         self._unlinked: list[str] = []
 
     def read(self, root: Element) -> Step:
-        box = self._box(root, {}, {}, (), 0)
+        box = self._box(root, {}, {}, ())
         if self._refused:
             count = sum(map(len, self._refused.values()))
             each = "; ".join(f"{', '.join(names)}: {reason}" for reason, names in self._refused.items())
@@ -126,7 +126,6 @@ class _Xar:
         links: Mapping[str, tuple[Link, ...]],
         inherited: Mapping[str, str],
         above: tuple[str, ...],
-        depth: int,
     ) -> Box:
         """A box.
 
@@ -134,11 +133,10 @@ class _Xar:
             links: Of its outputs, by their ids.
             inherited: Parameters of the box that it is in.
             above: Names of the boxes that it is in.
-            depth: How many these are.
         """
         self._boxes += 1
         name = box.get("name", "?")[:60]
-        if depth > DEEPEST or self._boxes > MOST_BOXES:
+        if len(above) > DEEPEST or self._boxes > MOST_BOXES:
             raise ConfigError(self._file, f"box {name!r} is nested too deep, or the file has too many boxes")
         path, parameters = (*above, name), _parameters(box, inherited)
         script = _script(box)
@@ -154,10 +152,10 @@ class _Xar:
         stopped = ends if sends_stopped(script, "onInput_onStop") else ()
         step: Step
         if timeline.get("enable") == "1":
-            step = self._timeline(box, timeline, ends, parameters, path, depth)
+            step = self._timeline(box, timeline, ends, parameters, path)
         else:
             diagram = timeline.find("BehaviorLayer/BehaviorKeyframe/Diagram")
-            step = self._diagram(box, diagram, ends, parameters, path, depth)
+            step = self._diagram(box, diagram, ends, parameters, path)
         return Box(name, step, links, stopped=stopped, restarts=isinstance(step, Timeline))
 
     # --- diagrams -------------------------------------------------------------------------------------------------
@@ -169,7 +167,6 @@ class _Xar:
         ends: tuple[str, ...],
         parameters: Mapping[str, str],
         path: tuple[str, ...],
-        depth: int,
     ) -> Diagram:
         """The boxes that links lead to from an input of the diagram, or from ALMemory."""
         found: dict[str | None, Element] = {}
@@ -216,7 +213,7 @@ class _Xar:
             if of_owner.get(one.get("id")) == MEMORY and one.get("id") in own
         }
         made = [
-            self._box(box, {k: tuple(v) for k, v in ways.get(key, {}).items()}, parameters, path, depth + 1)
+            self._box(box, {k: tuple(v) for k, v in ways.get(key, {}).items()}, parameters, path)
             for key, box in boxes.items()
         ]
         return Diagram(
@@ -237,7 +234,6 @@ class _Xar:
         ends: tuple[str, ...],
         parameters: Mapping[str, str],
         path: tuple[str, ...],
-        depth: int,
     ) -> Timeline:
         fps = self._within(timeline.get("fps"), DEFAULT_FPS, LOWEST_FPS, HIGHEST_FPS, "frames a second")
         last = LONGEST * fps
@@ -248,7 +244,7 @@ class _Xar:
         for layer, element in enumerate(timeline.findall("BehaviorLayer")):
             for key_frame in element.findall("BehaviorKeyframe"):
                 index = self._within(key_frame.get("index"), 1.0, -last, last, "the frame of a diagram")
-                diagram = self._diagram(box, key_frame.find("Diagram"), ends, parameters, path, depth)
+                diagram = self._diagram(box, key_frame.find("Diagram"), ends, parameters, path)
                 frames.append(KeyFrame(max(0.0, (index - 1.0) / fps), layer, diagram))
         frames.sort(key=lambda frame: frame.begin)
         joints = Joints(ways) if ways else None
