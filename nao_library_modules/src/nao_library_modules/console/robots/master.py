@@ -64,12 +64,17 @@ class MasterLook:
         return [name for name in servers_among(self._services) if f"{name}/goal" in self._subscribed]
 
     def _look(self) -> None:
-        """Read the books again, where they are old; a master that takes its time is waited for once, and briefly."""
+        """Read the registrations again where they are old.
+
+        Wait once for a slow master, and only briefly after its first answer.
+        """
         with self._lock:
             if time.monotonic() - self._read < FRESH:
                 return
-            known = self._read > float("-inf")
-            patience = FIRST_PATIENCE if not known else 0.0 if self._asking else PATIENCE
+            if self._read == float("-inf"):
+                patience = FIRST_PATIENCE
+            else:
+                patience = 0.0 if self._asking else PATIENCE
             if not self._asking:
                 self._asking = True
                 self._answered.clear()
