@@ -59,7 +59,21 @@ class _Running:
     inside: DiagramRun | None = None
 
 
-class DiagramRun:
+class _Played:
+    """What diagrams and timelines share."""
+
+    def __init__(self, name: str, run: BehaviorRun, stage: Stage, emit: Emit) -> None:
+        self.task = Task(name, 0)
+        self._run = run
+        self._stage = stage
+        self._emit = emit
+
+    @property
+    def _over(self) -> bool:
+        return self.task.finished or self._run.over
+
+
+class DiagramRun(_Played):
     """A diagram that is played.
 
     Attributes:
@@ -68,11 +82,8 @@ class DiagramRun:
     """
 
     def __init__(self, diagram: Diagram, run: BehaviorRun, stage: Stage, emit: Emit) -> None:
-        self.task = Task("diagram", 0)
+        super().__init__("diagram", run, stage, emit)
         self._diagram = diagram
-        self._run = run
-        self._stage = stage
-        self._emit = emit
         self._running: dict[int, list[_Running]] = {}
         self._begun: set[int] = set()
         self._signals: deque[tuple[Link, str]] = deque()
@@ -196,10 +207,6 @@ class DiagramRun:
 
     # --- ends ---------------------------------------------------------------------------------------------------------
 
-    @property
-    def _over(self) -> bool:
-        return self.task.finished or self._run.over
-
     def _end(self, end: End | None) -> None:
         silences, self._silences = self._silences, []
         for silence in silences:
@@ -210,7 +217,7 @@ class DiagramRun:
         self.task.finish(end)
 
 
-class TimelineRun:
+class TimelineRun(_Played):
     """A timeline that is played.
 
     Attributes:
@@ -218,11 +225,8 @@ class TimelineRun:
     """
 
     def __init__(self, timeline: Timeline, run: BehaviorRun, stage: Stage, emit: Emit) -> None:
-        self.task = Task("timeline", 0)
+        super().__init__("timeline", run, stage, emit)
         self._timeline = timeline
-        self._run = run
-        self._stage = stage
-        self._emit = emit
         self._layers: dict[int, BehaviorRun] = {}
         self._left = 1
 
@@ -237,11 +241,14 @@ class TimelineRun:
         self._one_less()
 
     def _after(self, delay: float, do: Callable[[], None]) -> None:
-        def now(_: Task) -> None:
+        def now(_: Task | None = None) -> None:
             if not self._over:
                 do()
 
-        timer = self._stage.begin(Wait(delay), self._run) if delay > 0.0 else _ended()
+        if delay <= 0.0:
+            now()
+            return
+        timer = self._stage.begin(Wait(delay), self._run)
         timer.add_done_callback(now)
         self._count(timer)
 
@@ -271,16 +278,6 @@ class TimelineRun:
         if not self._left and not self._over:
             self._end(End(self._timeline.ends) if self._timeline.concludes else None)
 
-    @property
-    def _over(self) -> bool:
-        return self.task.finished or self._run.over
-
     def _end(self, end: End | None) -> None:
         self._run.stop()
         self.task.finish(end)
-
-
-def _ended() -> Task:
-    task = Task("frame", 0)
-    task.finish()
-    return task
