@@ -5,6 +5,8 @@ import threading
 import pytest
 from raw_calls import Dynamic, RawCalls
 
+from nao_sim_bridge.server.messages import Messages
+
 VALUE = [1, b"\xff\x00", {"picture": b"\x02"}]
 
 
@@ -40,3 +42,15 @@ def test_many_clients_get_their_own_bytes_at_once(robot, raw):
     for thread in threads:
         thread.join()
     assert not wrong
+
+
+def test_an_answer_whose_connection_breaks_fails_and_the_next_one_gets_another(robot, raw, monkeypatch):
+    def broken(_):
+        raise ConnectionError("it has closed the connection")
+
+    raw.answer("ALMemory", "insertData", "alone", b"\xff\x00")
+    with monkeypatch.context() as patch:
+        patch.setattr(Messages, "receive", broken)
+        with pytest.raises(RuntimeError, match="bytes cannot be answered: it has closed the connection"):
+            robot.ALMemory.getData("alone")
+    assert robot.ALMemory.getData("alone") == b"\xff\x00"

@@ -27,8 +27,8 @@ from nao_sim_bridge.server.messages import (
 
 _LOCALHOST = "127.0.0.1"
 _SERVICE, _METHOD = "answers", 100
-_SETTING_UP = 10.0
-"""s: libqi of this process connects, and asks what there is to call."""
+_LIMIT = 10.0
+"""s in which libqi of this process has to connect, and to send what it is waited for."""
 _LOGGED_IN = 3
 """State of a login that is done."""
 
@@ -38,6 +38,7 @@ class Answers:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
+        self._closed = False
         self._session: Any = None
         self._socket: socket.socket | None = None
         self._messages: Messages | None = None
@@ -47,38 +48,47 @@ class Answers:
         """A future with this value.
 
         Raises:
-            RuntimeError: The connection has ended.
+            RuntimeError: The connection has ended; the next answer gets another one, unless this is closed.
         """
         content = packed(value)
         with self._lock:
-            if self._messages is None:
-                self._connect()
-            future = self._take(_async=True)
+            if self._closed:
+                raise RuntimeError("bytes cannot be answered any more: the simulator is closing")
             try:
+                if self._messages is None:
+                    self._connect()
+                future = self._take(_async=True)
                 _reply(self._messages, self._messages.receive(), content)
-            except OSError as error:
-                raise RuntimeError(f"bytes cannot be answered any more: {error}") from error
+            except (OSError, RuntimeError) as error:
+                self._disconnect()  # what is on its way would be taken for the next answer
+                raise RuntimeError(f"bytes cannot be answered: {error}") from error
         return future
 
     def close(self) -> None:
         """Answer no more."""
         with self._lock:
-            if self._session is not None:
-                self._session.close()
-            if self._socket is not None:
-                self._socket.close()
+            self._closed = True
+            self._disconnect()
+
+    def _disconnect(self) -> None:
+        if self._session is not None:
+            self._session.close()
+        if self._socket is not None:
+            self._socket.close()
+        self._session = self._socket = self._messages = self._take = None
 
     def _connect(self) -> None:
         self._session = session = qi.Session()
         session.listenStandalone(f"tcp://{_LOCALHOST}:0")
         directory = session.service("ServiceDirectory")
         with socket.create_server((_LOCALHOST, 0)) as door:
-            door.settimeout(_SETTING_UP)
+            door.settimeout(_LIMIT)
             address = f"tcp://{_LOCALHOST}:{door.getsockname()[1]}"
             number = directory.registerService((_SERVICE, 0, directory.machineId(), 0, [address], "", b""))
             directory.serviceReady(number)
             found = session.service(_SERVICE, _async=True)
             self._socket, _ = door.accept()
+        self._socket.settimeout(_LIMIT)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         messages = Messages(self._socket)
         _introduce(messages)
