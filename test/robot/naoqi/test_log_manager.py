@@ -59,3 +59,27 @@ def test_levels_and_filters_are_those_of_the_listener(robot, listener, told):
     robot.ALLogger.warn("GameOver", "not heard")
     robot.ALLogger.error("Noise", "heard")
     assert told()["category"] == "Noise"
+
+
+def test_a_program_that_writes_is_told_what_is_wanted_until_it_leaves(robot, listener):
+    levels, filters = queue.Queue(), queue.Queue()
+
+    class Provider:
+        def setLevel(self, level):
+            levels.put(level)
+
+        def setFilters(self, wanted):
+            filters.put(wanted)
+
+    def told():
+        return levels.get(timeout=PATIENCE), filters.get(timeout=PATIENCE)
+
+    number = robot.LogManager.addProvider(Provider())
+    assert told() == (INFO, [])
+    listener.addFilter("Game*", DEBUG)
+    assert told() == (INFO, [("Game*", DEBUG)])
+    robot.LogManager.removeProvider(number)
+    listener.setLevel(ERROR)
+    with pytest.raises(RuntimeError, match=f"there is no provider {number}"):
+        robot.LogManager.removeProvider(number)
+    assert levels.empty() and filters.empty()

@@ -10,7 +10,7 @@ import logging
 import os
 import time
 from fnmatch import fnmatchcase
-from typing import Any, Mapping
+from typing import Any, Callable, Mapping
 
 import qi
 
@@ -33,17 +33,21 @@ MESSAGES = f"[{MESSAGE}]"
 """source: file:function:line; location: machine:process; date since this process began, systemDate since 1970, ns."""
 SIMULATOR = "nao_sim"
 LARGEST_ID = 2**32
+MOST_PROVIDERS = 100
 
 
 class LogManager:
     """LogManager as the simulated robot offers it: the log of the simulator, with what programs write there.
 
-    There is one listener for all programs: libqi keeps for ever what it hands over of Python.
+    There is one listener for all programs: libqi keeps for ever what it hands over of Python. Programs that write
+    messages get its level and filters, so that they send no others.
     """
 
     def __init__(self) -> None:
-        self._handler = _ToListener(LogListener())
-        self._providers = itertools.count(1)
+        self._numbers = itertools.count(1)
+        self._providers: dict[int, Any] = {}
+        self._listener = LogListener(self._instruct_all)
+        self._handler = _ToListener(self._listener)
 
     @typed(NAME, qi.Void, [MESSAGES])
     def log(self, messages: Any) -> None:
@@ -65,12 +69,36 @@ class LogManager:
 
     @typed(NAME, qi.Int32, [qi.Object])
     def addProvider(self, provider: Any) -> int:
-        """A number for a program that writes messages; it decides itself which."""
-        return next(self._providers)
+        """Have a program told which messages are wanted, by its `setLevel` and `setFilters`; answers its number."""
+        if len(self._providers) >= MOST_PROVIDERS:
+            raise NaoqiError(f"there are {MOST_PROVIDERS} providers already, which is the most")
+        number = next(self._numbers)
+        self._providers[number] = provider
+        self._instruct(number, provider)
+        return number
 
     @typed(NAME, qi.Void, [qi.Int32])
     def removeProvider(self, provider: int) -> None:
-        """Nothing is kept of it."""
+        """Tell a program no more."""
+        if self._providers.pop(provider, None) is None:
+            raise NaoqiError(f"there is no provider {provider}")
+
+    @qi.nobind
+    def _instruct_all(self) -> None:
+        for number, provider in list(self._providers.items()):
+            self._instruct(number, provider)
+
+    @qi.nobind
+    def _instruct(self, number: int, provider: Any) -> None:
+        """Tell a program the level and the filters; one that cannot be told has ended, and is forgotten."""
+
+        def ended(answer: Any) -> None:
+            if answer.hasError():
+                self._providers.pop(number, None)
+
+        level, filters = self._listener.wanted
+        provider.call("setLevel", level, _async=True).addCallback(ended)
+        provider.call("setFilters", list(filters.items()), _async=True).addCallback(ended)
 
     @qi.nobind
     def close(self) -> None:
@@ -84,21 +112,33 @@ class LogListener:
     Signals are properties: libqi lets go of what a property was set to before.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, changed: Callable[[], None]) -> None:
+        """Listen to what is of level INFO or more. `changed`: called when other messages are wanted."""
+        self._changed = changed
         self.onLogMessage = qi.Property(MESSAGE)
         self.onLogMessages = qi.Property(MESSAGES)
         self.onLogMessagesWithBacklog = qi.Property(MESSAGES)
         self.logLevel = qi.Property("i")
         self._level = INFO
         self._filters: dict[str, int] = {}
-        self.logLevel.connect(lambda level: setattr(self, "_level", level))
+        self.logLevel.connect(self._set_level)
         self.logLevel.setValue(INFO)
+
+    @property
+    def wanted(self) -> tuple[int, dict[str, int]]:
+        """The level, and those of categories."""
+        return self._level, self._filters
+
+    @qi.nobind
+    def _set_level(self, level: int) -> None:
+        self._level = level
+        self._changed()
 
     @typed(LISTENER, qi.Void, [qi.Int32])
     def setLevel(self, level: int) -> None:
         """Tell messages up to a level: 1 fatal, 2 error, 3 warning, 4 info, 5 verbose, 6 debug; 0 for none."""
         self._level = level
-        self.logLevel.setValue(level, _async=True)
+        self.logLevel.setValue(level, _async=True)  # which tells of the change
 
     @typed(LISTENER, qi.Void, [qi.String, qi.Int32])
     def addFilter(self, category: str, level: int) -> None:
@@ -107,17 +147,20 @@ class LogListener:
         if len({*self._filters, category}) > kept.log_filters or category.count("*") > kept.filter_stars:
             raise NaoqiError(f"{kept.log_filters} filters at most, with {kept.filter_stars} * each")
         self._filters = {**self._filters, category: level}
+        self._changed()
 
     @typed(LISTENER, qi.Void, [])
     def clearFilters(self) -> None:
         """Forget all filters."""
         self._filters = {}
+        self._changed()
 
 
 def _tell(listener: LogListener, message: tuple) -> None:
     _, level, category, *_ = message
-    own = [most for name, most in listener._filters.items() if fnmatchcase(category, name)]
-    if level <= (own[-1] if own else listener._level):
+    most, filters = listener.wanted
+    own = [most for name, most in filters.items() if fnmatchcase(category, name)]
+    if level <= (own[-1] if own else most):
         listener.onLogMessage.setValue(message, _async=True)
         listener.onLogMessages.setValue([message], _async=True)
         listener.onLogMessagesWithBacklog.setValue([message], _async=True)
