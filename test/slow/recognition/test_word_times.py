@@ -27,7 +27,7 @@ ROOMS = [pytest.param(None, id="quiet"), pytest.param(45.0, id="noise")]
 
 @pytest.mark.parametrize("noise_db", part_of(ROOMS, 2))
 def test_no_word_is_lost_and_its_times_are_told(robot, ears, noise_db):
-    may_be_lost, may_be_wrong = (0, 5) if noise_db is None else (3, 15)
+    may_be_lost, may_be_wrong = (0.0, 0.05) if noise_db is None else (0.03, 0.15)  # of all
     if noise_db is not None:
         put(robot, (0.0, 1.5, 0.5), noise(2.0), noise_db, loop=True, name="fan")
         robot.advance(2.0)
@@ -46,6 +46,6 @@ def test_no_word_is_lost_and_its_times_are_told(robot, ears, noise_db):
     for name, values in zip(("onset", "end", "end to answer"), errors.T):
         print(f"{name}: {np.median(values):.3f} {np.percentile(values, 95):.3f} {values.max():.3f} s")
     print(f"lost {lost}, taken for another {wrong}")
-    assert len(lost) <= may_be_lost and len(wrong) <= may_be_wrong
+    assert len(lost) <= may_be_lost * TRIALS and len(wrong) <= may_be_wrong * TRIALS
     assert np.median(errors[:, 0]) < 0.02 and np.percentile(errors[:, 0], 95) < 0.06
     assert np.median(errors[:, 1]) < 0.03 and np.percentile(errors[:, 1], 90) < 0.06
