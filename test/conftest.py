@@ -101,6 +101,8 @@ class LongestFirst(LoadGroupScheduling):
     """
 
     def _assign_work_unit(self, node):
+        if not self.workqueue:  # few cases: another worker has them all
+            return
         seed, took = self.config.getoption("--shuffle"), _durations()
         own, *others = (
             any(map(_on_stack, self.assigned_work[each]))

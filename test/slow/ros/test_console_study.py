@@ -22,6 +22,8 @@ from nao_sim_bridge.testing import RobotTestCase, wait_until
 STUDY = "patient_steps"
 """The ten steps that come along, with more time for a computer that is busy."""
 TRIAL = f"{STUDY}/P01-1"
+LIMIT = 300.0
+"""s that a step may take until it begins: its trial hangs then."""
 
 
 @pytest.mark.timeout(1800)
@@ -61,7 +63,11 @@ class ConsoleStudy(RobotTestCase):
         def begun():
             return any(each.path == path for each in self.files.trial(TRIAL).state().outcomes)
 
-        wait_until(begun, 60.0, f"step {path}")
+        def so_far():
+            lines = (self.files.trial(TRIAL).path / EVENTS).read_text().splitlines()
+            return f"step {path}; last events of the trial:\n" + "\n".join(lines[-10:])
+
+        wait_until(begun, LIMIT, so_far)
 
     def begin(self):
         self.browser.open("/study", protocol=STUDY, participant="P01")
