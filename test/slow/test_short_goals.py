@@ -1,9 +1,11 @@
-"""Goals that are over at once, through actionlib's own client, which loses ends that come too early."""
+"""Goals that are over at once, for actionlib's own client, which loses ends that come too early."""
 
 import os
 import signal
 import subprocess
 import sys
+
+import pytest
 
 from nao_library_modules.processes.own_master import OwnMaster
 
@@ -43,16 +45,48 @@ assert 0 < max(lengths) < 20, f"{max(lengths)} goals in the status"
 """
 
 
-def test_their_ends_are_not_lost_and_the_status_stays_short(tmp_path):
+LATE = """
+import threading
+import rospy
+from actionlib.msg import TestActionGoal, TestActionResult
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
+rospy.init_node("client")
+over = threading.Event()
+def look(told):
+    if any(each.goal_id.id == "late" and each.status == GoalStatus.SUCCEEDED for each in told.status_list):
+        over.set()
+status = rospy.Subscriber("short/status", GoalStatusArray, look)
+goal = TestActionGoal(goal_id=GoalID(id="late"))
+goals = rospy.Publisher("short/goal", TestActionGoal, latch=True, queue_size=1)
+goals.publish(goal)
+assert over.wait(60)
+assert rospy.wait_for_message("short/result", TestActionResult, 60).status.goal_id.id == "late"
+"""
+
+
+@pytest.fixture
+def client(tmp_path):
+    """Runs a program beside a server whose goals are over at once, and fails with what it wrote if it does."""
     with OwnMaster(tmp_path / "master.txt") as master:
         environment = {**os.environ, "ROS_MASTER_URI": master.uri, "ROS_LOG_DIR": str(tmp_path)}
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
         server = subprocess.Popen([sys.executable, "-c", SERVER], **quiet)
-        try:
-            done = subprocess.run(
-                [sys.executable, "-c", CLIENT], env=environment, capture_output=True, text=True, timeout=900
-            )
+
+        def run(program):
+            arguments = {"env": environment, "capture_output": True, "text": True, "timeout": 900}
+            done = subprocess.run([sys.executable, "-c", program], **arguments)
             assert done.returncode == 0, done.stderr
+
+        try:
+            yield run
         finally:
             server.send_signal(signal.SIGINT)
             server.wait(60.0)
+
+
+def test_their_ends_are_not_lost_and_the_status_stays_short(client):
+    client(CLIENT)
+
+
+def test_who_listens_to_results_only_after_the_end_gets_its_own(client):
+    client(LATE)

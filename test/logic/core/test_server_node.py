@@ -6,6 +6,7 @@ import math
 import queue
 import time
 from contextlib import nullcontext
+from unittest.mock import Mock
 
 import actionlib.msg
 import pytest
@@ -78,6 +79,7 @@ def test_the_status_waits_until_the_client_of_the_newest_goal_can_have_noted_it(
     published = queue.Queue()
     monkeypatch.setattr(actionlib.ActionServer, "publish_status", lambda _: published.put(time.monotonic()))
     server = ActionServer("test", actionlib.msg.TestAction, lambda goal: None, auto_start=False, soonest_status=0.04)
+    server.result_pub = Mock()  # not started, it has no topics
     server.publish_status()
     assert published.qsize() == 1, "with no goal there is nothing to wait for"
     published.get()

@@ -13,7 +13,7 @@ from typing import Any
 
 import click
 
-from naoqi.limits import GOAL_END_LIMIT
+from naoqi.limits import GOAL_END_LIMIT, SERVER_LIMIT
 
 from ..functions.server_types import DESCRIBE, installed_message
 from .errors import CommandFailed, CommandInterrupted, StackMissing
@@ -21,8 +21,6 @@ from .output import plain, say_json, say_result
 from .progress import NO_NAMES, Progress
 from .settings import CliSettings
 
-SERVER_LIMIT = 10.0
-"""s until a server that is there must have been found."""
 LOOK_PERIOD = 1.0
 """s between two looks whether the server is still there."""
 

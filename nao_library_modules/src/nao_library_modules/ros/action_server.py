@@ -1,4 +1,4 @@
-"""actionlib's servers, for actionlib's own clients: they tell of a goal when its client can have noted which one it is.
+"""actionlib's servers, for actionlib's own clients: they tell of a goal when its client can take notice of it.
 
 SimpleActionClient notes which goal it sent after it has sent it (ros/actionlib #206). What comes before is of a goal
 "that we're not tracking" to it: of an acknowledgement it says so in red, an end it drops, and waits for ever. So a
@@ -11,7 +11,8 @@ import logging
 import math
 import threading
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import actionlib
@@ -53,11 +54,61 @@ class _Topics:
             topic.unregister()
 
 
+class _Results(_Topics, rospy.SubscribeListener):
+    """Results of goals; one whose client does not listen yet is sent to it when it does.
+
+    rospy connects the topics of a client one by one: on a busy computer a goal may come, and be over, before its client
+    listens to results. That one would wait for ever.
+    """
+
+    def __init__(self, *topics: rospy.Publisher) -> None:
+        super().__init__(*topics)
+        self._lock = threading.Lock()
+        self._senders: dict[str, str] = {}  # id of a goal -> node that sent it
+        self._missed: deque[tuple[str, Any]] = deque(maxlen=REMEMBERED)  # node, result
+        for topic in topics:
+            topic.impl.add_subscriber_listener(self)
+
+    def note(self, goal: Any) -> None:
+        """Note who sent a goal."""
+        header = getattr(goal, "_connection_header", None) or {}
+        with self._lock:
+            self._senders[goal.goal_id.id] = header.get("callerid", "")
+
+    def publish(self, message: Any) -> None:
+        with self._lock:
+            sender = self._senders.pop(message.status.goal_id.id, "")
+            listens = not sender or any(True for _ in self._connections(sender))
+            super().publish(message)
+            if not listens:
+                self._missed.append((sender, message))
+
+    # The names are rospy's.
+
+    def peer_subscribe(self, *_: Any) -> None:
+        """Send what a node has missed that listens now; in a thread of rospy."""
+        with self._lock:
+            for missed in list(self._missed):
+                sender, message = missed
+                for topic, connection in self._connections(sender):
+                    with topic.publock:
+                        topic.publish(message, connection_override=connection)
+                    if missed in self._missed:
+                        self._missed.remove(missed)
+
+    def peer_unsubscribe(self, *_: Any) -> None:
+        pass
+
+    def _connections(self, node: str) -> Iterator[tuple[Any, Any]]:
+        for impl in (topic.impl for topic in self._topics if topic.impl is not None):  # None: unregistered
+            yield from ((impl, each) for each in impl.connections if each.endpoint_id == node)
+
+
 class ActionServer(actionlib.ActionServer):
     """actionlib's, under a second name as well where `SECOND_NAMES` has one: clients of both share its goals.
 
     Its status waits until the clients can have noted their goals, and its timer does not raise when the node closes its
-    topics while it tells of its goals.
+    topics while it tells of its goals. A client that listens to results only after its goal is over gets its result.
     """
 
     def __init__(self, *arguments: Any, soonest_status: float = SOONEST_END, **options: Any) -> None:
@@ -70,23 +121,27 @@ class ActionServer(actionlib.ActionServer):
 
     def initialize(self) -> None:
         """Make the topics of all names, and one timer."""
-        super().initialize()
-        for name in names_of(rospy.remap_name(self.ns))[1:]:
-            sizes = {"queue_size": self.pub_queue_size}
-            status = rospy.Publisher(f"{name}/status", GoalStatusArray, latch=True, **sizes)
-            self.status_pub = _Topics(self.status_pub, status)
-            self.result_pub = _Topics(self.result_pub, rospy.Publisher(f"{name}/result", self.ActionResult, **sizes))
-            feedback = rospy.Publisher(f"{name}/feedback", self.ActionFeedback, **sizes)
-            self.feedback_pub = _Topics(self.feedback_pub, feedback)
-            sizes = {"queue_size": self.sub_queue_size}
-            goal = rospy.Subscriber(f"{name}/goal", self.ActionGoal, self.internal_goal_callback, **sizes)
-            self.goal_sub = _Topics(self.goal_sub, goal)
-            cancel = rospy.Subscriber(f"{name}/cancel", GoalID, self.internal_cancel_callback, **sizes)
-            self.cancel_sub = _Topics(self.cancel_sub, cancel)
+        with self.lock:  # goals wait until all of it is there
+            super().initialize()
+            results = [self.result_pub]
+            for name in names_of(rospy.remap_name(self.ns))[1:]:
+                sizes = {"queue_size": self.pub_queue_size}
+                status = rospy.Publisher(f"{name}/status", GoalStatusArray, latch=True, **sizes)
+                self.status_pub = _Topics(self.status_pub, status)
+                results.append(rospy.Publisher(f"{name}/result", self.ActionResult, **sizes))
+                feedback = rospy.Publisher(f"{name}/feedback", self.ActionFeedback, **sizes)
+                self.feedback_pub = _Topics(self.feedback_pub, feedback)
+                sizes = {"queue_size": self.sub_queue_size}
+                goal = rospy.Subscriber(f"{name}/goal", self.ActionGoal, self.internal_goal_callback, **sizes)
+                self.goal_sub = _Topics(self.goal_sub, goal)
+                cancel = rospy.Subscriber(f"{name}/cancel", GoalID, self.internal_cancel_callback, **sizes)
+                self.cancel_sub = _Topics(self.cancel_sub, cancel)
+            self.result_pub = _Results(*results)
 
     def internal_goal_callback(self, goal: Any) -> None:
         with self.lock:
             self._newest = time.monotonic()
+            self.result_pub.note(goal)
             super().internal_goal_callback(goal)
 
     def publish_status(self) -> None:

@@ -13,12 +13,11 @@ from actionlib_msgs.msg import GoalStatus
 from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorGoal
 from nao_library_msgs.msg import BehaviorFunction
 from naoqi.errors import NaoError
+from naoqi.limits import SERVER_LIMIT
 
 from ..ros.goal_tracker import GoalTracker
 
 SERVER = "NaoBehavior"
-SERVER_LIMIT = 5.0
-"""s to wait for the server, when a touch asks for it."""
 
 
 class BehaviorClient:

@@ -18,6 +18,7 @@ from std_srvs.srv import Empty
 
 from nao_library_msgs.srv import DescribeFunctions
 from naoqi.errors import NaoError
+from naoqi.limits import SERVER_LIMIT
 
 from ...base.suggestion import of_those
 from ...cli.output import plain
@@ -37,8 +38,6 @@ from .waits import within
 
 log = logging.getLogger(__name__)
 
-SERVER_LIMIT = 5.0
-"""s that the server of a goal may take to be found."""
 WALK_HOLD = 0.4
 """s that a velocity holds; who wants more sends it again."""
 CONSOLE = "console"

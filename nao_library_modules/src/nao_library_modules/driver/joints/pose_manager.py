@@ -22,7 +22,7 @@ from nao_library_actions.msg import (
     JointTrajectoryGoal,
 )
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT
+from naoqi.limits import ANSWER_LIMIT, SERVER_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.field_checks import require_within
@@ -43,8 +43,6 @@ STOP_WALK = "stop_walk_srv"
 BODY = frozenset({"Body"})
 SHUTDOWN_LIMIT = 2.0
 ACTION = "joint_trajectory"
-SERVER_LIMIT = 5.0
-"""s to wait for the server of the action."""
 MARGIN = 1.0
 """s that a pose may take longer than it says."""
 CANCEL_LIMIT = 2.0

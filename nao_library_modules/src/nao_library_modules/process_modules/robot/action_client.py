@@ -14,6 +14,8 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
+from naoqi.limits import SERVER_LIMIT
+
 from ...base.suggestion import of_those
 from ...ros.driver_types import spoken
 from ...ros.goal_tracker import GoalTracker, server_connection
@@ -24,8 +26,6 @@ from ..language.fluents import Fluent
 
 log = logging.getLogger(__name__)
 
-SERVER_LIMIT = 20.0
-"""s of the computer to wait for a server: simulated time may run so fast that a node is not up within much of it."""
 LOOK_PERIOD = 0.5
 """s of the plan's clock after which is looked how long that was."""
 
