@@ -95,7 +95,7 @@ class Documents(ExampleTest):
         self.assertAlmostEqual(self.angle("HeadYaw"), math.atan2(1.0, 2.0), delta=0.05)
         hand = self.robot.module("ALMotion").getPosition("RArm", FRAME_TORSO, True)[:3]
         self.assertLess(math.dist(hand, (0.16, -0.13, 0.08)), 0.02, hand)
-        wait_until(lambda: "This is the end." in said, LIMIT, "the sentence on the robot")
+        wait_until(lambda: "This is the end." in said, LIMIT, lambda: f"the sentence among {said}")
 
     def test_algorithm_5_14(self):
         self.run_example("abstract_plan.py")

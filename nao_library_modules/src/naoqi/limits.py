@@ -103,11 +103,6 @@ STOPPED_LIMIT = 0.5
 GOAL_END_LIMIT = SERVER_PATIENCE + 5.0
 """A goal of a server ends when the robot stands still, also if it is silent at first."""
 
-# Of an action server that is there: rospy connects its topics one by one, and simulated time may run fast.
-
-SERVER_LIMIT = 20.0
-"""A client of its goals finds it, on a busy computer."""
-
 # Of the end of a program: nobody waits for answers any more.
 
 FLUSH_LIMIT = 0.5

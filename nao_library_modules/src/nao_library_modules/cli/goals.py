@@ -13,7 +13,7 @@ from typing import Any
 
 import click
 
-from naoqi.limits import GOAL_END_LIMIT, SERVER_LIMIT
+from naoqi.limits import GOAL_END_LIMIT
 
 from ..functions.server_types import DESCRIBE, installed_message
 from .errors import CommandFailed, CommandInterrupted, StackMissing
@@ -108,6 +108,8 @@ class GoalRun:
     def run(self, functions: Sequence[Any]) -> GoalEnd:
         """Send a goal of these functions and wait for its end, whatever it is."""
         import actionlib
+
+        from ..ros.goal_tracker import SERVER_LIMIT
 
         start_node()
         began = time.monotonic()

@@ -30,8 +30,9 @@ LONGEST_SILENCE = 0.05
 """s that a status waits at most, where one goal follows the other."""
 SHUTDOWN_POLL = 0.1
 """s between two looks whether the node has ended, for nothing wakes the waiting thread then."""
-REMEMBERED = 10
-"""Goals that are over and still told of in the status; by actionlib's rule, 5 s, it gets long when goals are short."""
+REMEMBERED, STILL_TOLD = 10, 0.3
+"""Goals that are over and still told of in the status: so many, and those of the last s. By actionlib's rule, 5 s, it
+gets long when goals are short; a client that is told no more of a goal before it has read its result calls it lost."""
 REPLACED = "a newer goal came before this one began"
 OVER = frozenset(
     (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED, GoalStatus.RECALLED, GoalStatus.REJECTED)
@@ -198,7 +199,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
     It also forgets what was in a goal when that is over. actionlib tells of such a goal for 5 s more and keeps all of
     it for longer, in a ring of objects that Python finds some day: hundreds of goals with long lists in them are
     hundreds of megabytes. Their ids and states are enough. The room that they took is given back to the system. And of
-    goals that are over only the last few are told of at all: with hundreds of short ones in it, each status takes
+    goals that are over only the last ones are told of at all: with hundreds of short ones in it, each status takes
     clients so long to read that they have no time for what comes of their goals.
 
     A goal that is taken up and would be over at once ends `soonest_end` later: see `let_the_client_note_the_goal`.
@@ -212,6 +213,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
         """Make a server that is not started. `execute`: carries out a goal. `soonest_end`: s of wall time."""
         self._soonest_end = soonest_end
         self._taken_up = 0.0
+        self._over: dict[Any, float] = {}  # goals that are over and still told of -> since when, by time.monotonic
         self._no_goal = type(action().action_goal)()
         self._heap = Heap()
         super().__init__(name, action, execute, auto_start=False)
@@ -254,12 +256,13 @@ class PromptActionServer(actionlib.SimpleActionServer):
 
     def _empty_goals(self) -> None:
         """Put an empty goal in the place of each one that is over, and forget all of these but the last few."""
-        server = self.action_server
+        server, now = self.action_server, time.monotonic()
         with server.lock:
             over = [tracker for tracker in server.status_list if tracker.status.status in OVER]
             for tracker in over:
                 tracker.goal = self._no_goal
-            forgotten = set(over[:-REMEMBERED])
+            self._over = {tracker: self._over.get(tracker, now) for tracker in over}
+            forgotten = {tracker for tracker in over[:-REMEMBERED] if now - self._over[tracker] > STILL_TOLD}
             server.status_list = [tracker for tracker in server.status_list if tracker not in forgotten]
             for handle in (self.current_goal, self.next_goal):
                 if handle.status_tracker is not None and handle.status_tracker.status.status in OVER:

@@ -16,6 +16,8 @@ from naoqi.limits import GOAL_END_LIMIT
 
 from ..owners.line import GOAL, OwnerLine
 
+SERVER_LIMIT = 20.0
+"""s in which a client finds a server that is there: rospy connects topics one by one, on a busy computer in seconds."""
 ACKNOWLEDGEMENT_LIMIT = 5.0
 """s that a server may take to tell of a goal before it is cancelled all the same."""
 

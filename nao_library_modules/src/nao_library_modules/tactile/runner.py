@@ -13,9 +13,8 @@ from actionlib_msgs.msg import GoalStatus
 from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorGoal
 from nao_library_msgs.msg import BehaviorFunction
 from naoqi.errors import NaoError
-from naoqi.limits import SERVER_LIMIT
 
-from ..ros.goal_tracker import GoalTracker
+from ..ros.goal_tracker import SERVER_LIMIT, GoalTracker
 
 SERVER = "NaoBehavior"
 

@@ -18,7 +18,6 @@ from std_srvs.srv import Empty
 
 from nao_library_msgs.srv import DescribeFunctions
 from naoqi.errors import NaoError
-from naoqi.limits import SERVER_LIMIT
 
 from ...base.suggestion import of_those
 from ...cli.output import plain
@@ -27,7 +26,7 @@ from ...functions.server_types import DESCRIBE, ServerType
 from ...owners.line import OwnerLine
 from ...ros.check_client import NoService, NotAnswered, call_service
 from ...ros.driver_types import spoken
-from ...ros.goal_tracker import GoalTracker, server_connection
+from ...ros.goal_tracker import SERVER_LIMIT, GoalTracker, server_connection
 from .commands import CommandGoal, RobotCommand, goal_of, type_of
 from .errors import NotThere, ServiceRefused, Stopped
 from .events import EventStream

@@ -22,7 +22,7 @@ from nao_library_actions.msg import (
     JointTrajectoryGoal,
 )
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT, SERVER_LIMIT
+from naoqi.limits import ANSWER_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.field_checks import require_within
@@ -31,7 +31,7 @@ from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
 from ...robot.robot_task import run_task
 from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.driver_types import spoken
-from ...ros.goal_tracker import GoalTracker
+from ...ros.goal_tracker import SERVER_LIMIT, GoalTracker
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock

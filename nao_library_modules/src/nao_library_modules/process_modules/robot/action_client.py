@@ -14,11 +14,9 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from naoqi.limits import SERVER_LIMIT
-
 from ...base.suggestion import of_those
 from ...ros.driver_types import spoken
-from ...ros.goal_tracker import GoalTracker, server_connection
+from ...ros.goal_tracker import SERVER_LIMIT, GoalTracker, server_connection
 from ..language.control import Step, subtask
 from ..language.failures import ActionlibActionTimedOut, LowLevelFailure
 from ..language.flow import retry_after_suspension, uninterrupted, wait_until

@@ -38,7 +38,8 @@ class LatchedTopic:
     """Publishes when the listeners are connected, which takes a moment after the publisher has been made."""
 
     def __init__(self, topic: str, kind: type) -> None:
-        self._publisher = rospy.Publisher(topic, spoken(kind), queue_size=10)
+        self._publisher = rospy.Publisher(topic, spoken(kind), queue_size=1)
+        self._publisher.impl.set_queue_size(None)  # what is published is sent then: the program may end right after it
         self._settled = False
 
     def tell(self, message: Any, limit: float) -> bool:
