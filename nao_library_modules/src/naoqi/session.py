@@ -18,8 +18,9 @@ from .translate import connect_reason
 logger = logging.getLogger("naoqi")
 
 MEMORY, READY = "ALMemory", "NAOqiReady"
-QUIET_LIBQI = "qi.path.sdklayout=0"
-"""libqi warns that it found no SDK around it; a program that only talks to a robot needs none."""
+QUIET_LIBQI = "qi.path.sdklayout=silent:qi.eventloop=warning"
+"""libqi warns that it found no SDK around it; a program that only talks to a robot needs none. On a busy computer it
+tells on the standard output, among the JSON of a program, that it has a thread more."""
 
 
 class Live:

@@ -8,13 +8,14 @@ from typing import Any, Sequence
 
 import qi
 
+from naoqi.session import QUIET_LIBQI
+
 from .program import Program
 
 START_LIMIT = 40.0
 ANSWER_LIMIT = 40.0
 # Without ROS and as a node.
 READY = r"(?:listens on 127\.0\.0\.1:|ready on port )(\d+)"
-QUIET_LIBQI = "qi.path.sdklayout=silent"
 
 
 class Simulator:

@@ -39,8 +39,8 @@ FOUND = load_sizes().clients.found_s
 # How often a module that is registered is asked for: a client's libqi now and then answers a new connection's login
 # before it takes calls on it, and refuses the first one.
 ASKED = 3
-# libqi reports each service it registers, and warns that it deduces paths it has no use for here.
-QUIET_LIBQI = "qi.path.sdklayout=silent:qimessaging.servicedirectory=warning"
+# libqi reports services and threads that it adds, and warns that it deduces paths it has no use for here.
+QUIET_LIBQI = "qi.path.sdklayout=silent:qi.eventloop=warning:qimessaging.servicedirectory=warning"
 
 
 class Broker:
