@@ -280,7 +280,7 @@ class Behaviors(unittest.TestCase):
 
     def test_the_examples_run_and_record(self):
         running = start("run_behavior.py", "three", "colour=red")
-        told, _ = running.communicate(timeout=60)
+        told, _ = running.communicate(timeout=200)
         self.assertEqual(running.returncode, 0, told)
         self.assertRegex(told, r"1\.3 +sequence +ended")
         self.assertIn("three: succeeded", told)
@@ -294,7 +294,7 @@ class Behaviors(unittest.TestCase):
             wait_until(lambda: any(m.feedback.state == "recorded" for m in news), 60.0, "the goal in the recording")
             self.robot.resume()
             self.robot.advance(10.0)
-        told, _ = recording.communicate(timeout=60)
+        told, _ = recording.communicate(timeout=200)
         self.assertIn("recording for 10 s", told)
         self.assertEqual(recording.returncode, 0, told)
         self.assertIn("NaoLights.off", told)

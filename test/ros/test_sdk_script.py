@@ -18,7 +18,7 @@ class SdkScript(unittest.TestCase):
         done = subprocess.run(
             [sys.executable, str(script), "127.0.0.1", os.environ["NAO_PORT"]],
             stdout=subprocess.PIPE,
-            timeout=60,
+            timeout=200,
             text=True,
         )
         self.assertEqual(done.returncode, 0, done.stdout)

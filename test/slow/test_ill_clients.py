@@ -89,7 +89,7 @@ def test_memory_threads_descriptors_and_log_are_level_with_ill_clients(tmp_path)
             ended = simulator.poll(), server.process.poll()
     finally:
         simulator.send_signal(signal.SIGTERM)
-        simulator.communicate(timeout=60.0)
+        simulator.communicate(timeout=200)
     print(f"\n{clients.killed} clients of the robot killed, {server.killed} of the server\n{levels.table()}")
     assert ended == (None, None) and clients.died == 0
     assert min(clients.killed, server.killed) >= 0.3 * SECONDS / KILLED_EVERY

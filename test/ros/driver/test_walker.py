@@ -181,7 +181,7 @@ class DriverWalker(unittest.TestCase):
     # --- inhibition -----------------------------------------------------------------------------------------------
 
     def call_as_another(self, name):
-        subprocess.run(["rosservice", "call", rospy.resolve_name(name)], check=True, timeout=60.0)
+        subprocess.run(["rosservice", "call", rospy.resolve_name(name)], check=True, timeout=200)
 
     def test_inhibition_stops_the_walk_and_refuses_commands(self):
         self.publishing(velocity(x=0.8))

@@ -67,7 +67,7 @@ class AudioInExamples(unittest.TestCase):
         wait_until(lambda: holds_samples(recording("cut.wav")), 60.0, "the first samples")
         self.robot.advance(1.0)
         self.example.send_signal(signal.SIGINT)
-        self.example.communicate(timeout=60)
+        self.example.communicate(timeout=200)
         recorder = self.robot.module("ALAudioRecorder")
         wait_until(lambda: begins_to_record(recorder), 60.0, "the end of the recording")
         recorder.stopMicrophonesRecording()

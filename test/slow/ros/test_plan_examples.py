@@ -72,7 +72,7 @@ class PlanExamples(PlanExampleTest):
             wait_until(motion.moveIsActive, 60.0, "the robot on its way")
             self.robot.advance(0.5)
             example.send_signal(signal.SIGINT)
-            output, _ = example.communicate(timeout=60.0)
+            output, _ = example.communicate(timeout=200)
             self.assertNotEqual(example.returncode, 0, output)
             wait_until(lambda: not motion.moveIsActive(), 60.0, "standstill")
             self.assert_stands()

@@ -173,7 +173,7 @@ class DriverTeleop(unittest.TestCase):
 
     def test_without_a_terminal_it_says_so(self):
         ended = subprocess.run(
-            [sys.executable, NODE], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=60
+            [sys.executable, NODE], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=200
         )
         self.assertEqual(ended.returncode, 1)
         self.assertIn("keys need a terminal", ended.stderr)
