@@ -20,7 +20,7 @@ logger = logging.getLogger("naoqi")
 MEMORY, READY = "ALMemory", "NAOqiReady"
 QUIET_LIBQI = "qi.path.sdklayout=silent:qi.eventloop=warning"
 """libqi warns that it found no SDK around it; a program that only talks to a robot needs none. On a busy computer it
-tells on the standard output, among the JSON of a program, that it has a thread more."""
+writes to the standard output, among the JSON of a program, that it has added a thread."""
 
 
 class Live:

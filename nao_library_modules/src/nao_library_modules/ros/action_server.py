@@ -12,7 +12,7 @@ import math
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 import actionlib
@@ -30,9 +30,11 @@ LONGEST_SILENCE = 0.05
 """s that a status waits at most, where one goal follows the other."""
 SHUTDOWN_POLL = 0.1
 """s between two looks whether the node has ended, for nothing wakes the waiting thread then."""
-REMEMBERED, STILL_TOLD = 10, 0.3
-"""Goals that are over and still told of in the status: so many, and those of the last s. By actionlib's rule, 5 s, it
-gets long when goals are short; a client that is told no more of a goal before it has read its result calls it lost."""
+REMEMBERED = 10
+"""Goals that are over and still in the status; by actionlib's rule, 5 s, it gets long when goals are short."""
+LISTED_FOR = 0.3
+"""s for which a goal that is over stays in the status: a client that misses it there before it has read the result
+calls it lost."""
 REPLACED = "a newer goal came before this one began"
 OVER = frozenset(
     (GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED, GoalStatus.RECALLED, GoalStatus.REJECTED)
@@ -71,17 +73,16 @@ class _Results(_Topics, rospy.SubscribeListener):
             topic.impl.add_subscriber_listener(self)
 
     def note(self, goal: Any) -> None:
-        """Note who sent a goal."""
-        header = getattr(goal, "_connection_header", None) or {}
+        """Note which node sent a goal."""
         with self._lock:
-            self._senders[goal.goal_id.id] = header.get("callerid", "")
+            self._senders[goal.goal_id.id] = getattr(goal, "_connection_header", {}).get("callerid", "")
 
     def publish(self, message: Any) -> None:
         with self._lock:
             sender = self._senders.pop(message.status.goal_id.id, "")
-            listens = not sender or any(True for _ in self._connections(sender))
+            missed = sender and not self._connections(sender)
             super().publish(message)
-            if not listens:
+            if missed:
                 self._missed.append((sender, message))
 
     # The names are rospy's.
@@ -90,19 +91,21 @@ class _Results(_Topics, rospy.SubscribeListener):
         """Send what a node has missed that listens now; in a thread of rospy."""
         with self._lock:
             for missed in list(self._missed):
-                sender, message = missed
-                for topic, connection in self._connections(sender):
+                node, message = missed
+                connections = self._connections(node)
+                for topic, connection in connections:
                     with topic.publock:
                         topic.publish(message, connection_override=connection)
-                    if missed in self._missed:
-                        self._missed.remove(missed)
+                if connections:
+                    self._missed.remove(missed)
 
     def peer_unsubscribe(self, *_: Any) -> None:
         pass
 
-    def _connections(self, node: str) -> Iterator[tuple[Any, Any]]:
-        for impl in (topic.impl for topic in self._topics if topic.impl is not None):  # None: unregistered
-            yield from ((impl, each) for each in impl.connections if each.endpoint_id == node)
+    def _connections(self, node: str) -> list[tuple[Any, Any]]:
+        """Where a node listens: topic of rospy, connection."""
+        impls = [topic.impl for topic in self._topics if topic.impl is not None]  # None: unregistered
+        return [(impl, each) for impl in impls for each in impl.connections if each.endpoint_id == node]
 
 
 class ActionServer(actionlib.ActionServer):
@@ -213,7 +216,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
         """Make a server that is not started. `execute`: carries out a goal. `soonest_end`: s of wall time."""
         self._soonest_end = soonest_end
         self._taken_up = 0.0
-        self._over: dict[Any, float] = {}  # goals that are over and still told of -> since when, by time.monotonic
+        self._over: dict[Any, float] = {}  # goals in the status that are over -> since when, by time.monotonic
         self._no_goal = type(action().action_goal)()
         self._heap = Heap()
         super().__init__(name, action, execute, auto_start=False)
@@ -255,14 +258,14 @@ class PromptActionServer(actionlib.SimpleActionServer):
         self._empty_goals()
 
     def _empty_goals(self) -> None:
-        """Put an empty goal in the place of each one that is over, and forget all of these but the last few."""
+        """Put an empty goal in the place of each one that is over, and forget all of these but the last ones."""
         server, now = self.action_server, time.monotonic()
         with server.lock:
             over = [tracker for tracker in server.status_list if tracker.status.status in OVER]
             for tracker in over:
                 tracker.goal = self._no_goal
             self._over = {tracker: self._over.get(tracker, now) for tracker in over}
-            forgotten = {tracker for tracker in over[:-REMEMBERED] if now - self._over[tracker] > STILL_TOLD}
+            forgotten = {tracker for tracker in over[:-REMEMBERED] if now - self._over[tracker] > LISTED_FOR}
             server.status_list = [tracker for tracker in server.status_list if tracker not in forgotten]
             for handle in (self.current_goal, self.next_goal):
                 if handle.status_tracker is not None and handle.status_tracker.status.status in OVER:
