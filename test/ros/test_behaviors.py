@@ -27,6 +27,7 @@ from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))  # not beside its relay
 from examples_fixture import start  # noqa: E402
 from news import News  # noqa: E402
+from waits import PATIENCE  # noqa: E402
 
 EYES = "FaceLeds"
 HEAD = "HeadYaw"
@@ -280,7 +281,7 @@ class Behaviors(unittest.TestCase):
 
     def test_the_examples_run_and_record(self):
         running = start("run_behavior.py", "three", "colour=red")
-        told, _ = running.communicate(timeout=200)
+        told, _ = running.communicate(timeout=PATIENCE)
         self.assertEqual(running.returncode, 0, told)
         self.assertRegex(told, r"1\.3 +sequence +ended")
         self.assertIn("three: succeeded", told)
@@ -294,7 +295,7 @@ class Behaviors(unittest.TestCase):
             wait_until(lambda: any(m.feedback.state == "recorded" for m in news), 60.0, "the goal in the recording")
             self.robot.resume()
             self.robot.advance(10.0)
-        told, _ = recording.communicate(timeout=200)
+        told, _ = recording.communicate(timeout=PATIENCE)
         self.assertIn("recording for 10 s", told)
         self.assertEqual(recording.returncode, 0, told)
         self.assertIn("NaoLights.off", told)

@@ -4,6 +4,7 @@ import math
 import os
 import signal
 import subprocess
+import sys
 import xmlrpc.client
 
 import rosgraph
@@ -14,6 +15,7 @@ from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from services import action_client
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from waits import PATIENCE
 
 import nao_library_actions.msg as actions
 from nao_library_modules.check_client import check_goals
@@ -29,6 +31,18 @@ LIMIT = 60.0
 def trajectory(**angles):
     point = JointTrajectoryPoint(positions=list(angles.values()), time_from_start=rospy.Duration.from_sec(0.5))
     return JointTrajectory(joint_names=list(angles), points=[point])
+
+
+LAST_WORDS = """
+import os, threading
+import rospy
+from rospy.impl.tcpros_pubsub import QueuedConnection
+from nao_library_modules.process_modules.algorithms import createROSnode
+QueuedConnection._run = lambda _: threading.Event().wait()  # a thread that gets no time on a busy computer
+rospy.init_node("last_words")
+createROSnode().publish("Good night.", "/speech")
+os._exit(0)
+"""
 
 
 class Documents(ExampleTest):
@@ -96,6 +110,13 @@ class Documents(ExampleTest):
         hand = self.robot.module("ALMotion").getPosition("RArm", FRAME_TORSO, True)[:3]
         self.assertLess(math.dist(hand, (0.16, -0.13, 0.08)), 0.02, hand)
         wait_until(lambda: "This is the end." in said, LIMIT, lambda: f"the sentence among {said}")
+
+    def test_the_last_sentence_of_a_program_is_said(self):
+        said = []
+        subscriber = self.robot.module("ALMemory").subscriber("ALTextToSpeech/CurrentSentence")
+        self.addCleanup(subscriber.signal.disconnect, subscriber.signal.connect(said.append))
+        subprocess.run([sys.executable, "-c", LAST_WORDS], check=True, timeout=PATIENCE)
+        wait_until(lambda: "Good night." in said, LIMIT, lambda: f"the sentence among {said}")
 
     def test_algorithm_5_14(self):
         self.run_example("abstract_plan.py")

@@ -7,6 +7,7 @@ import unittest
 from pathlib import Path
 
 import rospkg
+from waits import PATIENCE
 
 from nao_sim_bridge.testing import SimulatedRobot
 
@@ -18,7 +19,7 @@ class SdkScript(unittest.TestCase):
         done = subprocess.run(
             [sys.executable, str(script), "127.0.0.1", os.environ["NAO_PORT"]],
             stdout=subprocess.PIPE,
-            timeout=200,
+            timeout=PATIENCE,
             text=True,
         )
         self.assertEqual(done.returncode, 0, done.stdout)

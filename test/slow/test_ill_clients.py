@@ -9,6 +9,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from waits import PATIENCE
 
 from nao_library_modules.processes.own_master import OwnMaster
 
@@ -89,7 +90,7 @@ def test_memory_threads_descriptors_and_log_are_level_with_ill_clients(tmp_path)
             ended = simulator.poll(), server.process.poll()
     finally:
         simulator.send_signal(signal.SIGTERM)
-        simulator.communicate(timeout=200)
+        simulator.communicate(timeout=PATIENCE)
     print(f"\n{clients.killed} clients of the robot killed, {server.killed} of the server\n{levels.table()}")
     assert ended == (None, None) and clients.died == 0
     assert min(clients.killed, server.killed) >= 0.3 * SECONDS / KILLED_EVERY

@@ -10,7 +10,7 @@ from importlib.util import cache_from_source
 from pathlib import Path
 
 import rospkg
-from waits import hold
+from waits import PATIENCE, hold
 
 import nao_library_actions
 import nao_library_msgs
@@ -73,7 +73,7 @@ def test_no_program_compiles_what_is_compiled():
 
 def test_every_program_explains_itself():
     def run(program):  # not by rosrun, which takes longer to find it than it takes itself
-        return subprocess.run([str(program), "--help"], capture_output=True, text=True, timeout=200)
+        return subprocess.run([str(program), "--help"], capture_output=True, text=True, timeout=PATIENCE)
 
     folders = [Path(rospkg.RosPack().get_path(name)) for name in ("nao_sim_bridge", "nao_library_modules")]
     programs = [program for folder in folders for program in sorted((folder / "nodes").iterdir())]

@@ -9,7 +9,7 @@ from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.places import Place
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.walk.footsteps_walk import FootstepWalk
-from nao_library_modules.driver.walk.head_scan import AFTERWARDS, DOWN, UP, HeadScan
+from nao_library_modules.driver.walk.head_scan import AFTERWARDS, DOWN, SWEEP_SPEED, UP, HeadScan
 from nao_library_modules.driver.walk.moveto_walk import MoveToWalk, WalkGoal
 from nao_library_modules.driver.walk.walk_commands import FootStep, Target, Velocity
 from nao_library_modules.driver.walk.walk_orders import Stop, Superseded, WalkEnded
@@ -281,9 +281,10 @@ def test_a_head_scan_sweeps_evenly_from_the_ground_to_the_sky(scan, robot, begin
     until(lambda: pitch() > DOWN - 0.01)
     started, samples = robot.now.time, []
     until(lambda: samples.append((robot.now.time - started, pitch())) or samples[-1][1] < UP + 0.01, 25.0)
-    assert 17.0 < samples[-1][0] < 21.0  # looked at now and then
-    half = next(angle for time, angle in samples if time > samples[-1][0] / 2.0)
-    assert half == pytest.approx((DOWN + UP) / 2.0, abs=0.05)
+    (began, down), (ended, up) = samples[0], samples[-1]
+    assert (down - up) / (ended - began) == pytest.approx(SWEEP_SPEED, rel=0.08)
+    half = next(angle for time, angle in samples if time > (began + ended) / 2.0)
+    assert half == pytest.approx((down + up) / 2.0, abs=0.05)
     with pytest.raises(NaoError, match="a head scan is under way"):
         scan.run()
     until(running.done)

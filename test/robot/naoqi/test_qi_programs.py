@@ -1,5 +1,6 @@
 """Programs that use the package qi as the robot maker's Python SDK teaches it, with the simulator as their robot."""
 
+import signal
 import subprocess
 import sys
 import threading
@@ -32,10 +33,8 @@ def program(robot):
 def test_an_application_with_a_service_a_periodic_task_and_an_async_call_runs_to_its_end(robot):
     command = [sys.executable, str(PROGRAM), "--qi-url", f"tcp://127.0.0.1:{robot.port}"]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    # By what it says: libqi itself may crash in an interpreter that ends.
-    assert (ended.stdout.strip(), "Traceback" in ended.stderr) == ("3 True ['HeadYaw', 'HeadPitch']", False), (
-        ended.stderr
-    )
+    assert ended.stdout.strip() == "3 True ['HeadYaw', 'HeadPitch']", ended.stderr
+    assert ended.returncode in (0, -signal.SIGSEGV), ended.stderr  # libqi itself may crash while the interpreter ends
 
 
 class Greeter:

@@ -18,6 +18,7 @@ from dynamic_reconfigure.client import Client
 from news import Reports
 from sensor_msgs.msg import CompressedImage
 from services import configuration
+from waits import PATIENCE
 
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
@@ -234,7 +235,7 @@ class DriverCamera(unittest.TestCase):
             _, info = look.after(self.robot.advance(0.0))
             np.testing.assert_allclose(info.K, (279.3, 0, 154.45, 0, 278.05, 123.8, 0, 0, 1))
             self.assertAlmostEqual(info.D[0], -0.065)
-            told = subprocess.run([*program, str(measured)], stdout=subprocess.PIPE, text=True, timeout=200)
+            told = subprocess.run([*program, str(measured)], stdout=subprocess.PIPE, text=True, timeout=PATIENCE)
             self.assertEqual((told.returncode, told.stdout), (0, f"kept in {path}\n"))
             _, info = look.after(self.robot.advance(0.0))
             self.assertAlmostEqual(info.K[0], 300.0)

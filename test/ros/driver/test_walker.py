@@ -15,6 +15,7 @@ from rospy import Duration
 from services import answer, service
 from std_msgs.msg import Empty as EmptyMessage
 from std_srvs.srv import Empty
+from waits import PATIENCE
 
 from nao_library_modules.owners.host import call_for
 from nao_library_msgs.msg import StepTarget
@@ -181,7 +182,7 @@ class DriverWalker(unittest.TestCase):
     # --- inhibition -----------------------------------------------------------------------------------------------
 
     def call_as_another(self, name):
-        subprocess.run(["rosservice", "call", rospy.resolve_name(name)], check=True, timeout=200)
+        subprocess.run(["rosservice", "call", rospy.resolve_name(name)], check=True, timeout=PATIENCE)
 
     def test_inhibition_stops_the_walk_and_refuses_commands(self):
         self.publishing(velocity(x=0.8))

@@ -9,6 +9,7 @@ import numpy as np
 import soundfile
 from examples_fixture import start
 from sound_fixture import Room, bursts, level, recording
+from waits import PATIENCE
 
 from example_parts import dialogue_record
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
@@ -67,7 +68,7 @@ class AudioInExamples(unittest.TestCase):
         wait_until(lambda: holds_samples(recording("cut.wav")), 60.0, "the first samples")
         self.robot.advance(1.0)
         self.example.send_signal(signal.SIGINT)
-        self.example.communicate(timeout=200)
+        self.example.communicate(timeout=PATIENCE)
         recorder = self.robot.module("ALAudioRecorder")
         wait_until(lambda: begins_to_record(recorder), 60.0, "the end of the recording")
         recorder.stopMicrophonesRecording()

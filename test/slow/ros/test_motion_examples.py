@@ -3,6 +3,7 @@
 import signal
 
 from examples_fixture import ExampleTest, start
+from waits import PATIENCE
 
 from nao_sim_bridge.testing import wait_until
 
@@ -38,7 +39,7 @@ class MotionExamples(ExampleTest):
             motion = self.robot.module("ALMotion")
             wait_until(lambda: motion.getRobotVelocity()[0] > 0.01, 60.0, "the robot on its way")
             example.send_signal(signal.SIGINT)
-            example.communicate(timeout=200)
+            example.communicate(timeout=PATIENCE)
             wait_until(lambda: not motion.moveIsActive(), 60.0, "the robot on both feet")
             self.robot.advance(1.0)
             self.assertLess(self.robot.true_pose().position.x, 0.28)
@@ -72,6 +73,6 @@ class MotionExamples(ExampleTest):
         self.assertRegex(self.run_example("robot_state.py"), r"torso   x -?0.0\d m, y -?0.0\d m, z 0.[23]\d m")
         self.assertEqual(self.run_example("joint_trajectory_client.py").count("succeeded"), 3)
         mistyped = start("take_pose.py", "--speed", "0.5", "Crowch")
-        text, _ = mistyped.communicate(timeout=200)
+        text, _ = mistyped.communicate(timeout=PATIENCE)
         self.assertEqual(mistyped.returncode, 1)
         self.assertIn("did you mean 'Crouch'", text)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import rospkg
 from examples_fixture import EXAMPLES
+from waits import PATIENCE
 
 from nao_sim_bridge.testing import SimulatedRobot
 
@@ -34,6 +35,8 @@ class OtherLanguages(unittest.TestCase):
                 ["g++", "-O0", f"-I{folder}", str(EXAMPLES / "turn_head.cpp"), "-o", program, *libraries.split()],
                 check=True,
             )
-            done = subprocess.run([program], timeout=200, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            done = subprocess.run(
+                [program], timeout=PATIENCE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+            )
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertRegex(done.stdout, r"HeadYaw is 0\.(49|50|51) rad")

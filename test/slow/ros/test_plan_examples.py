@@ -6,6 +6,7 @@ import signal
 
 from examples_fixture import start
 from plan_examples_fixture import PlanExampleTest
+from waits import PATIENCE
 
 from nao_library_actions.msg import NaoVisionAction
 from nao_sim_bridge.testing import wait_until
@@ -72,7 +73,7 @@ class PlanExamples(PlanExampleTest):
             wait_until(motion.moveIsActive, 60.0, "the robot on its way")
             self.robot.advance(0.5)
             example.send_signal(signal.SIGINT)
-            output, _ = example.communicate(timeout=200)
+            output, _ = example.communicate(timeout=PATIENCE)
             self.assertNotEqual(example.returncode, 0, output)
             wait_until(lambda: not motion.moveIsActive(), 60.0, "standstill")
             self.assert_stands()

@@ -14,6 +14,7 @@ import rospy
 from sensor_msgs.msg import Joy
 from services import answer, service
 from std_srvs.srv import Empty
+from waits import PATIENCE
 
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
@@ -173,7 +174,7 @@ class DriverTeleop(unittest.TestCase):
 
     def test_without_a_terminal_it_says_so(self):
         ended = subprocess.run(
-            [sys.executable, NODE], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=200
+            [sys.executable, NODE], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, timeout=PATIENCE
         )
         self.assertEqual(ended.returncode, 1)
         self.assertIn("keys need a terminal", ended.stderr)
