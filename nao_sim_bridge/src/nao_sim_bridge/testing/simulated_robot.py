@@ -17,12 +17,10 @@ from std_srvs.srv import Empty
 from nao_library_msgs.srv import AdvanceTime, GetTruepose, PressSensors, PushRobot, ResetWorld, TakePicture, VaryScene
 from nao_sim_bridge.server.broker import QUIET_LIBQI
 from nao_sim_bridge.testing.goal_run import send
-from nao_sim_bridge.testing.waits import LIMIT, StackNotReady, wait_for_service, wait_until
+from nao_sim_bridge.testing.waits import LIMIT, wait_for_service, wait_until
 
 CLOCK_DELAY = 0.2
 """Simulated s that a server which is ready may be behind."""
-PING_LIMIT = 10.0
-"""s of wall time after which a goal that only asks whether a server works is sent again."""
 DEVICE = "Device/SubDeviceList/{}/Actuator/Value"
 
 
@@ -70,12 +68,8 @@ class SimulatedRobot:
         ping = _ping_goal(action)
 
         def ready() -> bool:
-            # rospy counts a connection a moment before the server sends over it: a first result may be lost.
             run = send(client, ping)
-            try:
-                run.wait(min(limit, PING_LIMIT))
-            except StackNotReady:
-                return False
+            run.wait(limit)
             return run.state == GoalStatus.SUCCEEDED and run.server_time >= run.sent - CLOCK_DELAY
 
         wait_until(ready, limit, f"connection of {self._name(name)} to the robot")
