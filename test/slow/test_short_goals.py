@@ -11,36 +11,43 @@ from nao_library_modules.processes.own_master import OwnMaster
 
 SERVER = """
 import rospy
-from actionlib.msg import TestAction
+from actionlib.msg import TestAction, TestFeedback
 from nao_library_modules.ros.action_server import PromptActionServer
 rospy.init_node("server")
-server = PromptActionServer("short", TestAction, lambda goal: server.set_succeeded())
+def carry_out(goal):
+    server.publish_feedback(TestFeedback(goal.goal))
+    rospy.sleep(goal.goal / 1000.0)
+    server.set_succeeded()
+server = PromptActionServer("short", TestAction, carry_out)
 server.start()
 rospy.spin()
 """
 CLIENT = """
+import sys
 import time
 import rospy
 from actionlib import ActionClient, SimpleActionClient
 from actionlib.msg import TestAction, TestGoal
 from actionlib_msgs.msg import GoalStatusArray
 rospy.init_node("client")
+held, count, duration = float(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
 send = ActionClient.send_goal
 def send_and_wait(*arguments):
     handle = send(*arguments)
-    time.sleep(0.002)  # only then SimpleActionClient notes which goal it is
+    time.sleep(held)  # only then SimpleActionClient notes which goal it is
     return handle
 ActionClient.send_goal = send_and_wait
 client, lengths = SimpleActionClient("short", TestAction), []
 assert client.wait_for_server(rospy.Duration(60))
 rospy.Subscriber("short/status", GoalStatusArray, lambda told: lengths.append(len(told.status_list)))
-lost, red = 0, []
+lost, red, told = 0, [], []
 rospy.logerr = lambda text, *_: red.append(text)
-for number in range(200):
-    client.send_goal(TestGoal())
+for number in range(count):
+    client.send_goal(TestGoal(duration), feedback_cb=lambda feedback: told.append(feedback.feedback))
     lost += not client.wait_for_result(rospy.Duration(5))
-    assert lost <= 20, f"{lost} of {number + 1} lost"
-assert len(red) <= 40, f"{len(red)} times news of a goal that the client does not track"
+    assert lost <= count // 10, f"{lost} of {number + 1} lost"
+assert len(red) <= count // 5, f"{len(red)} times news of a goal that the client does not track"
+assert not duration or len(told) >= count * 0.9, f"feedback of {len(told)} goals of {count}"
 assert 0 < max(lengths) < 60, f"{max(lengths)} goals in the status"
 """
 
@@ -72,9 +79,9 @@ def client(tmp_path):
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment}
         server = subprocess.Popen([sys.executable, "-c", SERVER], **quiet)
 
-        def run(program):
+        def run(program, *words):
             arguments = {"env": environment, "capture_output": True, "text": True, "timeout": 900}
-            done = subprocess.run([sys.executable, "-c", program], **arguments)
+            done = subprocess.run([sys.executable, "-c", program, *words], **arguments)
             assert done.returncode == 0, done.stderr
 
         try:
@@ -85,7 +92,22 @@ def client(tmp_path):
 
 
 def test_their_ends_are_not_lost_and_the_status_stays_short(client):
-    client(CLIENT)
+    client(CLIENT, "0.002", "200", "0")
+
+
+def test_what_is_told_at_their_begin_is_not_lost(client):
+    client(CLIENT, "0.002", "30", "100")
+
+
+@pytest.mark.parametrize("duration", ("0", "200"))
+def test_nothing_is_lost_of_a_client_that_waits_for_a_processor(client, duration):
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(2 * os.cpu_count())]
+    try:
+        client(CLIENT, "0.02", "20", duration)
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
 
 
 def test_who_listens_to_results_only_after_the_end_gets_its_own(client):

@@ -16,7 +16,7 @@ from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import TransformStamped
 
 from nao_library_modules.ros import diagnostics, robot_frames, server_node
-from nao_library_modules.ros.action_server import ActionServer, publish_status
+from nao_library_modules.ros.action_server import ActionServer, unless_closed
 from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
 
@@ -72,7 +72,7 @@ def test_the_status_of_goals_that_comes_when_the_topics_are_closed_is_no_error(m
 
     monkeypatch.setattr(rospy.core, "is_shutdown_requested", lambda: ends)
     with nullcontext() if ends else pytest.raises(rospy.ROSException):
-        publish_status(publish)
+        unless_closed(publish)
 
 
 def test_the_status_waits_until_the_client_of_the_newest_goal_can_have_noted_it(monkeypatch):
