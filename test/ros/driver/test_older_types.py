@@ -87,7 +87,7 @@ class OlderTypes(unittest.TestCase):
         with rosbag.Bag(str(bag), "w") as old:
             message = JointAnglesWithSpeed(joint_names=["HeadYaw"], joint_angles=[-0.3], speed=0.5)
             old.write("joint_angles", message, Time(1))
-        play = ("rosbag", "play", "-q", "-d", "2", str(bag), f"joint_angles:={topic}")
+        play = ("rosbag", "play", "-q", "--wait-for-subscribers", str(bag), f"joint_angles:={topic}")
         subprocess.run(play, check=True, timeout=LIMIT)
         self.looks(-0.3)
 
