@@ -2,7 +2,7 @@
 
 import pytest
 
-from nao_sim_bridge.base.errors import LegsTooSoft, MoveRefused
+from nao_sim_bridge.base.errors import MovePrevented, MoveRefused
 from nao_sim_bridge.walk.legs import LEFT, RIGHT
 from nao_sim_bridge.walk.walk_guard import CONTACT_SWITCH, STIFFNESS_SWITCH
 
@@ -124,4 +124,4 @@ def test_a_robot_that_falls_walks_no_more(walker):
     walker.stiffen(0.0)  # as the robot does then
     with pytest.raises(MoveRefused, match="falling") as refusal:
         walker.move(0.05)
-    assert not isinstance(refusal.value, LegsTooSoft)
+    assert not isinstance(refusal.value, MovePrevented)

@@ -11,6 +11,7 @@ import rospkg
 import rospy
 from geometry_msgs.msg import Pose2D, Twist
 from news import Reports
+from rosgraph_msgs.msg import Log
 from rospy import Duration
 from services import answer, service
 from std_msgs.msg import Empty as EmptyMessage
@@ -94,6 +95,18 @@ class DriverWalker(unittest.TestCase):
             reports.subscriber.unregister()
 
     # --- velocities -----------------------------------------------------------------------------------------------
+
+    def test_an_obstacle_ends_a_stream_of_velocities_for_good_and_the_log_says_so(self):
+        simulation = self.robot.module("NaoSimulation")
+        simulation.placeObject("{name: wall, box: [0.1, 2.0, 1.0], position: [0.7, 0.0, 0.5]}")
+        self.addCleanup(simulation.removeObject, "wall")
+        told = []
+        log = rospy.Subscriber("/rosout", Log, lambda line: told.append(line.msg))
+        self.addCleanup(log.unregister)
+        self.publishing(velocity(x=1.0))
+        wait_until(lambda: any("does not walk on: an obstacle" in text for text in told), LIMIT, "the line in the log")
+        self.robot.advance(15.0)
+        self.assertLess(self.forward(), 0.4)
 
     def test_a_velocity_walks_and_the_watchdog_stops_it(self):
         timer = self.publishing(velocity(x=0.8))

@@ -17,6 +17,7 @@ from ..base.places import Place
 from ..functions.chain import ChainStep
 from ..functions.goal_checks import NotKnownHere
 from ..functions.memory_functions import MEMORY
+from ..nao.joint_names import MOVE_FAILED
 from ..processes.launcher import LaunchPath
 from ..robot.event_relay import EventRelay
 from ..server.nao_basic import NaoBasic
@@ -47,7 +48,7 @@ PARAMETERS = {"motion_dir": str(MOTIONS), "by_driver": True}
 """Private parameters of the node and their defaults."""
 # Functions whose joints only the client moves on: what setAngles began goes on after the function.
 ASKING = frozenset({"getAngles"})
-FALLING, MOVE_FAILED = "ALMotion/RobotIsFalling", "ALMotion/MoveFailed"
+FALLING = "ALMotion/RobotIsFalling"
 DISABLED = "ALMotion/Protection/DisabledDevicesChanged"
 
 

@@ -11,6 +11,8 @@ from naoqi.limits import ANSWER_LIMIT
 from ..base.once_per_connection import OncePerConnection
 
 MOTION = "ALMotion"
+MOVE_FAILED = f"{MOTION}/MoveFailed"
+"""Event of a walk that ends, or does not begin: cause, 0 not started or 1 stopped on the way, place of an obstacle."""
 LEGS = ("LLeg", "RLeg")
 CHAINS = (
     "Body",

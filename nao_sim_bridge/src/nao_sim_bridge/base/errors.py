@@ -6,7 +6,7 @@ SimulationError (RuntimeError)
 ├── BadValue           an argument outside what is allowed
 ├── NotAllowed         something that a switch forbids
 ├── MoveRefused        a walk that cannot begin
-│   └── LegsTooSoft    because of its stiffness
+│   └── MovePrevented  by soft legs or an obstacle, of which robots answer nothing
 ├── TaskKilled         a task ended before its time
 ├── NotFinite          numbers for the physics engine, or of it, that are not finite
 └── SimulationStopped  the simulation thread ended while somebody waited for it
@@ -115,8 +115,8 @@ class MoveRefused(SimulationError):
     """A walk that cannot begin; the text says why."""
 
 
-class LegsTooSoft(MoveRefused):
-    """A walk that cannot begin because legs have too little stiffness."""
+class MovePrevented(MoveRefused):
+    """A walk that cannot begin because of soft legs or an obstacle; a call of a robot answers nothing of it."""
 
 
 class TaskKilled(SimulationError):

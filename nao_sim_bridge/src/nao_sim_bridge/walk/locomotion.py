@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 from typing import Callable, Sequence, Tuple
 
-from nao_sim_bridge.base.errors import LegsTooSoft, MoveRefused
+from nao_sim_bridge.base.errors import MovePrevented, MoveRefused
 from nao_sim_bridge.base.rotations import Vector3
 from nao_sim_bridge.base.settings import Settings
 from nao_sim_bridge.base.tasks import Task, TaskIds
@@ -279,10 +279,19 @@ class Locomotion:
         return now
 
     def _go(self, name: str, rate: Rate, gait: FeetGait) -> None:
-        if any(rate):
-            self._start(name, VelocityCourse(self._settings, gait, rate, self._rate()))
-        else:
+        if not any(rate):
             self._stop_course()
+            return
+        if self.ending:
+            self._require_way(rate[0])
+        self._start(name, VelocityCourse(self._settings, gait, rate, self._rate()))
+
+    def _require_way(self, ahead: float) -> None:
+        """Begin no walk into an obstacle: one that begins is slow, and would come near before it ends, each time."""
+        seen = self._guard.obstacle(self._now(), ahead)
+        if seen is not None:
+            self._fail(seen.cause, started=False, obstacle=seen.place)
+            raise MovePrevented(seen.cause)
 
     def _set_goal(self, name: str, course: Course) -> Task:
         goal = self._waits.make_goal(name)
@@ -329,7 +338,7 @@ class Locomotion:
         cause = self._guard.hindrance(self._now())
         if cause:
             self._fail(cause, started=False)
-            raise (LegsTooSoft if self._guard.too_soft else MoveRefused)(cause)
+            raise (MovePrevented if self._guard.too_soft else MoveRefused)(cause)
         self._course = course
         self._to_begin, self._hindered = course is not None, False
         self._obstructed = False
@@ -381,7 +390,7 @@ class Locomotion:
         """End a walk that leads into an obstacle which the sonars see."""
         if self._obstructed or self._course is None:
             return
-        seen = self._guard.obstacle(now, self._course.rate[0])
+        seen = self._guard.new_obstacle(now, self._course.rate[0])
         if seen is not None:
             self._fail(seen.cause, started=True, obstacle=seen.place)
             self._stop_course()

@@ -79,11 +79,15 @@ class WalkGuard:
         soft = self._soft_joints()
         return f"stiffness of {soft} is {LEAST_STIFFNESS} or less" if soft else ""
 
-    def obstacle(self, now: Snapshot, ahead: float) -> Obstacle | None:
-        """What the sonars see in the way of a robot that goes `ahead` m in a step; each echo is looked at once."""
+    def new_obstacle(self, now: Snapshot, ahead: float) -> Obstacle | None:
+        """As `obstacle`; each echo is looked at once."""
         if now.sonars is self._echoes:
             return None
         self._echoes = now.sonars
+        return self.obstacle(now, ahead)
+
+    def obstacle(self, now: Snapshot, ahead: float) -> Obstacle | None:
+        """What the sonars see in the way of a robot that goes `ahead` m in a step."""
         guard = self._reflexes.external_collision
         if not guard.blocks(ahead / parameters()["MaxStepX"].default, now.sonars):
             return None

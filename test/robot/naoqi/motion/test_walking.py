@@ -1,5 +1,7 @@
 """Walking: to places and at velocities, its end in all ways, footsteps, and what keeps a walk from beginning."""
 
+import re
+
 import pytest
 
 from nao_sim_bridge.naoqi.motion.move_config import gait_list
@@ -146,6 +148,19 @@ def test_an_obstacle_ends_a_walk_before_it_unless_the_protection_is_off(walker, 
     motion.setExternalCollisionProtectionEnabled("Move", False)
     there = walker.truth[0] + 0.1
     assert walker.walk("moveTo", 0.1, 0.0, 0.0) is True and walker.truth[0] == pytest.approx(there, abs=0.05)
+
+
+def test_a_walk_at_a_velocity_begins_only_where_the_sonars_see_a_way(walker, motion, caplog):
+    walker.NaoSimulation.placeObject(WALL)
+    for _ in range(5):  # as a program that goes on commanding does
+        walker.walk("moveToward", 1.0, 0.0, 0.0)
+    gap = 0.95 - walker.truth[0]
+    assert 0.3 < gap <= motion.getOrthogonalSecurityDistance() + 0.1
+    assert [status for _, status, _ in walker.failures] == [1, 0, 0, 0, 0]
+    (warning,) = [record.getMessage() for record in caplog.records if record.name == "nao_sim.walk"]
+    assert re.search(r"moveToward does not move the robot: an obstacle 0\.\d+ m ahead", warning)
+    walker.answer(walker.begin("moveToward", -1.0, 0.0, 0.0))
+    assert 0.95 - walker.truth[0] > gap, "away from it"
 
 
 def test_what_cannot_be_walked_is_refused_and_nothing_moves(walker, motion, refuses):

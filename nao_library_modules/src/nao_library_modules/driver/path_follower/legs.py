@@ -14,7 +14,7 @@ from naoqi.limits import ANSWER_LIMIT, STOP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.places import Place
-from ...nao.joint_names import MOTION
+from ...nao.joint_names import MOTION, MOVE_FAILED
 from ...nao.stiff_legs import ask_for_stiff_legs
 from ...owners.line import SERVICE
 from ...robot.robot_task import run_task
@@ -24,7 +24,6 @@ from ..joints.joint_sensors import MEMORY
 
 LISTENER_LIMIT = 5.0
 """s to wait for somebody who listens to the commands."""
-FAILED = "ALMotion/MoveFailed"
 STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
 
 
@@ -111,7 +110,7 @@ class WalkTopics:
     def _last_failure(self) -> list:
         """Value of the event: cause, whether the walk had begun, place of an obstacle. Empty before the first one."""
         try:
-            value = self._robot.proxy(MEMORY).call_async("getData", FAILED).result(timeout=ANSWER_LIMIT)
+            value = self._robot.proxy(MEMORY).call_async("getData", MOVE_FAILED).result(timeout=ANSWER_LIMIT)
         except RobotError:
             return []  # nothing has failed yet, or the robot has no such event
         return list(value) if isinstance(value, (list, tuple)) else []

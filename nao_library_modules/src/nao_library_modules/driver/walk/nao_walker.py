@@ -17,19 +17,21 @@ from nao_library_msgs.srv import CmdPoseService, CmdVelService, SetArmsEnabled, 
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT
 
-from ...nao.joint_names import MOTION
+from ...nao.joint_names import MOTION, MOVE_FAILED
+from ...robot.event_relay import EventRelay
 from ...ros.health import Report
 from ...ros.node_interface import AlreadyOffered, NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
 from ..base.node import number, whenever
 from ..joints.joint_controller import InitialStiffness, JointController
+from ..joints.joint_sensors import MEMORY
 from .head_scan import HeadScan
 from .walk_commands import Velocity, read_gait_config, read_step, read_target, read_velocity
 from .walk_inhibition import WalkInhibition
 from .walk_orders import Command, Order, Stop, Superseded
 from .walk_report import IS_ACTIVE, WalkJournal
-from .walker import Walker
+from .walker import STANDS, Walker
 
 STEPS_IN_LINE = 50
 CLOSE_LIMIT = 5.0
@@ -86,6 +88,7 @@ class NaoWalker:
         self._speech = self._node.publisher("speech", String, queue_size=10, latch=True)
         self._online = False
         self._offer_services()
+        self._events = EventRelay(lambda: robot.proxy(MEMORY), self._on_failure)
         # After the services: a part that cannot offer them sets nothing on the robot.
         self._stop_setting_up = whenever(robot, node, "connected", self._set_up)
         self._listen("cmd_vel", Twist, partial(self._velocity, "cmd_vel"), watched=True, queue_size=1, tcp_nodelay=True)
@@ -100,6 +103,7 @@ class NaoWalker:
         """Stop the walk and wait until the robot stands; holds on walking end with the node."""
         self._kept.forget()
         self._stop_setting_up()
+        self._events.close()
         self._scan.close()
         self._walker.close(CLOSE_LIMIT)
 
@@ -226,12 +230,19 @@ class NaoWalker:
                 config = [[CONTACT_PROTECTION, bool(protect)]]
                 self._robot.proxy(MOTION).call_async("setMotionConfig", config).result(timeout=ANSWER_LIMIT)
             self._init_stiffness.apply()
+            self._events.renew()
+            self._events.subscribe(MOVE_FAILED)
         except NaoError as error:
             rospy.logerr("the robot does not take the parameters of the walk: %s", error)
         if not self._online:
             self._online = True
             rospy.loginfo("Walker online")
             self._speech.publish("Walker online")
+
+    def _on_failure(self, _: str, value: Any) -> None:
+        """Say why the robot does not walk: no call to walk at a velocity answers it. In a thread of libqi."""
+        if value and self._walker.doing != STANDS:
+            self._journal.warn(MOVE_FAILED, f"the robot does not walk on: {value[0]}")
 
     def _report(self) -> Report:
         active = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from typing import Any, Callable, Iterable, Sequence
 
-from nao_sim_bridge.base.errors import BadValue, LegsTooSoft
+from nao_sim_bridge.base.errors import BadValue, MovePrevented
 from nao_sim_bridge.base.sizes import require_few
 from nao_sim_bridge.base.tasks import Task
 from nao_sim_bridge.core.robot_runner import RobotRunner
@@ -35,25 +35,26 @@ class Moves:
     """Begins moves of a robot, one object for all modules that do. Simulation thread only.
 
     Those that fail raise `ALMotion/MoveFailed`: [cause, 0 not started or 1 stopped on the way, place of an obstacle or
-    None]. As on a robot, legs that are too soft prevent a move without an error: the log warns, once until one begins.
+    None]. As on a robot, legs that are too soft and obstacles prevent a move without an error: the log warns, once
+    until one begins.
     """
 
     def __init__(self, memory: MemoryStore) -> None:
         self._memory = memory
-        self._told_soft = False
+        self._told = False
         memory.declare_event(FAILED, "ALMotion")
 
     def begin(self, locomotion: Locomotion, call: str, command: Callable[[Locomotion], Any], prevented: Any) -> Any:
-        """What a command of the robot's locomotion answers, or `prevented` when soft legs have prevented it."""
+        """What a command of the robot's locomotion answers, or `prevented` when it was prevented."""
         self.watch(locomotion)
         try:
             answer = command(locomotion)
-        except LegsTooSoft as error:
-            if not self._told_soft:  # somebody may ask again and again
-                self._told_soft = True
+        except MovePrevented as error:
+            if not self._told:  # somebody may ask again and again
+                self._told = True
                 log.warning("%s does not move the robot: %s", call, error)
             return prevented
-        self._told_soft = self._told_soft and not locomotion.active
+        self._told = self._told and not locomotion.active
         return answer
 
     def watch(self, locomotion: Locomotion) -> None:
@@ -69,7 +70,7 @@ class Moves:
 class Walking(MotionPart):
     """Moves. Those at a velocity return at once; those to a place return when the robot stands there, or elsewhere.
 
-    When soft legs prevent one, moveTo answers False.
+    When one is prevented, moveTo answers False.
     """
 
     def __init__(self, runner: RobotRunner, moves: Moves) -> None:

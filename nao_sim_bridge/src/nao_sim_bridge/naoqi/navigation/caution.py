@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from typing import Any, Sequence, Tuple
+from typing import Any, Callable, Sequence, Tuple
 
 from nao_sim_bridge.base.rotations import Vector3, plus, rotate
 from nao_sim_bridge.body.sensors.snapshot import Snapshot
@@ -11,6 +11,7 @@ from nao_sim_bridge.core.simulation import Simulation
 from nao_sim_bridge.naoqi.memory.store import MemoryStore
 from nao_sim_bridge.walk.courses import Course
 from nao_sim_bridge.walk.footsteps import FootPose
+from nao_sim_bridge.walk.locomotion import Locomotion
 
 log = logging.getLogger("nao_sim.navigation")
 
@@ -24,7 +25,7 @@ Place = Tuple[float, float]
 
 
 class Caution:
-    """Looks ahead while a move lasts, from `begin` until it ends or makes room for another one.
+    """Looks ahead while a move lasts, from its `begin` until it ends or makes room for another one.
 
     It ends the move, and raises `Navigation/AvoidanceNavigator/ObstacleDetected` with [x, y] in FRAME_ROBOT, when
     something ahead is nearer than ALMotion's orthogonal security distance, however slow the robot is.
@@ -39,6 +40,7 @@ class Caution:
         self.free_side = 0
         self._simulation = simulation
         self._memory = memory
+        self._begins = False
         self._course: Course | None = None  # of the move
         self._echoes: Sequence[float] = ()
         memory.declare_event(OBSTACLE, NAME)
@@ -53,14 +55,20 @@ class Caution:
     def distance(self, distance: float) -> None:
         self._simulation.robot.reflexes.external_collision.orthogonal = distance
 
-    def begin(self) -> None:
-        """A move has just begun."""
+    def begin(self, command: Callable[[Locomotion], Any]) -> Any:
+        """Begin a move; what its command answers. One that an obstacle prevents raises MovePrevented."""
         locomotion = self._simulation.robot.locomotion
         if self._failed not in locomotion.failures:
             locomotion.failures.append(self._failed)
-        self.obstacle = None
+        self.obstacle = self._course = None
+        self._begins = True
+        try:
+            answer = command(locomotion)
+        finally:
+            self._begins = False
         self._course = locomotion.course
         self._echoes = ()
+        return answer
 
     def _tick(self, now: Snapshot) -> None:
         if self._course is None:
@@ -78,7 +86,7 @@ class Caution:
     def _failed(self, _: str, started: bool, obstacle: Vector3 | None) -> None:
         """ALMotion's own protection was quicker."""
         mine = self._course is not None and self._simulation.robot.locomotion.course is self._course
-        if mine and started and obstacle is not None:
+        if obstacle is not None and (self._begins or (mine and started)):
             self._stop_at(obstacle)
 
     def _stop_at(self, place: Any) -> None:

@@ -108,9 +108,7 @@ class ALNavigation:
     def _cautiously(self, call: str, command: Callable[[Locomotion], Any]) -> Task:
         def run() -> Any:
             self._navigator.stop()
-            answer = command(self._locomotion)
-            self._caution.begin()
-            return answer
+            return self._caution.begin(command)
 
         return self._go(call, run, None)
 

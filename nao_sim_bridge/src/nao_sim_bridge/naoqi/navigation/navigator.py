@@ -145,9 +145,7 @@ class Navigator:
 
     def _walk(self, poses: Sequence[FootPose], gait: FeetGait, time: float | None = None) -> Legs:
         """Whether the robot got there."""
-        move = self._simulation.robot.locomotion.move_to(poses, gait, time)
-        self._caution.begin()
-        return (yield move)
+        return (yield self._caution.begin(lambda locomotion: locomotion.move_to(poses, gait, time)))
 
     # --- inside ---------------------------------------------------------------------------------------------------
 
