@@ -45,6 +45,11 @@ def run(monkeypatch, clock):
     return run
 
 
+def test_without_ray_workers_are_refused_with_how_to_get_it(run):
+    with pytest.raises(ImportError, match=r"workers need Ray: pip install .*workers=0"):
+        run(None, workers=2)
+
+
 def test_the_run_of_a_lost_computer_goes_to_another_worker_and_is_reported_in_one_line(run, capsys):
     ray = FakeRay(first=1, second=1)
 

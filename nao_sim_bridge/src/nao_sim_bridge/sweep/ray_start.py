@@ -27,6 +27,7 @@ program that asks for them."""
 RAYS_REPORTER = "ray_listen_error_messages"
 """Ray's thread that prints errors of its processes on stdout, dozens of lines each."""
 REASON_LENGTH = 300
+NO_RAY = "workers need Ray: pip install 'ray>=2.10' tqdm matplotlib 'numpy<2'; workers=0 runs all in this process"
 
 
 class NoWorkers(SimulationError):
@@ -47,8 +48,7 @@ def ray_running(workers: int | None = None, address: str | None = None) -> Itera
         ImportError: There is no Ray.
         NoWorkers: Ray does not start on this computer.
     """
-    import ray  # only who sweeps in parallel needs it
-
+    ray = import_ray()
     if ray.is_initialized():
         yield
         return
@@ -63,6 +63,15 @@ def ray_running(workers: int | None = None, address: str | None = None) -> Itera
         finally:
             with redirect_stdout(io.StringIO()):  # what Ray has not printed yet
                 ray.shutdown()
+
+
+def import_ray() -> Any:
+    """The module `ray`, which only sweeps on workers need. Raises ImportError with how to get it."""
+    try:
+        import ray
+    except ModuleNotFoundError as error:
+        raise ImportError(NO_RAY) from error
+    return ray
 
 
 def reason_of(error: Exception) -> str:

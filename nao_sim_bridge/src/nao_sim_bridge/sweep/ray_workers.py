@@ -10,7 +10,7 @@ from typing import Any, Iterable, Iterator, Mapping, Sequence
 
 from nao_sim_bridge.sweep.job import Job
 from nao_sim_bridge.sweep.progress import Progress, counted
-from nao_sim_bridge.sweep.ray_start import NoWorkers, ray_running, reason_of
+from nao_sim_bridge.sweep.ray_start import NoWorkers, import_ray, ray_running, reason_of
 from nao_sim_bridge.sweep.table import ERROR, SECONDS
 
 RETRIES = 3
@@ -53,8 +53,7 @@ def run_on_ray(
     """The rows of runs as they end, in any order. Arguments as of `sweep`."""
     if not runs:
         return
-    import ray  # only who sweeps in parallel needs it
-
+    ray = import_ray()
     with ray_running(workers, address):
         crew = _Crew(ray, job, workers or len(runs), 0.0 if workers else memory, progress)
         try:
