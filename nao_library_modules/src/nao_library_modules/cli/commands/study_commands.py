@@ -363,7 +363,7 @@ def _play(
 
     `troubles`: what was wrong with its log is added.
     """
-    from ...console.study.protocol import ChoiceStep
+    from ...console.study.protocol import ChoiceStep, SenseStep
     from ...console.study.state import FINISHED, HELD
 
     changes: queue.SimpleQueue[Any] = queue.SimpleQueue()
@@ -392,6 +392,9 @@ def _play(
             if runner.state.status == HELD:
                 asked = place
                 _decide(runner, outcome.error)
+            elif isinstance(step, SenseStep) and outcome.ended is None:  # somebody may have to do something now
+                asked = place
+                click.echo(f"  {outcome.path} {outcome.text}: waiting", err=settings.json)
             elif isinstance(step, ChoiceStep):
                 asked = place
                 runner.choose(_chosen(step, outcome.text, choices), "nao")
