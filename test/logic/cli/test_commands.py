@@ -35,6 +35,7 @@ from nao_library_msgs.msg import (
     RecordedVideo,
 )
 from nao_library_msgs.srv import CheckGoalsResponse, ListBehaviorsResponse, StartFilmResponse, StopFilmResponse
+from nao_sim_bridge.world.render_state import PRESETS
 
 ABORTED = GoalStatus.ABORTED
 
@@ -616,3 +617,7 @@ def test_commands_are_offered_without_a_stack_and_names_from_the_servers(offered
         assert among in offered(line), line
     fields = offered("nao call NaoLights setIntensity lights:=Brain0 ")
     assert "lights:=" not in fields and "i_values:=" in fields
+
+
+def test_pictures_are_offered_from_every_view_of_the_simulator():
+    assert set(simulator_commands.VIEWS) == set(PRESETS)

@@ -286,7 +286,7 @@ class NaoSim(Nao):
         """A picture from outside, (height, width, 3) uint8 RGB.
 
         Args:
-            view: "front", "three_quarter", "side", "back", "far", "face", "room", "robots".
+            view: "front", "three_quarter", "side", "back", "far", "face", "room", "robots", "stage".
             width: Pixels.
             height: Pixels.
 

@@ -17,7 +17,7 @@ from ..output import say_json
 from ..settings import CliSettings, NaoGroup, OneOf, SignedCommand, settings_of
 from ..stack import SIMULATOR
 
-VIEWS = ("front", "three_quarter", "side", "back", "stage", "far", "room", "face")
+VIEWS = ("front", "three_quarter", "side", "back", "stage", "far", "room", "robots", "face")
 LONGEST_FILM = limit("recording").highest
 """s of a film that ends with Ctrl-C."""
 view_option = click.option("--view", type=OneOf(VIEWS), default="three_quarter", show_default=True, help="From where.")

@@ -56,6 +56,7 @@ class Vision(RobotModule):
         Args:
             name: Only that one: a face's name, a landmark's number, a code's text.
             search: Whether the head turns to find them.
+            camera: top or bottom; empty: the active one, top at first.
             size: Of the real thing, m; 0 for what is usual.
         """
         if type not in DETECTORS:
@@ -70,7 +71,10 @@ class Vision(RobotModule):
             raise PerceptionLowLevelFailure(f"{function.function}: {end}")
         if not end.result.objects:
             what = f"{type} {name}".strip()
-            raise PerceptionObjectNotFound(f"no {what} was seen in {timeout:g} s", type=type, name=name)
+            by = f"the {camera} camera" if camera else "the active camera"
+            hint = "" if search else "; `search` turns the head, camera `bottom` sees what is near and low"
+            text = f"no {what} was seen by {by} in {timeout:g} s{hint}"
+            raise PerceptionObjectNotFound(text, type=type, name=name)
         return [self._seen(each) for each in end.result.objects]
 
     def _seen(self, found: Any) -> SeenThing:

@@ -114,7 +114,7 @@ class NaoSimulation:
 
     @typed(NAME, "r", [qi.String, qi.Int32, qi.Int32])
     def picture(self, view: str, width: int, height: int) -> Any:
-        """A PNG picture of the robot from a view: front, three_quarter, side, back, stage, far, room, or face."""
+        """A PNG picture from a view: front, three_quarter, side, back, stage, far, room, robots, or face."""
         return self._host.picture(view, width, height)
 
     @typed(NAME, qi.String, [qi.String, qi.String, qi.Int32, qi.Int32, qi.Float])
