@@ -135,11 +135,16 @@ def test_a_gait_is_for_both_feet_or_for_each():
         gait_of_feet([["LeftMaxStepX", 0.06]], [], 1.0)
 
 
+@pytest.mark.parametrize("name, value, limit", [("MaxStepX", 0.081, 0.08), ("RightTorsoWx", -0.2, -0.122),
+                                               ("StepHeight", 0.04, 0.035)])  # fmt: skip
+def test_a_parameter_beyond_its_limits_is_taken_for_the_limit_and_the_log_says_so(name, value, limit, caplog):
+    assert gait_of([[name, value]]) == gait_of([[name, limit]])
+    assert f"{name} is {value}, and taken for {limit}" in caplog.text
+
+
 @pytest.mark.parametrize("config, message", [
     *((config, r"moveConfig is .*, allowed is pairs such as \[\[\"MaxStepX\", 0.03\]")
       for config in (None, "MaxStepX", ["MaxStepX", 0.04], [["MaxStepX"]], [[0.04, "MaxStepX"]], 0.5)),
-    ([["MaxStepX", 0.081]], "MaxStepX is 0.081, allowed is 0.001 to 0.08"),
-    ([["TorsoWx", -0.2]], "TorsoWx is -0.2, allowed is -0.122 to 0.122"),
     ([["MaxStepY", "wide"]], "MaxStepY is 'wide', allowed is 0.101 to 0.16"),
     ([["FootSeparation", 0.1]], "FootSeparation is 0.1, allowed is nothing: it is fixed at 0.1"),
     ([["StepHigh", 0.02]], "unknown gait parameter 'StepHigh': did you mean 'StepHeight'"),

@@ -13,7 +13,7 @@ from typing import Any
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.naoqi.binding.arguments import known, limited
 from nao_sim_bridge.naoqi.motion.arguments import pairs
-from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, FeetGait, feet_gait, parameters
+from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, SIDES, FeetGait, feet_gait, parameters
 
 FIELD = "moveConfig"
 # Clients in C++ send numbers of single precision: 0.035 comes as 0.035000001. No parameter means anything by less.
@@ -24,8 +24,8 @@ LISTS = {"Default": attrgetter("default"), "Min": attrgetter("minimum"), "Max": 
 def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:
     """The gait of a move; `frequency` is a share 0..1 of the top one, when it is an argument of its own.
 
-    An UnknownName when there is no such parameter; a BadValue when the list has another shape, or a value is out of its
-    range.
+    A number out of its range is brought to the nearer limit. An UnknownName when there is no such parameter; a BadValue
+    when the list has another shape, or a value is no number.
     """
     values = _pairs(config, FIELD)
     if frequency is not None:
@@ -36,8 +36,8 @@ def gait_of(config: Any = (), frequency: float | None = None) -> FeetGait:
 def gait_of_feet(left: Any, right: Any, frequency: float) -> FeetGait:
     """The gait of a move whose feet have a configuration each, with names that say no foot.
 
-    An UnknownName when there is no such parameter of a foot; a BadValue when a list has another shape, or a value is
-    out of its range.
+    A number out of its range is brought to the nearer limit. An UnknownName when there is no such parameter of a foot;
+    a BadValue when a list has another shape, or a value is no number.
     """
     values: dict[str, float] = {FREQUENCY: frequency}
     for side, config in (("Left", left), ("Right", right)):
@@ -64,6 +64,15 @@ def gait_list(which: str) -> list[list[Any]]:
 def _pairs(config: Any, field: str) -> dict[str, float]:
     given = pairs(config, field, '[["MaxStepX", 0.03], ["StepHeight", 0.02]]')
     values = {name: round(value, DECIMALS) if isinstance(value, float) else value for name, value in given}
-    if FREQUENCY in values:  # the one parameter that robots bring to its limit
-        values[FREQUENCY] = frequency_share(values[FREQUENCY], FREQUENCY)
-    return values
+    return {name: _limited(name, value) for name, value in values.items()}
+
+
+def _limited(name: str, value: Any) -> Any:
+    """The value of a gait parameter, brought to its limits as on a robot; what is no number stays as it is."""
+    if name == FREQUENCY:
+        return frequency_share(value, FREQUENCY)
+    base = next((name[len(side) :] for side in SIDES if name.startswith(side)), name)
+    if base not in FIELDS or isinstance(value, bool) or not isinstance(value, (int, float)):
+        return value
+    parameter = parameters()[base]
+    return limited(value, name, parameter.minimum, parameter.maximum)
