@@ -12,6 +12,8 @@ from .served import public_methods, served_object
 from .translate import closest_names
 from .worker import Worker
 
+logger = logging.getLogger("naoqi")
+
 _modules: WeakValueDictionary[str, ALModule] = WeakValueDictionary()
 
 
@@ -83,11 +85,13 @@ class ALModule(ALDocable):
     def BIND_PYTHON(self, module_name: str, method: str, _parameters: int = -1) -> None:
         """Serve a method that is not served by default: one with a leading underscore, or one added later.
 
-        Raises UnknownMethod if the module has no such method.
+        A method that the module does not have is no error, as with the SDK, but a warning in the log: programs bind a
+        `callback` that they never define.
         """
         if not callable(getattr(self, method, None)):
             known = [each for each in dir(self) if not each.startswith("__") and callable(getattr(self, each))]
-            raise UnknownMethod(module_name, method, closest_names(method, known), known)
+            logger.warning("BIND_PYTHON: %s", UnknownMethod(module_name, method, closest_names(method, known), known))
+            return
         if method not in self.__methods:
             self.__methods.append(method)
             self.__broker.exchange(self.__name, self.__served())

@@ -206,7 +206,9 @@ class Post:
         if not isinstance(found, RemoteMethod):
             raise BadArguments(remote.name, name, (), reason="it is no method, so it cannot be posted")
 
-        def post(*arguments: Any) -> int:
+        def post(*arguments: Any, **options: Any) -> int:
+            if options:
+                found.leave_out(options)
             return remote.connection.tasks.add(found.start(*arguments))
 
         if remote.connection.live is not None:

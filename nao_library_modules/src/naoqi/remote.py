@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import functools
+import logging
 from threading import get_ident
-from typing import TYPE_CHECKING, Any, Dict, List, Optional
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional
 
 from . import wire
 from .calls import Call
@@ -15,6 +16,8 @@ from .translate import NOT_SENT, CallSite, call_error, unknown_method
 
 if TYPE_CHECKING:
     from .robot_connection import Connection
+
+logger = logging.getLogger("naoqi")
 
 FIRST_OWN_UID = 100
 """libqi numbers the methods of the module itself from here; those below it adds to every object."""
@@ -114,13 +117,15 @@ class RemoteMethod:
     def __repr__(self) -> str:
         return f"{self.module.name}.{self.name}"
 
-    def __call__(self, *arguments: Any) -> Any:
-        """Call it and wait for what it returns.
+    def __call__(self, *arguments: Any, **options: Any) -> Any:
+        """Call it and wait for what it returns. Keyword arguments are left out, as by the SDK: the log says which.
 
         Raises:
             NaoError: If anything goes wrong, see `naoqi.errors`. A call that runs into the time limit, or
                 that is interrupted from the keyboard, is cancelled on the robot too.
         """
+        if options:
+            self.leave_out(options)
         try:
             return self._wait_for(RemoteMethod.start(self, *arguments))
         except RobotUnreachable as error:
@@ -128,6 +133,11 @@ class RemoteMethod:
                 raise
         # The module had left and perhaps come back. Nothing had been sent, so that sending it again is safe.
         return self._wait_for(RemoteMethod.start(self, *arguments))
+
+    def leave_out(self, options: Mapping[str, Any]) -> None:
+        """Warn of keyword arguments, which only the package `qi` knows."""
+        text = "%r: %s is left out; `post` of a proxy, or the package `qi`, calls without waiting"
+        logger.warning(text, self, ", ".join(options))
 
     def start(self, *arguments: Any) -> Call:
         """Call it without waiting.
@@ -207,9 +217,9 @@ class SubscribingMethod(RemoteMethod):
 
     __slots__ = ()
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *arguments: Any, **options: Any) -> Any:
         """Call it and wait; it is taken down before anybody can go on to the next."""
-        value = super().__call__(*arguments)
+        value = super().__call__(*arguments, **options)
         self.module.connection.subscriptions.note(self.name, arguments)
         return value
 

@@ -29,6 +29,12 @@ def test_stop_cancels_on_the_robot(proxy, begun):
     assert proxy.cancellations() == before + 1
 
 
+def test_keyword_arguments_are_left_out_as_by_the_sdk_and_the_log_says_so(proxy, caplog):
+    assert proxy.add(1, 2, _async=True) == 3
+    assert proxy.wait(proxy.post.add(1, 2, _async=True), 0) is False
+    assert caplog.text.count("ALTest.add: _async is left out") == 2
+
+
 def test_errors_of_posted_calls_are_logged_and_raised_by_wait(proxy, begun, caplog, eventually):
     task = proxy.pCall("begin")
     begun()
