@@ -59,6 +59,15 @@ def test_bumpers_are_told_as_one_and_changes_by_part_and_by_sensor(robot, press,
     assert values(heard) == [[[name, True] for name in parts], [[name, False] for name in parts]]
 
 
+def test_the_status_tells_name_touch_and_a_list_of_each_part_and_sensor(robot):
+    robot.NaoSimulation.press([HEAD[0]])
+    robot.advance(0.1)
+    status = robot.ALTouch.getStatus()
+    robot.NaoSimulation.press([])
+    touched = [entry for entry in status if entry != [entry[0], False, []]]
+    assert touched == [["Head", True, [1]], [HEAD[0], True, [1]]]
+
+
 @pytest.fixture
 def gestures(robot):
     """ALTactileGesture, and what each of its signals says: libqi brings them in threads of their own."""

@@ -47,8 +47,9 @@ class ALTouch:
         return list(SENSORS)
 
     def getStatus(self) -> list[list[Any]]:
+        """Name, whether it is touched, and a list that is empty when it is not, of each: robots answer three items."""
         touched = self._touched
-        return [[name, name in touched] for name in (*PARTS, *SENSORS)]
+        return [[name, name in touched, [1] if name in touched else []] for name in (*PARTS, *SENSORS)]
 
     def forget(self) -> None:
         """The robot is another one: what its button was pressed by counts for nothing."""
