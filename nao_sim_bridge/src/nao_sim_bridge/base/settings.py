@@ -18,6 +18,7 @@ class MotorSettings:
     velocity_gain: float
     feed_forward: float
     limp_friction: float
+    limp_hip_pitch_friction: float
     coupling_force_n: float
     gear_efficiency: float
     ambient_c: float

@@ -85,7 +85,10 @@ class Physics:
         self._travel = model.simulated_hand.travel
         self._hands = [i for i, j in enumerate(model.joints) if j.is_hand]
         self.torque_limits = [float(j.max_torque) for j in model.joints]
-        gains = {"positionGains": settings.motor.position_gain, "velocityGains": settings.motor.velocity_gain}
+        motor = settings.motor
+        hips, rest = motor.limp_hip_pitch_friction, motor.limp_friction
+        self._friction = [hips if j.name.endswith("HipPitch") else rest for j in model.joints]
+        gains = {"positionGains": motor.position_gain, "velocityGains": motor.velocity_gain}
         self._gains = {name: [gain] * len(self._indices) for name, gain in gains.items()}
         self._forget_efforts()
         keep_apart(self.engine, self.robot, model, self.links)
@@ -242,8 +245,8 @@ class Physics:
         """Work out from efforts (26, 0..1) what stays the same until they change."""
         self._efforts = efforts
         self._limp = [index for index, effort in enumerate(efforts) if effort <= 0.0]
-        least = self._settings.motor.limp_friction
-        self._forces = [torque * max(effort, least) for torque, effort in zip(self.torque_limits, efforts)]
+        shares = map(max, efforts, self._friction)
+        self._forces = [torque * share for torque, share in zip(self.torque_limits, shares)]
 
     def step(self, pushes: Mapping[str, Vector3] = NO_PUSHES) -> None:
         """Advance the world by one tick while `pushes` act on links of this robot; see `pushing`."""

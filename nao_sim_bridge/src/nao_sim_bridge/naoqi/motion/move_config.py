@@ -6,12 +6,11 @@ move takes them.
 
 from __future__ import annotations
 
-import math
 from operator import attrgetter
 from typing import Any
 
 from nao_sim_bridge.base.errors import BadValue
-from nao_sim_bridge.naoqi.binding.arguments import known, limited
+from nao_sim_bridge.naoqi.binding.arguments import known, limited, number
 from nao_sim_bridge.naoqi.motion.arguments import pairs
 from nao_sim_bridge.walk.gait import FIELDS, FREQUENCY, SIDES, FeetGait, feet_gait, parameters
 
@@ -48,10 +47,9 @@ def gait_of_feet(left: Any, right: Any, frequency: float) -> FeetGait:
 
 def frequency_share(value: Any, field: str) -> float:
     """A share 0..1 of the top frequency; one above 1 is taken for 1, with a line in the log, as on a robot."""
-    share = limited(value, field, -math.inf, 1.0)
-    if share < 0.0:
+    if number(value, field) < 0.0:
         raise BadValue(field, value, "0 to 1")
-    return share
+    return limited(value, field, 0.0, 1.0)
 
 
 def gait_list(which: str) -> list[list[Any]]:
