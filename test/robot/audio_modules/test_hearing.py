@@ -206,6 +206,17 @@ def test_what_cannot_be_listened_for_is_refused_with_its_reason(asr, refused):
         asr.setVocabulary(["no"], False)
 
 
+def test_who_subscribes_to_its_event_has_it_listen(robot, asr):
+    asr.setVocabulary(["yes", "no"], False)
+    for event in ("WordRecognized", "SpeechDetected"):
+        robot.ALMemory.subscribeToEvent(event, "Listener", "onEvent")
+        assert [name for name, *_ in asr.getSubscribersInfo()] == ["Listener"]
+    robot.ALMemory.unsubscribeToEvent("WordRecognized", "Listener")
+    assert [name for name, *_ in asr.getSubscribersInfo()] == ["Listener"]
+    robot.ALMemory.unsubscribeToEvent("SpeechDetected", "Listener")
+    assert asr.getSubscribersInfo() == []
+
+
 def test_a_grammar_file_is_compiled_and_recognised(robot, asr):
     folder = robot.server.files.folder
     folder.mkdir(parents=True, exist_ok=True)

@@ -37,7 +37,7 @@ class ALSpeechRecognition:
         self._contexts = Contexts()
         self._expression = ListeningExpression(runner)
         self._engine = engine = RecognitionEngine(runner, memory, self._expression.show, self._accepts, spare)
-        self._extractor = Extractor(NAME, memory, engine.start, engine.stop, EVENTS, KEYS)
+        self._extractor = Extractor(NAME, memory, engine.start, engine.stop, EVENTS, KEYS, by_events=True)
         self._files = files
         self._languages = load_recognition().languages
         self._language = self._languages[0]
