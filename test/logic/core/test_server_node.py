@@ -12,6 +12,7 @@ import actionlib.msg
 import pytest
 import rospy
 import tf2_ros
+from actionlib_msgs.msg import GoalStatus
 from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import TransformStamped
 
@@ -89,6 +90,18 @@ def test_the_status_waits_until_the_client_of_the_newest_goal_can_have_noted_it(
         server.publish_status()
     assert published.get(timeout=60.0) >= came + 0.04
     assert published.empty(), "three that came in the meantime are one"
+
+
+def test_the_result_of_a_goal_is_published_before_the_status_with_its_end(monkeypatch):
+    told = queue.Queue()
+    for name in ("publish_result", "publish_status"):
+        monkeypatch.setattr(actionlib.ActionServer, name, lambda *_, name=name: told.put((name, time.monotonic())))
+    server = ActionServer("test", actionlib.msg.TestAction, lambda goal: None, auto_start=False)
+    server.publish_result(GoalStatus(), None)
+    server.publish_status()  # as actionlib's timer does
+    (first, result), (second, status) = told.get(timeout=60.0), told.get(timeout=60.0)
+    assert (first, second) == ("publish_result", "publish_status")
+    assert status - result >= 0.01
 
 
 # Frames

@@ -32,6 +32,8 @@ LATEST_END = 0.1
 """s after which it is told of a goal, however busy the computer is."""
 LOOK_AGAIN = 0.002
 """s between two looks whether a busy computer has a processor for the client."""
+RESULT_FIRST = 0.02
+"""s from a result to the first status with the end: who sees the end in the state of a goal finds its result."""
 SHUTDOWN_POLL = 0.1
 """s between two looks whether the node has ended, for nothing wakes the waiting thread then."""
 REMEMBERED = 10
@@ -142,7 +144,7 @@ class ActionServer(actionlib.ActionServer):
         """As actionlib's. `soonest_status`: s of wall time from when a goal comes to what is first told of it."""
         self._soonest_status = soonest_status
         self._came: dict[str, float] = {}  # id of a goal that is not over -> when it came, by time.monotonic
-        self._newest = -math.inf  # when the last goal came
+        self._newest = self._last_end = -math.inf  # when the last goal came, and when a result was published last
         self._status_waits_since = math.inf  # when there was a first status that waits
         self._feedback: deque[tuple[float, Any, Any]] = deque()  # what waits: when its goal came, status, feedback
         self._later: threading.Timer | None = None
@@ -183,6 +185,7 @@ class ActionServer(actionlib.ActionServer):
                     super().publish_feedback(before, feedback)
                 else:
                     self._feedback.append((came, before, feedback))
+            self._last_end = time.monotonic()
             super().publish_result(status, result)
 
     def publish_feedback(self, status: Any, feedback: Any) -> None:
@@ -198,26 +201,26 @@ class ActionServer(actionlib.ActionServer):
             now = time.monotonic()
             self._status_waits_since = min(self._status_waits_since, now)
             waited_too_long = now - self._status_waits_since >= LATEST_END  # where one goal follows the other
-            if waited_too_long or can_have_noted(self._newest, self._soonest_status):
+            told = can_have_noted(self._newest, self._soonest_status) and now - self._last_end >= RESULT_FIRST
+            if waited_too_long or told:
                 self._status_waits_since = math.inf
                 unless_closed(super().publish_status)
             else:
-                self._look_again(self._newest)
+                self._look_again(max(self._newest + self._soonest_status, self._last_end + RESULT_FIRST))
 
     def _publish_feedback(self) -> None:
         while self._feedback:
             came, status, feedback = self._feedback[0]
             if not can_have_noted(came, self._soonest_status):
-                self._look_again(came)
+                self._look_again(came + self._soonest_status)
                 return
             self._feedback.popleft()
             unless_closed(super().publish_feedback, status, feedback)
 
-    def _look_again(self, came: float) -> None:
-        """Look at what waits once more, when a goal that came then may have been noted."""
+    def _look_again(self, moment: float) -> None:
+        """Look at what waits once more, at a moment of `time.monotonic`."""
         if self._later is None:
-            wait = max(LOOK_AGAIN, came + self._soonest_status - time.monotonic())
-            self._later = threading.Timer(wait, self._publish_late)
+            self._later = threading.Timer(max(LOOK_AGAIN, moment - time.monotonic()), self._publish_late)
             self._later.daemon = True
             self._later.start()
 
