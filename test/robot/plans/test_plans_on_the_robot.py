@@ -28,6 +28,7 @@ from nao_library_modules.process_modules.language.failures import (
     ManipulationPoseUnreachable,
     NavigationGoalNotReached,
     NavigationPoseUnreachable,
+    PerceptionObjectNotFound,
     PtuGoalNotReached,
     PtuGoalUnreachable,
     SpeechLowLevelFailure,
@@ -413,3 +414,11 @@ def test_what_is_seen_is_perceived_where_it_is(begin, link):
     assert [(f.function, f.str_param, f.camera, f.size) for f in asked] == [
         ("detectBall", "", "bottom", 0.05), ("lookFor", "ball", "", 0.0),
     ]  # fmt: skip
+
+
+def test_what_no_camera_sees_is_not_found_and_both_have_looked(begin, link):
+    link.answers["NaoVision"] = ActionEnd(GoalStatus.SUCCEEDED, "", SimpleNamespace(objects=[]))
+    text = "no ball was seen in 2 s by the active camera, nor in 2 s by the bottom camera; with `search` the head turns"
+    with pytest.raises(PerceptionObjectNotFound, match=text):
+        begin(lambda: p.perceive(p.a(p.object_, type="ball"))).ended()
+    assert [goal.functions[0].camera for goal in link.goals["NaoVision"]] == ["", "bottom"]

@@ -17,6 +17,8 @@ from .robot_module import RobotModule
 ACTION = "NaoVision"
 MARGIN = 10.0
 """s that the server may take beyond what it was given to look."""
+NOT_CHOSEN = ("", "bottom")
+"""Cameras to look with, one after the other, where none is named; empty: the active one."""
 DETECTORS = {
     "ball": "detectBall",
     "face": "detectFaces",
@@ -56,26 +58,26 @@ class Vision(RobotModule):
         Args:
             name: Only that one: a face's name, a landmark's number, a code's text.
             search: Whether the head turns to find them.
-            camera: top or bottom; empty: the active one, top at first.
+            camera: top or bottom; empty: the active one (top at first), and then the bottom one, as long again: a robot
+                that has walked looks straight ahead, and what lies before it is in the picture of that one alone.
             size: Of the real thing, m; 0 for what is usual.
         """
         if type not in DETECTORS:
             raise PerceptionLowLevelFailure(f"there is no detector for {type!r}{of_those(type, DETECTORS)}")
-        function = VisionFunction(function=DETECTORS[type], str_param=name)
-        if search:
-            kind = "face" if type == "person" else type
-            function = VisionFunction(function="lookFor", str_param=f"{kind} {name}".strip())
-        function.timeout, function.camera, function.size = timeout, camera, size
-        end = self.robot.action(ACTION, NaoVisionAction).call(NaoVisionGoal([function]), timeout + MARGIN)
-        if not end.succeeded:
-            raise PerceptionLowLevelFailure(f"{function.function}: {end}")
-        if not end.result.objects:
-            what = f"{type} {name}".strip()
-            by = f"the {camera} camera" if camera else "the active camera"
-            hint = "" if search else "; `search` turns the head, camera `bottom` sees what is near and low"
-            text = f"no {what} was seen by {by} in {timeout:g} s{hint}"
-            raise PerceptionObjectNotFound(text, type=type, name=name)
-        return [self._seen(each) for each in end.result.objects]
+        kind = "face" if type == "person" else type
+        function, wanted = ("lookFor", f"{kind} {name}".strip()) if search else (DETECTORS[type], name)
+        cameras = (camera,) if camera or search else NOT_CHOSEN
+        for each in cameras:
+            look = VisionFunction(function=function, str_param=wanted, camera=each, size=size, timeout=timeout)
+            end = self.robot.action(ACTION, NaoVisionAction).call(NaoVisionGoal([look]), timeout + MARGIN)
+            if not end.succeeded:
+                raise PerceptionLowLevelFailure(f"{function}: {end}")
+            if end.result.objects:
+                return [self._seen(thing) for thing in end.result.objects]
+        looked = ", nor ".join(f"in {timeout:g} s by the {each or 'active'} camera" for each in cameras)
+        hint = "" if search else "; with `search` the head turns"
+        text = f"no {f'{type} {name}'.strip()} was seen {looked}{hint}"
+        raise PerceptionObjectNotFound(text, type=type, name=name)
 
     def _seen(self, found: Any) -> SeenThing:
         """In odom: the robot's own frame moves."""
