@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import itertools
+import os
+from unittest.mock import Mock
 
 import pytest
 
+from nao_library_modules.processes.launch_program import _reporting, _Reports
 from nao_library_modules.processes.launcher import (  # fmt: skip
     BadLaunchPath,
     declared_arguments,
@@ -113,3 +116,15 @@ def test_what_fails_because_the_node_is_ended_while_it_is_made_is_one_line(monke
     with pytest.raises(SystemExit if ended else node.rospy.ROSInitException, match="interrupted"):
         with node.being_made("NaoLights"):
             raise interrupted
+
+
+def test_nodes_are_ended_also_where_the_program_that_started_them_is_gone():
+    read, write = os.pipe()
+    os.close(read)
+    monitor = Mock()
+    end = monitor.shutdown
+    try:
+        _reporting(monitor, _Reports(write)).shutdown()
+    finally:
+        os.close(write)
+    end.assert_called_once_with()

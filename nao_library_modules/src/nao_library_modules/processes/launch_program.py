@@ -15,7 +15,7 @@ import logging
 import os
 import sys
 import threading
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from typing import TYPE_CHECKING, Any, Sequence, TextIO
 
 if TYPE_CHECKING:
@@ -46,14 +46,14 @@ class _Labelled:
 
 
 class _Reports:
-    """Writes reports; roslaunch's listener for processes that end."""
+    """Writes reports, as long as the program lives that reads them; roslaunch's listener for processes that end."""
 
-    def __init__(self, file: TextIO) -> None:
-        self._file = file
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
 
     def write(self, **report: Any) -> None:
-        self._file.write(json.dumps(report) + "\n")
-        self._file.flush()
+        with suppress(BrokenPipeError):
+            os.write(self._descriptor, (json.dumps(report) + "\n").encode())
 
     def process_died(self, name: str, status: int | None) -> None:
         self.write(ended=f"/{name.rpartition('-')[0]}", status=status)
@@ -62,22 +62,21 @@ class _Reports:
 def main(arguments: Sequence[str]) -> int:
     """Launch and wait for the end; the exit status."""
     descriptor, *launch = arguments
-    with os.fdopen(int(descriptor), "w", encoding="utf-8") as file:
-        reports = _Reports(file)
-        master = None
-        if not os.environ.get("ROS_MASTER_URI"):
-            from .own_master import serve_master
+    reports = _Reports(int(descriptor))
+    master = None
+    if not os.environ.get("ROS_MASTER_URI"):
+        from .own_master import serve_master
 
-            master, os.environ["ROS_MASTER_URI"] = serve_master()
-        reports.write(master=os.environ["ROS_MASTER_URI"])
-        try:
-            with redirect_stdout(_Labelled(sys.stdout)), redirect_stderr(_Labelled(sys.stderr)):  # type: ignore[type-var]
-                return _launch(launch, reports)
-        except KeyboardInterrupt:  # before roslaunch has handlers of its own: there are no nodes yet
-            return 1
-        finally:
-            if master is not None:
-                master.stop()
+        master, os.environ["ROS_MASTER_URI"] = serve_master()
+    reports.write(master=os.environ["ROS_MASTER_URI"])
+    try:
+        with redirect_stdout(_Labelled(sys.stdout)), redirect_stderr(_Labelled(sys.stderr)):  # type: ignore[type-var]
+            return _launch(launch, reports)
+    except KeyboardInterrupt:  # before roslaunch has handlers of its own: there are no nodes yet
+        return 1
+    finally:
+        if master is not None:
+            master.stop()
 
 
 def _launch(launch: Sequence[str], reports: _Reports) -> int:
