@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import time
+from unittest.mock import Mock
 
 import pytest
 import rospy
@@ -22,8 +24,10 @@ from nao_library_modules.driver.joints.planar_frames import (
     read_path,
     read_place,
 )
+from nao_library_modules.driver.path_follower import legs as path_follower_legs
 from nao_library_modules.driver.path_follower import walk as path_follower_walk
 from nao_library_modules.driver.path_follower.courses import PathCourse, TargetCourse, reached
+from nao_library_modules.driver.path_follower.legs import WalkTopics
 from nao_library_modules.driver.path_follower.path import WalkPath
 from nao_library_modules.driver.path_follower.settings import FollowerSettings
 from nao_library_modules.driver.path_follower.steering import velocity
@@ -375,3 +379,27 @@ def test_a_pose_is_turned_before_it_is_laid_flat_and_a_late_one_counts_as_of_now
     late = pose(0.5, 0.0, "base_link", yaw=0.0)
     late.header.stamp = rospy.Time(NOW.secs + 50)
     assert frames.place_in("odom", late, 0.0) == pytest.approx((1.0, 2.5, QUARTER))
+
+
+@pytest.mark.parametrize("use_velocities", [False, True])
+def test_a_command_that_comes_after_the_stop_does_not_begin_the_walk_again(monkeypatch, use_velocities):
+    monkeypatch.setattr(path_follower_legs, "LazyTopic", Mock())
+    monkeypatch.setattr(time, "sleep", lambda seconds: [arrive(each) for each in on_their_way])
+    walks, on_their_way, robot, node = [], [], Mock(), Mock()
+
+    def arrive(command):
+        on_their_way.remove(command)
+        walks[:] = [True] if getattr(command, "x", 0.0) or getattr(command, "linear", ORIGIN).x else []
+
+    def call(method, *_):
+        return Mock(result=lambda timeout: bool(walks) if method == "moveIsActive" else None)
+
+    robot.proxy.return_value.call_async = call
+    node.publisher.return_value.publish = on_their_way.append
+    node.caller.return_value = Mock(side_effect=walks.clear)
+    legs = WalkTopics(robot, node, use_velocities)
+    legs.go_at(1.0, 0.0, 0.0) if use_velocities else legs.go_to(Place(1.0, 0.0, 0.0))
+    legs.stop()
+    for command in list(on_their_way):
+        arrive(command)
+    assert not walks

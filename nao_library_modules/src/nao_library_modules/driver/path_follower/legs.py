@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from typing import Any
 
 import rospy
@@ -24,6 +25,8 @@ from ..joints.joint_sensors import MEMORY
 
 LISTENER_LIMIT = 5.0
 """s to wait for somebody who listens to the commands."""
+ON_ITS_WAY, LOOK_PERIOD = 1.0, 0.02
+"""s of real time that a command may take to nao_walker on a busy computer, and between two looks at what it does."""
 STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
 
 
@@ -48,6 +51,7 @@ class WalkTopics:
         self._stop = node.caller(STOP, Empty)
         self._inhibit = node.caller(INHIBIT, Empty)
         self._failed_before: list = []
+        self._commanded = -ON_ITS_WAY  # when, by time.monotonic
         self._let_go = node.caller(LET_GO, Empty)
 
     def prepare(self, interrupt: CancellationToken) -> None:
@@ -68,6 +72,7 @@ class WalkTopics:
     def go_to(self, way: Place) -> None:
         """Walk to where a way leads, in the robot's frame; replaces the command before."""
         self._own_walk()
+        self._commanded = time.monotonic()
         self._commands.publish(Pose2D(way.x, way.y, way.yaw))
 
     def go_at(self, x: float, y: float, yaw: float) -> None:
@@ -85,13 +90,23 @@ class WalkTopics:
 
     def stop(self) -> None:
         """Stand, on both feet; returns then."""
+        if self._topic == "cmd_vel":
+            self._commands.publish(Twist())  # after all that is on its way
+        self._stop_now()
+        # A pose that was on its way when the service was called begins the walk again.
+        while time.monotonic() - self._commanded < ON_ITS_WAY:
+            if self.walking():
+                self._stop_now()
+            time.sleep(LOOK_PERIOD)
+        self._robot.owners.let_go(self)
+
+    def _stop_now(self) -> None:
         try:
             self._stop()
         except (rospy.ServiceException, rospy.ROSException):  # nobody offers it, or it failed: ask the robot itself
             self._stop_robot()
         standing = self._robot.proxy(MOTION).call_async("waitUntilMoveIsFinished")
         standing.result(timeout=STOP_LIMIT)
-        self._robot.owners.let_go(self)
 
     def reserve(self) -> None:
         """Keep others, a joystick for example, from walking."""
