@@ -1,4 +1,4 @@
-"""Whether a computer has a processor for who wants one."""
+"""Load of the local processors."""
 
 import os
 
@@ -15,6 +15,6 @@ def test_processors_are_short_when_more_threads_want_one_than_there_are(tmp_path
     assert processors.processors_are_short() is short
 
 
-def test_a_system_that_does_not_say_has_enough(tmp_path, monkeypatch):
+def test_a_system_that_does_not_report_it_has_enough(tmp_path, monkeypatch):
     monkeypatch.setattr(processors, "LOAD", tmp_path / "missing")
     assert not processors.processors_are_short()

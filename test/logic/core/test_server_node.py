@@ -79,7 +79,7 @@ def test_the_status_of_goals_that_comes_when_the_topics_are_closed_is_no_error(m
 def test_the_status_waits_until_the_client_of_the_newest_goal_can_have_noted_it(monkeypatch):
     published = queue.Queue()
     monkeypatch.setattr(actionlib.ActionServer, "publish_status", lambda _: published.put(time.monotonic()))
-    server = ActionServer("test", actionlib.msg.TestAction, lambda goal: None, auto_start=False, soonest_status=0.04)
+    server = ActionServer("test", actionlib.msg.TestAction, lambda goal: None, auto_start=False, soonest=0.04)
     server.result_pub = Mock()  # not started, it has no topics
     server.publish_status()
     assert published.qsize() == 1, "with no goal there is nothing to wait for"

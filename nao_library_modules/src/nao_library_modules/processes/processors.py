@@ -1,4 +1,4 @@
-"""The processors of this computer, and whether there are enough of them."""
+"""Load of the local processors."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import os
 from pathlib import Path
 
 LOAD = Path("/proc/loadavg")
-"""Linux: three averages, then `threads that run or wait for a processor/all threads`."""
+"""Linux: three averages, then `runnable threads/all threads`."""
 
 
 def processors_are_short() -> bool:
-    """Whether more threads want to run at this moment than there are processors. No, where the system does not say."""
+    """Whether more threads are runnable now than there are processors; False where the system does not report it."""
     try:
-        wanted = int(LOAD.read_text("ascii").split()[3].split("/")[0])
+        runnable = int(LOAD.read_text("ascii").split()[3].split("/")[0])
     except (OSError, ValueError, IndexError):
         return False
-    return wanted > (os.cpu_count() or 1)
+    return runnable > (os.cpu_count() or 1)

@@ -27,9 +27,9 @@ from ..processes.processors import processors_are_short
 log = logging.getLogger(__name__)
 
 SOONEST_END = 0.005
-"""s from when a goal comes to what is first told of it, and to its end, at least; docs/functions.md has the cost."""
+"""Least time, s, from a goal to the first message about it and to its end; docs/functions.md has the cost."""
 LATEST_END = 0.1
-"""s after which it is told of a goal, however busy the computer is."""
+"""s after which a server publishes, however busy the computer is."""
 LOOK_AGAIN = 0.002
 """s between two looks whether a busy computer has a processor for the client."""
 RESULT_FIRST = 0.02
@@ -140,13 +140,15 @@ class ActionServer(actionlib.ActionServer):
     gets its result.
     """
 
-    def __init__(self, *arguments: Any, soonest_status: float = SOONEST_END, **options: Any) -> None:
-        """As actionlib's. `soonest_status`: s of wall time from when a goal comes to what is first told of it."""
-        self._soonest_status = soonest_status
+    def __init__(self, *arguments: Any, soonest: float = SOONEST_END, **options: Any) -> None:
+        """As actionlib's. `soonest`: s of wall time from when a goal comes to the first message about it."""
+        self._soonest = soonest
         self._came: dict[str, float] = {}  # id of a goal that is not over -> when it came, by time.monotonic
         self._newest = self._last_end = -math.inf  # when the last goal came, and when a result was published last
         self._status_waits_since = math.inf  # when there was a first status that waits
-        self._feedback: deque[tuple[float, Any, Any]] = deque()  # what waits: when its goal came, status, feedback
+        self._pending: deque[tuple[float, Any, Any]] = (
+            deque()
+        )  # feedback to publish: when its goal came, status, feedback
         self._later: threading.Timer | None = None
         super().__init__(*arguments, **options)
 
@@ -179,12 +181,12 @@ class ActionServer(actionlib.ActionServer):
         """Publish how a goal ended, after all feedback of it."""
         with self.lock:
             self._came.pop(status.goal_id.id, None)
-            waiting, self._feedback = self._feedback, deque()
-            for came, before, feedback in waiting:
+            pending, self._pending = self._pending, deque()
+            for came, before, feedback in pending:
                 if before.goal_id.id == status.goal_id.id:
                     super().publish_feedback(before, feedback)
                 else:
-                    self._feedback.append((came, before, feedback))
+                    self._pending.append((came, before, feedback))
             self._last_end = time.monotonic()
             super().publish_result(status, result)
 
@@ -192,8 +194,8 @@ class ActionServer(actionlib.ActionServer):
         """Publish feedback of a goal, or have it published when its client can have noted it."""
         with self.lock:
             came = self._came.get(status.goal_id.id, -math.inf)
-            self._feedback.append((came, copy.copy(status), feedback))
-            self._publish_feedback()
+            self._pending.append((came, copy.copy(status), feedback))
+            self._publish_pending_feedback()
 
     def publish_status(self) -> None:
         """Publish the status of all goals, or have it published in a moment: one without the newest would be wrong."""
@@ -201,20 +203,20 @@ class ActionServer(actionlib.ActionServer):
             now = time.monotonic()
             self._status_waits_since = min(self._status_waits_since, now)
             waited_too_long = now - self._status_waits_since >= LATEST_END  # where one goal follows the other
-            told = can_have_noted(self._newest, self._soonest_status) and now - self._last_end >= RESULT_FIRST
-            if waited_too_long or told:
+            due = can_have_noted(self._newest, self._soonest) and now - self._last_end >= RESULT_FIRST
+            if waited_too_long or due:
                 self._status_waits_since = math.inf
                 unless_closed(super().publish_status)
             else:
-                self._look_again(max(self._newest + self._soonest_status, self._last_end + RESULT_FIRST))
+                self._look_again(max(self._newest + self._soonest, self._last_end + RESULT_FIRST))
 
-    def _publish_feedback(self) -> None:
-        while self._feedback:
-            came, status, feedback = self._feedback[0]
-            if not can_have_noted(came, self._soonest_status):
-                self._look_again(came + self._soonest_status)
+    def _publish_pending_feedback(self) -> None:
+        while self._pending:
+            came, status, feedback = self._pending[0]
+            if not can_have_noted(came, self._soonest):
+                self._look_again(came + self._soonest)
                 return
-            self._feedback.popleft()
+            self._pending.popleft()
             unless_closed(super().publish_feedback, status, feedback)
 
     def _look_again(self, moment: float) -> None:
@@ -227,13 +229,13 @@ class ActionServer(actionlib.ActionServer):
     def _publish_late(self) -> None:
         with self.lock:
             self._later = None
-            self._publish_feedback()
+            self._publish_pending_feedback()
             if self._status_waits_since < math.inf:
                 self.publish_status()
 
 
 def unless_closed(publish: Callable[..., None], *arguments: Any) -> None:
-    """Publish what a server tells of its goals, if the node has not closed its topics meanwhile."""
+    """Publish a status or feedback, if the node has not closed its topics meanwhile."""
     try:
         publish(*arguments)
     except rospy.ROSException:
@@ -278,7 +280,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
             self.internal_goal_callback,
             self.internal_preempt_callback,
             auto_start=False,
-            soonest_status=self._soonest_end,
+            soonest=self._soonest_end,
         )
 
     # The name is actionlib's: the constructor starts a thread with it.
