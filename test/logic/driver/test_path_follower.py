@@ -384,6 +384,7 @@ def test_a_pose_is_turned_before_it_is_laid_flat_and_a_late_one_counts_as_of_now
 @pytest.mark.parametrize("use_velocities", [False, True])
 def test_a_command_that_comes_after_the_stop_does_not_begin_the_walk_again(monkeypatch, use_velocities):
     monkeypatch.setattr(path_follower_legs, "LazyTopic", Mock())
+    monkeypatch.setattr(path_follower_legs, "ON_ITS_WAY", 0.05)
     monkeypatch.setattr(time, "sleep", lambda seconds: [arrive(each) for each in on_their_way])
     walks, on_their_way, robot, node = [], [], Mock(), Mock()
 

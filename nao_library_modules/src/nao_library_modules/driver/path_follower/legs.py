@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from typing import Any
@@ -26,7 +27,7 @@ from ..joints.joint_sensors import MEMORY
 LISTENER_LIMIT = 5.0
 """s to wait for somebody who listens to the commands."""
 ON_ITS_WAY, LOOK_PERIOD = 1.0, 0.02
-"""s of real time that a command may take to nao_walker on a busy computer, and between two looks at what it does."""
+"""s of real time that a command may take to reach nao_walker on a busy computer, and between two looks at the robot."""
 STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
 
 
@@ -51,7 +52,7 @@ class WalkTopics:
         self._stop = node.caller(STOP, Empty)
         self._inhibit = node.caller(INHIBIT, Empty)
         self._failed_before: list = []
-        self._commanded = -ON_ITS_WAY  # when, by time.monotonic
+        self._last_pose = -math.inf  # when it was published, by time.monotonic
         self._let_go = node.caller(LET_GO, Empty)
 
     def prepare(self, interrupt: CancellationToken) -> None:
@@ -72,7 +73,7 @@ class WalkTopics:
     def go_to(self, way: Place) -> None:
         """Walk to where a way leads, in the robot's frame; replaces the command before."""
         self._own_walk()
-        self._commanded = time.monotonic()
+        self._last_pose = time.monotonic()
         self._commands.publish(Pose2D(way.x, way.y, way.yaw))
 
     def go_at(self, x: float, y: float, yaw: float) -> None:
@@ -91,10 +92,10 @@ class WalkTopics:
     def stop(self) -> None:
         """Stand, on both feet; returns then."""
         if self._topic == "cmd_vel":
-            self._commands.publish(Twist())  # after all that is on its way
+            self._commands.publish(Twist())  # arrives after all velocities before it
         self._stop_now()
-        # A pose that was on its way when the service was called begins the walk again.
-        while time.monotonic() - self._commanded < ON_ITS_WAY:
+        # A pose that arrives after the stop restarts the walk.
+        while time.monotonic() - self._last_pose < ON_ITS_WAY:
             if self.walking():
                 self._stop_now()
             time.sleep(LOOK_PERIOD)

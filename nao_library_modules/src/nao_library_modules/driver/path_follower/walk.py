@@ -10,7 +10,7 @@ from naoqi.errors import NaoError
 
 from ...base.cancellation import CancellationToken
 from ...base.clock import WallClock
-from ...base.places import ORIGIN, Place
+from ...base.places import Place
 from ..base.rate import Rate
 from .courses import Aim, reached
 from .settings import FollowerSettings
@@ -105,7 +105,6 @@ class _Velocities(_Mode):
     def round(self, robot: Place, aim: Aim) -> bool:
         way = aim.place.seen_from(robot)
         if aim.final and reached(way, self._settings):
-            self._legs.go_at(*ORIGIN)
             self._legs.stop()
             return True
         now, wall = self._now(), self._wall.now()
