@@ -161,21 +161,21 @@ def test_a_run_tells_that_its_log_cannot_be_written_and_again_at_its_end(on_a_fu
     assert [event["n"] for event in read_events(on_a_full_disk.folder)][-1] == len(read_events(on_a_full_disk.folder))
 
 
-def test_a_run_says_when_it_begins_to_wait_for_somebody(tmp_path, monkeypatch):
-    robot, echo, told = PlayedRobot(), study_commands.click.echo, []
+def test_a_run_says_when_it_begins_to_wait(tmp_path, monkeypatch):
+    robot, echo, lines = PlayedRobot(), study_commands.click.echo, []
 
     def hear(text="", **options):
-        told.append(text)
+        lines.append(text)
         echo(text, **options)
         if text.endswith(": waiting"):
-            robot.runs[-1].end("aborted", "nobody is there")
+            robot.runs[-1].end("aborted", "no participant")
 
     monkeypatch.setattr(study_commands, "_studies", lambda settings, files: (Studies(files), robot))
     monkeypatch.setattr(study_commands.click, "echo", hear)
     file = tmp_path / "asks.yaml"
     file.write_text("name: asks\nphases: [{steps: [{wait: touch, sensors: [head], timeout: 5}]}]\n")
     CliRunner().invoke(nao, ["study", "run", str(file), "--participant", "P01", "--studies", str(tmp_path)])
-    assert "  1.1 wait for a touch: head: waiting" in told
+    assert "  1.1 wait for a touch: head: waiting" in lines
 
 
 def test_the_answer_for_programs_has_the_troubles(on_a_full_disk):

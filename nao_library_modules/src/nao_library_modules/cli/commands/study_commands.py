@@ -392,7 +392,7 @@ def _play(
             if runner.state.status == HELD:
                 asked = place
                 _decide(runner, outcome.error)
-            elif isinstance(step, SenseStep) and outcome.ended is None:  # somebody may have to do something now
+            elif isinstance(step, SenseStep) and outcome.ended is None:  # the participant may have to act now
                 asked = place
                 click.echo(f"  {outcome.path} {outcome.text}: waiting", err=settings.json)
             elif isinstance(step, ChoiceStep):

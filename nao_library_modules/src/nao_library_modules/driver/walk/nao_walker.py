@@ -230,17 +230,20 @@ class NaoWalker:
                 config = [[CONTACT_PROTECTION, bool(protect)]]
                 self._robot.proxy(MOTION).call_async("setMotionConfig", config).result(timeout=ANSWER_LIMIT)
             self._init_stiffness.apply()
-            self._events.renew()
-            self._events.subscribe(MOVE_FAILED)
         except NaoError as error:
             rospy.logerr("the robot does not take the parameters of the walk: %s", error)
+        self._events.renew()
+        try:
+            self._events.subscribe(MOVE_FAILED)
+        except NaoError as error:
+            rospy.logerr("%s cannot be subscribed: causes of walks that fail are not logged: %s", MOVE_FAILED, error)
         if not self._online:
             self._online = True
             rospy.loginfo("Walker online")
             self._speech.publish("Walker online")
 
     def _on_failure(self, _: str, value: Any) -> None:
-        """Say why the robot does not walk: no call to walk at a velocity answers it. In a thread of libqi."""
+        """Log the cause, which no call to walk at a velocity returns. In a thread of libqi."""
         if value and self._walker.doing != STANDS:
             self._journal.warn(MOVE_FAILED, f"the robot does not walk on: {value[0]}")
 

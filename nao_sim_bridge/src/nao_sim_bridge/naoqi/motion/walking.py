@@ -41,7 +41,7 @@ class Moves:
 
     def __init__(self, memory: MemoryStore) -> None:
         self._memory = memory
-        self._told = False
+        self._warned = False
         memory.declare_event(FAILED, "ALMotion")
 
     def begin(self, locomotion: Locomotion, call: str, command: Callable[[Locomotion], Any], prevented: Any) -> Any:
@@ -50,11 +50,11 @@ class Moves:
         try:
             answer = command(locomotion)
         except MovePrevented as error:
-            if not self._told:  # somebody may ask again and again
-                self._told = True
+            if not self._warned:  # a program may call again and again
+                self._warned = True
                 log.warning("%s does not move the robot: %s", call, error)
             return prevented
-        self._told = self._told and not locomotion.active
+        self._warned = self._warned and not locomotion.active
         return answer
 
     def watch(self, locomotion: Locomotion) -> None:
