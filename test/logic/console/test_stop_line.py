@@ -6,6 +6,7 @@ import asyncio
 import json
 import socket
 import threading
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -163,6 +164,24 @@ def test_work_for_pages_keeps_one_thread_busy():
 
     asyncio.run(run())
     assert most == 1
+
+
+def test_work_of_pages_rests_as_long_as_it_takes():
+    times = []
+
+    def work():
+        times.append(time.monotonic())
+        time.sleep(0.05)
+        times.append(time.monotonic())
+
+    async def run():
+        lane = Lane()
+        await lane.do(work)
+        await lane.do(work)
+
+    asyncio.run(run())
+    began, ended, again, _ = times
+    assert again - ended >= ended - began
 
 
 # --- connections ------------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
 
 import pytest
@@ -140,6 +141,18 @@ def test_conditions_may_compare_two_values_and_branches_may_share_a_label():
     wizard = "- {wizard: Which, choices: [left, right], label: chosen}"
     steps = f"{steps}\n    {wizard}\n    - {{when: 'chosen == {{target}}', then: [{{wait: 1}}]}}"
     assert read_protocol(f"{FACTORS}{HEAD}    {steps}\n", "x").name == "x"
+
+
+def test_reading_a_protocol_takes_as_long_for_each_step_of_a_long_one():
+    step = "      - {say: Please touch my head and wait, label: l%d}\n"
+
+    def seconds(steps):
+        text = "name: long\nphases:\n  - phase: Task\n    steps:\n" + "".join(step % i for i in range(steps))
+        began = time.process_time()
+        read_protocol(text, "long")
+        return time.process_time() - began
+
+    assert seconds(4000) < 20 * seconds(500)  # eight times the steps
 
 
 def test_answers_of_several_sensors_at_once_can_be_asked_for():

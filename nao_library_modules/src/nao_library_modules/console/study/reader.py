@@ -452,17 +452,18 @@ class _Reader(FileReader):
             return f": a value stands on the left: {condition.right} {condition.operation} {condition.left}"
         return of_those(name, sorted(known))
 
-    def _find_labels(self, value: Any, taken: dict[str, int]) -> dict[str, int]:
-        """Note labels and names of rounds, which conditions may name; those there are, with their lines.
+    def _find_labels(self, value: Any, taken: dict[str, int]) -> None:
+        """Note labels and names of rounds, which conditions may name.
 
-        Branches of which one is taken may have steps of the same label. `taken`: labels before.
+        Branches of which one is taken may have steps of the same label. `taken`: lines of the labels before, to which
+        those of the value are added.
         """
         if isinstance(value, list):
             for each in value:
-                taken = self._find_labels(each, taken)
-            return taken
+                self._find_labels(each, taken)
+            return
         if not isinstance(value, dict):
-            return taken
+            return
         label, name = value.get("label"), value.get("as")
         if label is not None and (any(kind in value for kind in KINDS) or "until" in value):
             line = line_in(value, "label")
@@ -477,29 +478,34 @@ class _Reader(FileReader):
             else:
                 self._labels.setdefault(label, line)
                 self._names.update((label, f"{label}_seconds"))
-                taken = {**taken, label: line}
+                taken[label] = line
         if "repeat" in value and _identifier(name):
             self._names.add(name)
         cases = value.get("cases")
-        branches = [value.get("then"), *(cases.values() if isinstance(cases, dict) else ()), value.get("else")]
-        taken = {**taken, **{key: at for each in branches for key, at in self._find_labels(each, taken).items()}}
+        of_branches: dict[str, int] = {}
+        for each in (value.get("then"), *(cases.values() if isinstance(cases, dict) else ()), value.get("else")):
+            if each is not None:
+                of_branch = dict(taken)
+                self._find_labels(each, of_branch)
+                of_branches.update(of_branch)
+        taken.update(of_branches)
         for key, each in value.items():
             if key not in ("then", "cases", "else"):
-                taken = self._find_labels(each, taken)
-        return taken
+                self._find_labels(each, taken)
 
     def _check_texts(self, protocol: StudyProtocol) -> None:
+        known = sorted(self._names)
         levels = {f"factor {factor.name}": list(factor.levels.values()) for factor in protocol.factors}
         for where, value in {"values": [protocol.values], **levels}.items():
             for text in _texts_in(value):
-                for problem in unknown_names(text, sorted(self._names)):
+                for problem in unknown_names(text, known):
                     self.note(where, problem, 0)
         for path, step in all_steps(protocol):
             texts = [step.question] if isinstance(step, ChoiceStep) else []
             if isinstance(step, CommandStep):
                 texts = list(_texts_in([fields for _, fields in step.command.chain]))
             for text in texts:
-                for problem in unknown_names(text, sorted(self._names)):
+                for problem in unknown_names(text, known):
                     self.note(f"step {path}", problem, step.line)
 
     def _values(self, top: dict[str, Any], key: str) -> dict[str, Any]:
