@@ -14,6 +14,7 @@ import select
 import signal
 import subprocess
 import sys
+import time
 import traceback
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
@@ -24,6 +25,30 @@ from nao_sim_bridge.base.errors import SimulationError
 
 STOP_TIMEOUT = 2.0
 SOURCES = Path(__file__).resolve().parents[2]
+
+
+class Deadline:
+    """A time limit for a process, s, in which the time does not count that it waits for a processor (Linux).
+
+    On a busy computer an answer that takes one second of work may come after a minute.
+    """
+
+    def __init__(self, pid: int, seconds: float) -> None:
+        self.seconds = seconds
+        self._statistics = Path(f"/proc/{pid}/schedstat")
+        self._before = self._waited()
+        self._end = time.monotonic() + seconds
+
+    @property
+    def left(self) -> float:
+        return self._end + self._waited() - self._before - time.monotonic()
+
+    def _waited(self) -> float:
+        """Time that its main thread was ready to run and had no processor, s."""
+        try:
+            return int(self._statistics.read_text("ascii").split()[1]) / 1e9
+        except (OSError, ValueError, IndexError):
+            return 0.0
 
 
 class ChildProcess:
@@ -89,18 +114,27 @@ class ChildProcess:
         except OSError as error:
             raise self._failure(what, error) from error
 
-    def receive(self, timeout: float, what: str) -> Any:
+    def deadline(self, seconds: float) -> Deadline:
+        """A limit for several answers together."""
+        return Deadline(self.process.pid, seconds)
+
+    def receive(self, timeout: float | Deadline, what: str) -> Any:
         """The content of the next answer; an error it reports is raised.
+
+        Args:
+            timeout: s, as a `Deadline` counts them.
 
         Raises:
             SimulationError: Of the class `refused` if it reports an error, of the class `failed` if it has ended or
                 does not answer in time.
         """
+        deadline = timeout if isinstance(timeout, Deadline) else self.deadline(timeout)
         try:
-            if not self.pipe.poll(timeout):
-                self.late = True
-                self.kill()
-                raise self._failed(f"{what}: no answer of the {self._name} within {timeout:g} s")
+            while not self.pipe.poll(max(0.0, deadline.left)):
+                if deadline.left <= 0.0:
+                    self.late = True
+                    self.kill()
+                    raise self._failed(f"{what}: no answer of the {self._name} within {deadline.seconds:g} s")
             kind, content = self.pipe.recv()
         except (EOFError, OSError) as error:
             raise self._failure(what, error) from error

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import struct
 import threading
-import time
 from pathlib import Path
 
 import numpy as np
@@ -182,12 +181,12 @@ class SoundReader:
     # --- inside, under the lock -----------------------------------------------------------------------------------
 
     def _received(self, child: ChildProcess, request: tuple, what: str) -> Sound:
-        end = time.monotonic() + self.sizes.decoder.total_s
+        deadline = child.deadline(self.sizes.decoder.total_s)
         child.send("read", request, what)
-        rate, channels = child.receive(end - time.monotonic(), what)
+        rate, channels = child.receive(deadline, what)
         samples = bytearray()
         while True:
-            block = child.receive(max(0.0, end - time.monotonic()), what)
+            block = child.receive(deadline, what)
             if not block:
                 return Sound(np.frombuffer(samples, np.float32).reshape(-1, channels), rate)
             samples += block

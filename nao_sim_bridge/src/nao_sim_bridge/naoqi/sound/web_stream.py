@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import tempfile
 import threading
-import time
 import urllib.parse
 from typing import Callable
 
@@ -60,16 +59,16 @@ class WebStreams:
                 self.count -= 1
 
     def _download(self, address: str, path: str, wanted: Callable[[], bool]) -> None:
-        end = time.monotonic() + self.sizes.total_s
         what = f"nothing can be fetched from {address}"
         memory = str(self.sizes.memory_bytes)
         child = ChildProcess(MODULE, [memory], "fetching process", SimulationError, SimulationError)
+        deadline = child.deadline(self.sizes.total_s)
         try:
             child.send("fetch", (address, path, self.sizes, self._allow_private), what)
             while not child.pipe.poll(LOOK):
                 if not wanted():
                     raise NaoqiError(f"{what}: nobody wants it any more")
-                if time.monotonic() > end:
+                if deadline.left < 0.0:
                     raise NaoqiError(f"{what}: it has not ended after {self.sizes.total_s:g} s")
             child.receive(0.0, what)
         except SimulationError as error:
