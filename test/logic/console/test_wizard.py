@@ -232,6 +232,14 @@ def test_pages_keep_the_former_buttons_while_the_file_is_wrong(tmp_path):
     assert len(changes) == 1 and current.problems and len(list(current.layout.buttons())) == 6
 
 
+def test_a_file_that_is_wrong_from_the_start_is_a_page_without_buttons(tmp_path):
+    path = tmp_path / "console.yaml"
+    path.write_text("groups: wrong")
+    current = CurrentLayout(LayoutFile(path, SHIPPED))
+    assert current.problems and list(current.layout.buttons()) == []
+    assert WizardDesk().values(current.layout, "/") == {}
+
+
 # --- keys, colours, texts ---------------------------------------------------------------------------------------------
 
 

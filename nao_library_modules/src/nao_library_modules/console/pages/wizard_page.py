@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import threading
 import uuid
 from concurrent.futures import ThreadPoolExecutor
@@ -28,6 +29,8 @@ from ..wizard.wire import layout_message
 from .frame import PageContext, framed, page_at
 from .wizard_editor import WizardEditor
 
+log = logging.getLogger(__name__)
+
 OWN_FILE = "~/.ros/nao_console.yaml"
 """What is edited where the console was started without a file: the shipped one stays as it is."""
 LOOK_PERIOD = 2.0
@@ -48,6 +51,8 @@ class WizardParts:
         self.console = console
         self.file = LayoutFile(own, shipped)
         self.current = CurrentLayout(self.file)
+        for problem in self.current.problems:
+            log.warning("%s: %s", own, problem)
         self.desk = WizardDesk()
 
     def find_all(self, layout: WizardLayout) -> None:
@@ -249,7 +254,7 @@ class _WizardPage:
         problems = self._parts.current.problems
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         self._problems.text = (
-            f"The file is wrong, its former buttons are shown: {problems[0]}{more}" if problems else ""
+            f"The file has mistakes, the former buttons are shown: {problems[0]}{more}" if problems else ""
         )
         self._problems.set_visibility(bool(problems))
 

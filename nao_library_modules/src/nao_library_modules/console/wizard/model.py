@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Union
 
 from ...base.colours import parse_colour, to_integer
@@ -82,7 +82,7 @@ class WizardLayout:
 
     title: str = "Wizard"
     groups: tuple[ButtonGroup, ...] = ()
-    names: Mapping[str, str] = ()  # type: ignore[assignment]
+    names: Mapping[str, str] = field(default_factory=dict)
     templates: tuple[str, ...] = ()
     speed: float = 0.5
     revision: str = ""
