@@ -411,6 +411,17 @@ def test_a_picture_of_a_size_that_the_camera_has_not_names_those_it_has(nao):
         nao.camera().picture(100, 100)
 
 
+def test_a_thing_is_in_the_picture_where_it_is_projected(nao):
+    camera, at = nao.camera("bottom"), (0.45, 0.05, 0.03)
+    empty = camera.picture(320, 240).astype(int)
+    nao.place("ball", at=at)
+    changed = np.abs(camera.picture(320, 240).astype(int) - empty).sum(axis=2) > 60
+    rows, columns = np.nonzero(changed)
+    ((column, row),) = camera.project([at])
+    assert (columns.mean() + 0.5, rows.mean() + 0.5) == pytest.approx((column, row), abs=8.0)
+    assert np.isnan(camera.project([(-1.0, 0.0, 0.5)])).all()
+
+
 @pytest.mark.parametrize("served", [False, True])
 def test_pictures_from_outside_show_the_joints_as_they_are_not_as_they_are_measured(monkeypatch, served):
     drawn = []

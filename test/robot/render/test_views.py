@@ -50,6 +50,16 @@ def test_things_of_a_world_are_seen_until_they_are_gone(name):
         engine.close()
 
 
+@pytest.mark.parametrize("ambient", [0.0, 1.0])
+def test_the_light_of_a_world_may_come_from_everywhere_or_from_one_side_alone(name, ambient):
+    there = world(ball("ball", (1.0, 0.0, 0.5), radius=0.1))
+    engine, _ = open_engine(name, replace(there, light=replace(there.light, ambient=ambient)), "V6")
+    try:
+        assert area(engine.draw(AWAY, VIEW)) > 300
+    finally:
+        engine.close()
+
+
 def area(picture, channel=1):
     """Number of pixels of a primary colour."""
     return np.count_nonzero(clear(picture, channel))

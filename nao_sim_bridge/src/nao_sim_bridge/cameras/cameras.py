@@ -37,6 +37,7 @@ from nao_sim_bridge.cameras.settings import (
 )
 from nao_sim_bridge.cameras.stream import CameraStream
 from nao_sim_bridge.model.robot_model import RobotModel
+from nao_sim_bridge.model.kinematics import quaternion_matrix
 from nao_sim_bridge.world.render_state import RenderState
 
 log = logging.getLogger("nao_sim.cameras")
@@ -174,6 +175,14 @@ class Cameras:
 
         self._darkroom.put(draw)
         return drawn.result().array()
+
+    def project(self, snapshot: Snapshot, camera: int, points: np.ndarray, width: int, height: int) -> np.ndarray:
+        """Where (n, 3) points of the world are in the picture of a moment: (n, 2) pixels, NaN behind the camera."""
+        position, orientation = self._places.in_world(self._look(snapshot), camera)
+        ahead, left, up = ((points - np.array(position)) @ quaternion_matrix(orientation)).T
+        pinhole = self.optics(camera).intrinsics(width, height)
+        ahead = np.where(ahead > 0.0, ahead, np.nan)
+        return np.stack([pinhole.cx - pinhole.fx * left / ahead, pinhole.cy - pinhole.fy * up / ahead], axis=1)
 
     def optics(self, camera: int) -> CameraOptics:
         return self._places.optics[self.tables.camera(camera)]

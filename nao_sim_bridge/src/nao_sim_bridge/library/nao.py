@@ -137,6 +137,20 @@ class HeadCamera:
         """
         return self._nao._take_picture(self._index, width, height)
 
+    def project(self, points: Any, width: int = 320, height: int = 240) -> np.ndarray:
+        """Where points of the world are in its picture, by the robot's true pose.
+
+        Args:
+            points: (n, 3), m, in the world's frame, as `NaoSim.things` has them.
+            width: Pixels of the picture.
+            height: Pixels of the picture.
+
+        Returns:
+            (n, 2) column and row, in pixels from the upper left corner; the middle of the first pixel is (0.5, 0.5).
+            A point beside the picture has a place beside it, one behind the camera NaN.
+        """
+        return self._nao._project(self._index, np.asarray(points, dtype=float).reshape(-1, 3), width, height)
+
 
 class Nao:
     """One robot of a `NaoSim`.
@@ -497,6 +511,9 @@ class Nao:
 
     def _take_picture(self, camera: int, width: int, height: int) -> np.ndarray:
         return self._simulation.cameras.picture(self.snapshot, camera, width, height)
+
+    def _project(self, camera: int, points: np.ndarray, width: int, height: int) -> np.ndarray:
+        return self._simulation.cameras.project(self.snapshot, camera, points, width, height)
 
 
 def _check_speed(speed: float) -> None:

@@ -57,9 +57,6 @@ class OpenGLEngine:
         self._moving = ShadowMap(context, MOVING_PIXELS, lamp)
         constants.update(STILL_APART=SOFTNESS / STILL_PIXELS, MOVING_APART=SOFTNESS / MOVING_PIXELS)
         self._programs = {name: context.program(*source) for name, source in sources(constants).items()}
-        for name in ("thing", "covered", "backdrop"):
-            self._programs[name]["still_map"], self._programs[name]["moving_map"] = 0, 1
-        self._programs["covered"]["picture"] = 2
         self._scene = context.buffer(reserve=BLOCK.itemsize)
         self._still_of: bytes | None = None
         self._moving_of: bytes | None = None

@@ -29,8 +29,8 @@ layout(std140, binding = 0) uniform Scene {
 """What belongs to the camera; `scene_block.py` writes it."""
 
 SHADOW = """
-uniform sampler2DShadow still_map;
-uniform sampler2DShadow moving_map;
+layout(binding = 0) uniform sampler2DShadow still_map;
+layout(binding = 1) uniform sampler2DShadow moving_map;
 
 float near_edge(sampler2DShadow map, vec3 at, float apart) {
     float sum = texture(map, vec3(at.xy + vec2(-0.4, -1.1) * apart, at.z));
@@ -233,7 +233,7 @@ def sources(values: Mapping[str, float | Sequence[float]]) -> dict[str, tuple[st
     covered = _THING_FRAGMENT.replace("SURFACE", "texture(picture, spot).rgb")
     return {
         "thing": (things, known + SHADOW + plain),
-        "covered": (things, known + "uniform sampler2D picture;\n" + SHADOW + covered),
+        "covered": (things, known + "layout(binding = 2) uniform sampler2D picture;\n" + SHADOW + covered),
         "depth": (HEADER + _DEPTH_VERTEX, HEADER + "void main() {}\n"),
         "backdrop": (known + SCENE + _BACKDROP_VERTEX, known + SHADOW + _BACKDROP_FRAGMENT),
         "halo": (HEADER + SCENE + _HALO_VERTEX, HEADER + _HALO_FRAGMENT),
