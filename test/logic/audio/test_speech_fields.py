@@ -7,11 +7,13 @@ import math
 import pytest
 from goal_functions import audio_out as f
 
+from nao_library_actions.msg import NaoAudioOutGoal
 from nao_library_modules.audio.fields import DeviceParameter, DeviceSetting, OutputRate
 from nao_library_modules.audio_out.server import NaoAudioOutput
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.functions.chain import FunctionChain, declared_fields, fields_taken
 from nao_library_modules.functions.describe_choices import LANGUAGES, VOICES
+from nao_library_modules.functions.goal_checks import check_goals
 from nao_library_modules.functions.offline_module import offline_module
 from nao_library_msgs.msg import AudioOutFunction
 
@@ -130,7 +132,7 @@ def test_what_is_refused_names_what_is_allowed(refusals, name, fields, field, va
         f("getParameter", "pitch"),
         f("playFile", "/home/nao/a.WAV", pan=-1.0, duration=0.001),
         f("playFile", "/usr/share/naoqi/wav/random.wav"),
-        f("sayToFile", "Hi", file_name="/tmp/a.wav"),
+        f("sayToFile", "Hi", file_name="/tmp/a.wav", overwrite=True),
         f("playSine", frequency=20, duration=3600.0, pan=1.0),
         f("playWebStream", " https://host/a "),
         f("goTo", sound_id=7),
@@ -141,6 +143,12 @@ def test_what_is_refused_names_what_is_allowed(refusals, name, fields, field, va
 )
 def test_what_is_right_is_taken(refusals, function):
     assert refusals(function) == []
+
+
+def test_without_a_robot_it_is_not_known_whether_a_file_is_there():
+    goal = NaoAudioOutGoal([f("sayToFile", "Hi", file_name="/tmp/a.wav")])
+    check = check_goals(offline_module(NaoAudioOutput), [goal])
+    assert [each.function for each in check.unchecked] == ["sayToFile"] and not check.problems
 
 
 def test_a_sound_is_known_from_where_it_is_loaded_to_where_it_is_unloaded(refusals):

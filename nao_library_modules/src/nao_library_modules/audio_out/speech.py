@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from naoqi.errors import NaoError
+from naoqi.errors import NaoError, RobotError
 
 from ..audio.fields import Revert
 from ..audio.sound_card import decimal, put_back
@@ -227,7 +227,7 @@ class SpeechFunctions(Part):
         player = self._module.robot.proxy(PLAYER)
         try:
             sound = self._module.call(player, "loadFile", without_sign(file))
-        except NaoError:  # there is none that could be played
+        except RobotError:  # there is none that could be played
             return
         self._module.call_now(player, "unloadFile", sound)
         problem = f"{file} is there already, in the robot's folder"
