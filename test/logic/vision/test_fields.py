@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import pytest
+from goal_functions import vision as f
 
 from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.functions.chain import declared_fields, fields_taken
+from nao_library_modules.functions.chain import FunctionChain, declared_fields, fields_taken
+from nao_library_modules.functions.offline_module import offline_module
 from nao_library_modules.vision.capture.settings import SettingFunctions
 from nao_library_modules.vision.capture.snapshots import PictureFunctions
 from nao_library_modules.vision.capture.streaming import StreamingFunctions
 from nao_library_modules.vision.detection.faces import FaceFunctions
 from nao_library_modules.vision.detection.things import DetectionFunctions
 from nao_library_modules.vision.detection.track import TrackingFunctions
+from nao_library_modules.vision.server import NaoVision
 from nao_library_msgs.msg import VisionFunction
 
 GROUPS = (
@@ -104,3 +107,18 @@ def test_a_field_may_not_hold_that(function, field, value, text):
 @pytest.mark.parametrize("function", FUNCTIONS)
 def test_every_field_that_a_function_takes_is_declared(function):
     assert list(taken(function)) == fields_taken(FUNCTIONS[function], VisionFunction.__slots__)
+
+
+@pytest.fixture(scope="module")
+def refusals():
+    """What is refused of a chain of functions, as texts."""
+    chain = FunctionChain(offline_module(NaoVision).function_table)
+    return lambda *functions: [str(failed) for failed in chain.failures(functions)]
+
+
+def test_two_streams_of_one_chain_do_not_publish_on_the_same_topic(refusals):
+    first, second = (f("createStream", id=name, topic_out="/both") for name in ("first", "second"))
+    (told,) = refusals(first, second)
+    assert told == "function 2 (createStream): field topic_out: 'first' publishes /both: another topic"
+    assert refusals(first, f("deleteThread", id="first"), second) == []
+    assert refusals(first, f("createStream", id="first", topic_out="/both")) == []

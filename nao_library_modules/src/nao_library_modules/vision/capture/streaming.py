@@ -6,7 +6,7 @@ import logging
 import re
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, Tuple
+from typing import TYPE_CHECKING, Any, Dict, NamedTuple
 
 from naoqi.errors import NaoError
 
@@ -45,8 +45,17 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-Plan = Dict[str, Tuple[str, bool]]
-"""Name -> kind and whether it runs: what the chain will have made of the streams and recordings."""
+
+class PlannedJob(NamedTuple):
+    """A stream or recording as the chain will have left it."""
+
+    kind: str
+    runs: bool
+    target: str = ""  # topic of a stream, resolved
+
+
+Plan = Dict[str, PlannedJob]
+"""By name: what the chain will have made of the streams and recordings."""
 
 
 class StreamingFunctions(Part):
@@ -65,17 +74,21 @@ class StreamingFunctions(Part):
 
     def _plan(self, context: dict[str, Any]) -> Plan:
         if "threads" not in context:
-            context["threads"] = {ident: (job.kind, job.runs) for ident, job in self.jobs.known.items()}
+            context["threads"] = {ident: self._as_planned(job) for ident, job in self.jobs.known.items()}
         return context["threads"]
 
-    def _plan_new(self, ident: str, kind: str, runs: bool, context: dict[str, Any]) -> None:
+    def _as_planned(self, job: CaptureJob) -> PlannedJob:
+        target = self._cameras.topics.resolved(job.topic_out) if isinstance(job, Stream) else ""
+        return PlannedJob(job.kind, job.runs, target)
+
+    def _plan_new(self, ident: str, job: PlannedJob, context: dict[str, Any]) -> None:
         plan = self._plan(context)
         name = ident.strip()
-        if plan.get(name, ("", False))[1]:
+        if name in plan and plan[name].runs:
             raise taken(name)
         if name not in plan and len(plan) >= MOST_JOBS:
             raise too_many(name)
-        plan[name] = (kind, runs)
+        plan[name] = job
 
     def _planned(self, ident: str, context: dict[str, Any], kind: str = "") -> str:
         """The name of a job that there will be, without blanks around it."""
@@ -83,23 +96,22 @@ class StreamingFunctions(Part):
         name = ident.strip()
         if name not in plan:
             raise unknown(name, plan)
-        if kind and plan[name][0] != kind:
-            names = [other for other, (own, _) in plan.items() if own == kind]
+        if kind and plan[name].kind != kind:
+            names = [other for other, job in plan.items() if job.kind == kind]
             allowed = f"one of {', '.join(names)}" if names else f"there is no {kind}"
-            raise BadGoal("id", ident, allowed, problem=f"{name!r} is a {plan[name][0]}")
+            raise BadGoal("id", ident, allowed, problem=f"{name!r} is a {plan[name].kind}")
         return name
 
     def _check_create_stream(
         self, id: str, camera: str, topic: str, topic_out: str, context: dict[str, Any], runs: bool = False
     ) -> None:
-        self._plan_new(id, "stream", runs, context)
-        resolved = self._cameras.topics.resolved
-        target = resolved(_topic_out(id, topic_out))
+        target = self._cameras.topics.resolved(_topic_out(id, topic_out))
+        self._plan_new(id, PlannedJob("stream", runs, target), context)
         if target == self._cameras.source(camera, topic):
             raise BadGoal("topic_out", topic_out, "another topic", problem="frames come from there")
-        for job in self.jobs.known.values():
-            if job.kind == "stream" and job.ident != id.strip() and resolved(job.topic_out) == target:
-                raise BadGoal("topic_out", topic_out, "another topic", problem=f"{job.ident!r} publishes {target}")
+        for name, job in self._plan(context).items():
+            if name != id.strip() and job.target == target:
+                raise BadGoal("topic_out", topic_out, "another topic", problem=f"{name!r} publishes {target}")
 
     def _check_create_recording(
         self,
@@ -113,20 +125,21 @@ class StreamingFunctions(Part):
     ) -> None:
         kind = self.files.file_type(str_param, file_type, VIDEO_TYPES)
         _require_codec(codec, kind)
-        self._plan_new(id, "recording", runs, context)
+        self._plan_new(id, PlannedJob("recording", runs), context)
         if str_param.strip():
             self.files.plan(self.files.path(str_param, kind), overwrite, context.setdefault("files", set()))
 
     def _check_start(self, id: str, context: dict[str, Any]) -> None:
         name = self._planned(id, context)
-        kind, runs = self._plan(context)[name]
-        if runs:
+        plan = self._plan(context)
+        if plan[name].runs:
             raise taken(name)
-        self._plan(context)[name] = (kind, True)
+        plan[name] = plan[name]._replace(runs=True)
 
     def _check_stop(self, id: str, context: dict[str, Any], kind: str = "") -> None:
         name = self._planned(id, context, kind)
-        self._plan(context)[name] = (self._plan(context)[name][0], False)
+        plan = self._plan(context)
+        plan[name] = plan[name]._replace(runs=False)
 
     def _check_delete(self, id: str, context: dict[str, Any]) -> None:
         del self._plan(context)[self._planned(id, context)]
