@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import queue
 import threading
+from types import SimpleNamespace
 
 import pytest
 
 from nao_library_modules.driver import nao_driver
+from nao_library_modules.driver.joints import nao_joint_states
 from nao_library_modules.driver.nao_driver import Driver, DriverPart
 from nao_library_modules.driver.parts import PARTS, chosen, part_class
+from nao_library_modules.driver.sensors import nao_sonar, nao_tactile
+from nao_library_modules.driver.walk import moveto
 from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
 
@@ -125,3 +129,63 @@ def test_a_part_that_ends_while_it_cannot_be_started_ends(monkeypatch):
     part = DriverPart("leds", None, Names())
     part.close()
     assert not part.started.is_set()
+
+
+class FailingNode:
+    """Has parameters, and cannot make some topic or name."""
+
+    name, namespace = "/part", "/"
+
+    def __init__(self, broken):
+        self.broken, self.ends = broken, []
+
+    def param(self, name, default=None):
+        return default
+
+    def resolve(self, name):
+        return self.publisher(name)
+
+    def publisher(self, name, *_, **__):
+        if name == self.broken:
+            raise NaoError(f"{name} cannot be")
+
+    subscriber = publisher
+
+    def offer(self, *_):
+        """Nobody asks."""
+
+    def if_it_fails(self, action):
+        self.ends.append(action)
+
+
+@pytest.mark.parametrize(
+    "module, reader, broken",
+    [
+        (nao_sonar, "Sonars", "nao_robot/sonar/right"),
+        (nao_tactile, "Polling", "nao_robot/fsr/left"),
+        (nao_joint_states, "Polling", "robot_state_publisher"),
+        (moveto, "MoveToWalk", "move_base_simple/goal"),
+    ],
+)
+def test_a_part_that_fails_half_way_leaves_nothing_running(module, reader, broken, monkeypatch):
+    running = []
+
+    class Reader:
+        def __init__(self, *_):
+            running.append(self)
+
+        def close(self):
+            running.remove(self)
+
+    monkeypatch.setattr(module, reader, Reader)
+    for name, answer in (("tf_prefix", ""), ("frame_parameter", "base"), ("PlanarFrames", None)):  # they ask ROS
+        monkeypatch.setattr(module, name, lambda *_, answer=answer, **__: answer, raising=False)
+    robot = SimpleNamespace(connection=SimpleNamespace(answering_time=None))
+    (word,) = (each for each in PARTS if part_class(each).__module__ == module.__name__)
+    node = FailingNode(broken)
+    with pytest.raises(NaoError, match=f"{broken} cannot be"):
+        part_class(word)(robot, node)
+    assert len(running) == 1
+    for end in reversed(node.ends):
+        end()
+    assert not running

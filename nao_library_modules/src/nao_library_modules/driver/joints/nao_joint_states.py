@@ -79,6 +79,7 @@ class NaoJointStates:
         self._clock = RosClock()
         self._velocities, self._speeds, self._jumps = SlopeEstimator(), SlopeEstimator(), 0
         self._polling = Polling(robot, "joints", rate, self._clock, self._read)
+        node.if_it_fails(self._polling.close)
         topics = (self._joint_states, self._imu, self._stiffness, self._odometry, self._frames)
         # It is there at all times, and makes frames for those who listen to /tf.
         frames_only = node.resolve(node.param("~frame_publisher", "robot_state_publisher"))

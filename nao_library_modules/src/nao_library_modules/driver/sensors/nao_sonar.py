@@ -35,6 +35,7 @@ class NaoSonar:
         self._prefix = tf_prefix()
         rate = number(node, "~sonar_rate", DEFAULT_RATE, "reading rate")
         self._sonars = Sonars(robot, name_for_robot(node.name), rate, RosClock(), self._publish)
+        node.if_it_fails(self._sonars.close)
         self._topics = [
             (side, node.publisher(name, Range, queue_size=QUEUE))
             for side in SONARS

@@ -50,6 +50,7 @@ class NaoTactileNode:
         self._prefix = tf_prefix()
         rate = number(node, "~fsr_rate", DEFAULT_RATE, "reading rate")
         self._pressure = Polling(robot, "foot pressure", rate, RosClock(), self._read)
+        node.if_it_fails(self._pressure.close)
         self._feet = {side: node.publisher(f"nao_robot/fsr/{side}", Fsr, queue_size=QUEUE) for side in SIDES}
         self._lazy = LazyTopic(self._pressure.want, *self._feet.values())
         self._sensors = TouchSensors(robot, self._on_touch, self._on_clicks)

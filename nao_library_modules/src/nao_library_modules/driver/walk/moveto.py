@@ -36,6 +36,7 @@ class NaoqiMoveTo:
         self._odom = frame_parameter(node, "~odom_frame_id", ODOM)
         self._frames = PlanarFrames(answering_time=robot.connection.answering_time)
         self._walk = MoveToWalk(robot)
+        node.if_it_fails(self._walk.close)
         self._node.subscriber("move_base_simple/goal", PoseStamped, self._on_goal, queue_size=1)
         self._node.subscriber("move_base_simple/cancel", Empty, lambda _: self._walk.cancel(), queue_size=1)
 
