@@ -10,7 +10,10 @@ import pytest
 from nao_library_modules.cli.commands import files_commands
 from nao_library_modules.cli.errors import CommandFailed
 from nao_library_modules.cli.robot_files import FilesOverSsh
+from nao_library_modules.cli.robot_link import DirectRobot
 from nao_library_modules.cli.stack import Stack
+from naoqi.errors import RobotUnreachable
+from naoqi.robot_connection import Connection
 
 LOGIN = "nao@192.0.2.7"
 # What they are called with is noted, one argument a line; on the robot /home/nao is that folder.
@@ -150,3 +153,16 @@ def test_a_program_that_takes_too_long_is_ended(home, monkeypatch):
     (home.parent / "slow" / "ssh").chmod(0o755)
     with pytest.raises(CommandFailed, match="ssh to nao@::1 has not ended within 0.1 s"):
         FilesOverSsh("::1", limit=0.1).listed("~")
+
+
+def test_services_of_a_robot_whose_connection_was_just_lost_fail_with_its_reason():
+    class LostConnection:
+        live, module_names = None, Connection.module_names
+
+        def unreachable(self):
+            return RobotUnreachable("192.0.2.7", 9559, "the session is closed")
+
+    robot = DirectRobot(("192.0.2.7", 9559))
+    robot._connection = LostConnection()
+    with pytest.raises(CommandFailed, match="the session is closed"):
+        robot.services()

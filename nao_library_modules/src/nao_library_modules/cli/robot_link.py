@@ -68,11 +68,11 @@ class DirectRobot:
             raise CommandFailed(str(error)) from None
 
     def services(self) -> list[str]:
-        """Names of all services of the robot and of programs."""
-        from naoqi.directory import module_names
-
-        connection = self._connection
-        return sorted(module_names(connection, connection.live))
+        """Names of all services of the robot and of programs. Raises CommandFailed if the robot does not answer."""
+        try:
+            return sorted(self._connection.module_names())
+        except NaoError as error:
+            raise CommandFailed(str(error)) from None
 
     def service(self, name: str) -> Any:
         """A service as libqi gives it. Raises CommandFailed if there is none."""
