@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import pytest
+from actionlib import CommState
+from actionlib_msgs.msg import GoalStatus
+from fake_goals import FakeActionClient
 
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.functions.fields import fields_of
 from nao_library_modules.nao import body_devices as devices
 from nao_library_modules.nao.touch_names import GROUPS, SENSORS, names_of, sensors_of
+from nao_library_modules.ros.goal_tracker import GoalTracker
 from nao_library_modules.tactile.fields import require_touch
+from nao_library_modules.tactile.runner import BehaviorClient
 from nao_library_modules.tactile.touch import COUNT, HOLD, PRESS, RELEASE, TouchWatch, WantedTouch
 from nao_library_modules.tactile.waiting import WaitingFunctions
 
@@ -99,3 +105,35 @@ def test_numbers_are_looked_at_for_the_kinds_of_touch_that_have_them():
     ):
         with pytest.raises(BadGoal, match=told):
             require_touch(kind, count, duration)
+
+
+# --- goals of behaviours ----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def wave():
+    """A behaviour whose goal was sent: its client, its goal, and what was said of its end."""
+    client, ends = BehaviorClient(), []
+    client._client = FakeActionClient(lambda goal: None)
+    client.run("wave", (), lambda end, text: ends.append(end))
+    (goal,) = client._client.goals
+    return SimpleNamespace(client=client, goal=goal, ends=ends)
+
+
+def test_a_behaviour_is_cancelled_when_its_server_has_told_of_it(wave, monkeypatch):
+    wait = GoalTracker.cancel
+
+    def cancel(watch, handle, limit):
+        wave.goal.tell(GoalStatus.ACTIVE)  # the server is later than the end of this one
+        return wait(watch, handle, limit)
+
+    monkeypatch.setattr(GoalTracker, "cancel", cancel)
+    wave.client.close()
+    assert wave.goal.cancelled == [CommState.ACTIVE]
+
+
+def test_a_behaviour_that_ends_just_before_it_is_cancelled_is_not(wave):
+    wave.goal.tell(GoalStatus.ACTIVE)
+    wave.goal.just_before_the_cancel(lambda: wave.goal.end(GoalStatus.SUCCEEDED))
+    wave.client.close()
+    assert (wave.goal.cancelled, wave.ends) == ([], ["succeeded"])

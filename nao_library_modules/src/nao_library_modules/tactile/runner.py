@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -14,7 +15,7 @@ from nao_library_actions.msg import NaoBehaviorAction, NaoBehaviorGoal
 from nao_library_msgs.msg import BehaviorFunction
 from naoqi.errors import NaoError
 
-from ..ros.goal_tracker import SERVER_LIMIT, GoalTracker
+from ..ros.goal_tracker import ACKNOWLEDGEMENT_LIMIT, SERVER_LIMIT, GoalTracker
 
 SERVER = "NaoBehavior"
 
@@ -29,7 +30,7 @@ class BehaviorClient:
     def __init__(self) -> None:
         self._client: actionlib.ActionClient | None = None
         self._lock = threading.Lock()
-        self._handles: dict[object, Any] = {}
+        self._goals: dict[GoalTracker, Any] = {}  # with the handle of each
 
     def run(self, behavior: str, parameters: Sequence[str], done: Callable[[str, str], None]) -> None:
         """Start a behaviour and go on.
@@ -49,7 +50,6 @@ class BehaviorClient:
             raise NaoError(f"there is no server {rospy.resolve_name(SERVER)}: nobody can run {behavior}")
         function = BehaviorFunction(function="runBehavior", str_param=behavior, parameters=list(parameters))
         watch = GoalTracker()
-        key = object()
 
         def changed(handle: Any) -> None:
             was_over = watch.over.is_set()
@@ -57,17 +57,19 @@ class BehaviorClient:
             if was_over or not watch.over.is_set():
                 return
             with self._lock:
-                self._handles.pop(key, None)
+                self._goals.pop(watch, None)
             done(GoalStatus.to_string(handle.get_terminal_state()).lower(), handle.get_goal_status_text())
 
         handle = client.send_goal(NaoBehaviorGoal([function]), changed)
         with self._lock:
             if not watch.over.is_set():
                 # actionlib forgets a goal whose handle nobody holds.
-                self._handles[key] = handle
+                self._goals[watch] = handle
 
     def close(self) -> None:
+        """Cancel the behaviours that run."""
         with self._lock:
-            handles, self._handles = list(self._handles.values()), {}
-        for handle in handles:
-            handle.cancel()
+            goals, self._goals = self._goals, {}
+        end = time.monotonic() + ACKNOWLEDGEMENT_LIMIT
+        for watch, handle in goals.items():
+            watch.cancel(handle, max(end - time.monotonic(), 0.0))
