@@ -36,8 +36,8 @@ from nao_sim_bridge.cameras.settings import (
     load_cameras,
 )
 from nao_sim_bridge.cameras.stream import CameraStream
-from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.model.kinematics import quaternion_matrix
+from nao_sim_bridge.model.robot_model import RobotModel
 from nao_sim_bridge.world.render_state import RenderState
 
 log = logging.getLogger("nao_sim.cameras")
