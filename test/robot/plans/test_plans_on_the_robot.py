@@ -107,10 +107,10 @@ class Link:
         feedback.base_position.header.frame_id = "odom"
         feedback.base_position.pose.position.x, feedback.base_position.pose.orientation.w = 0.5, 1.0
         on_feedback(feedback)
-        calls = [call]
-        with interrupt.waking(lambda: calls.append(self._motion.call_async("stopMove"))):
+        with interrupt.waking(lambda: self._motion.call_async("stopMove")):
             call.result(timeout=60.0)
-        calls[-1].result(timeout=60.0)
+        if interrupt.is_set():  # the walk has ended before the call that stopped it has
+            self._motion.call_async("stopMove").result(timeout=60.0)
         return ActionEnd(GoalStatus.PREEMPTED if interrupt.is_set() else GoalStatus.SUCCEEDED, "", None)
 
 
