@@ -422,6 +422,12 @@ def test_a_thing_is_in_the_picture_where_it_is_projected(nao):
     assert np.isnan(camera.project([(-1.0, 0.0, 0.5)])).all()
 
 
+@pytest.mark.parametrize("points", [(1.0, 0.0, 0.5), [(1.0, 0.0)], [(1.0, 0.0, math.nan)], "ball"])
+def test_points_that_cannot_be_projected_are_refused(nao, points):
+    with pytest.raises(BadValue, match=r"points.*an array \(n, 3\) of finite numbers"):
+        nao.camera().project(points)
+
+
 @pytest.mark.parametrize("served", [False, True])
 def test_pictures_from_outside_show_the_joints_as_they_are_not_as_they_are_measured(monkeypatch, served):
     drawn = []

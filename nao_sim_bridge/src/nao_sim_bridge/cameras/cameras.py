@@ -33,6 +33,7 @@ from nao_sim_bridge.cameras.settings import (
     KEEP_ALIVE,
     LUMINANCE,
     WHITE_BALANCE,
+    Resolution,
     load_cameras,
 )
 from nao_sim_bridge.cameras.stream import CameraStream
@@ -158,14 +159,10 @@ class Cameras:
             BadValue: The cameras have no such resolution.
             RenderError: It cannot be drawn.
         """
-        sizes = {(size.width, size.height): size for size in self.tables.resolutions.values()}
-        if (width, height) not in sizes:
-            allowed = ", ".join(f"{w}x{h}" for w, h in sorted(sizes))
-            raise BadValue("picture", f"{width}x{height}", allowed)
+        size, pixels = self._size(width, height), self.tables.color_space(RGB)
         with self.lock:
             moment = self._moment(self.tables.camera(camera), snapshot, self._look(snapshot))
         drawn: Future[Frame] = Future()
-        size, pixels = sizes[width, height], self.tables.color_space(RGB)
 
         def draw() -> None:
             try:
@@ -177,12 +174,24 @@ class Cameras:
         return drawn.result().array()
 
     def project(self, snapshot: Snapshot, camera: int, points: np.ndarray, width: int, height: int) -> np.ndarray:
-        """Where (n, 3) points of the world are in the picture of a moment: (n, 2) pixels, NaN behind the camera."""
+        """Pixels (n, 2) of (n, 3) points of the world in the picture of a snapshot, the last one; NaN behind the camera.
+
+        Raises:
+            BadValue: The cameras have no such resolution.
+        """
+        self._size(width, height)
         position, orientation = self._places.in_world(self._look(snapshot), camera)
-        ahead, left, up = ((points - np.array(position)) @ quaternion_matrix(orientation)).T
-        pinhole = self.optics(camera).intrinsics(width, height)
-        ahead = np.where(ahead > 0.0, ahead, np.nan)
-        return np.stack([pinhole.cx - pinhole.fx * left / ahead, pinhole.cy - pinhole.fy * up / ahead], axis=1)
+        optics = self.optics(camera)
+        in_camera = (points - np.array(position)) @ quaternion_matrix(orientation)
+        places = [optics.project(point) or (np.nan, np.nan) for point in in_camera]
+        return np.array(places).reshape(-1, 2) * (width, height)
+
+    def _size(self, width: int, height: int) -> Resolution:
+        sizes = {(size.width, size.height): size for size in self.tables.resolutions.values()}
+        if (width, height) not in sizes:
+            allowed = ", ".join(f"{w}x{h}" for w, h in sorted(sizes))
+            raise BadValue("picture", f"{width}x{height}", allowed)
+        return sizes[width, height]
 
     def optics(self, camera: int) -> CameraOptics:
         return self._places.optics[self.tables.camera(camera)]

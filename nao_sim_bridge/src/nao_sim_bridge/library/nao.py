@@ -148,8 +148,17 @@ class HeadCamera:
         Returns:
             (n, 2) column and row, in pixels from the upper left corner; the middle of the first pixel is (0.5, 0.5).
             A point beside the picture has a place beside it, one behind the camera NaN.
+
+        Raises:
+            BadValue: `points` is no such array, or the camera has no such resolution.
         """
-        return self._nao._project(self._index, np.asarray(points, dtype=float).reshape(-1, 3), width, height)
+        try:
+            places = np.asarray(points, dtype=float)
+        except (TypeError, ValueError):
+            places = np.empty(0)
+        if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
+            raise BadValue("points", points, "an array (n, 3) of finite numbers, m")
+        return self._nao._project(self._index, places, width, height)
 
 
 class Nao:
