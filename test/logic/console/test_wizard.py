@@ -13,6 +13,7 @@ import pytest
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.console.files.yaml_file import ConsoleFileError
+from nao_library_modules.console.pages.wizard_page import WizardParts
 from nao_library_modules.console.robots.errors import Stopped
 from nao_library_modules.console.robots.events import EventStream
 from nao_library_modules.console.wizard.desk import WizardDesk
@@ -238,6 +239,13 @@ def test_a_file_that_is_wrong_from_the_start_is_a_page_without_buttons(tmp_path)
     current = CurrentLayout(LayoutFile(path, SHIPPED))
     assert current.problems and list(current.layout.buttons()) == []
     assert WizardDesk().values(current.layout, "/") == {}
+
+
+def test_the_mistakes_of_a_file_are_in_the_terminal_when_the_console_starts(tmp_path, capsys):
+    path = tmp_path / "console.yaml"
+    path.write_text("groups: wrong")
+    WizardParts(SimpleNamespace(settings=SimpleNamespace(buttons=path)))
+    assert f"{path}: groups: a list is wanted" in capsys.readouterr().err
 
 
 # --- keys, colours, texts ---------------------------------------------------------------------------------------------

@@ -174,7 +174,7 @@ class Cameras:
         return drawn.result().array()
 
     def project(self, snapshot: Snapshot, camera: int, points: np.ndarray, width: int, height: int) -> np.ndarray:
-        """Pixels (n, 2) of (n, 3) points of the world in the picture of a snapshot, the last one; NaN behind the camera.
+        """Pixels (n, 2) of (n, 3) points of the world in the picture of a snapshot; NaN behind the camera.
 
         Raises:
             BadValue: The cameras have no such resolution.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import logging
+import sys
 import threading
 import uuid
 from concurrent.futures import ThreadPoolExecutor
@@ -29,8 +29,6 @@ from ..wizard.wire import layout_message
 from .frame import PageContext, framed, page_at
 from .wizard_editor import WizardEditor
 
-log = logging.getLogger(__name__)
-
 OWN_FILE = "~/.ros/nao_console.yaml"
 """What is edited where the console was started without a file: the shipped one stays as it is."""
 LOOK_PERIOD = 2.0
@@ -52,7 +50,7 @@ class WizardParts:
         self.file = LayoutFile(own, shipped)
         self.current = CurrentLayout(self.file)
         for problem in self.current.problems:
-            log.warning("%s: %s", own, problem)
+            print(f"{own}: {problem}", file=sys.stderr, flush=True)
         self.desk = WizardDesk()
 
     def find_all(self, layout: WizardLayout) -> None:
