@@ -166,7 +166,7 @@ def test_work_for_pages_keeps_one_thread_busy():
     assert most == 1
 
 
-def test_work_of_pages_rests_as_long_as_it_takes():
+def test_work_of_pages_pauses_as_long_as_it_takes():
     times = []
 
     def work():

@@ -152,7 +152,7 @@ class FailingNode:
     subscriber = publisher
 
     def offer(self, *_):
-        """Nobody asks."""
+        """No caller."""
 
     def if_it_fails(self, action):
         self.ends.append(action)

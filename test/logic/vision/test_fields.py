@@ -118,7 +118,7 @@ def refusals():
 
 def test_two_streams_of_one_chain_do_not_publish_on_the_same_topic(refusals):
     first, second = (f("createStream", id=name, topic_out="/both") for name in ("first", "second"))
-    (told,) = refusals(first, second)
-    assert told == "function 2 (createStream): field topic_out: 'first' publishes /both: another topic"
+    (refusal,) = refusals(first, second)
+    assert refusal == "function 2 (createStream): field topic_out: 'first' publishes /both: another topic"
     assert refusals(first, f("deleteThread", id="first"), second) == []
     assert refusals(first, f("createStream", id="first", topic_out="/both")) == []

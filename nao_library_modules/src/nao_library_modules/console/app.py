@@ -29,8 +29,8 @@ from .view.views import Views
 
 PORT = 8080
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
-OLD_LOOKS = 500
-"""Looks of the collector through what is young to one through what is old, which holds up every thread."""
+OLDEST_GENERATION = 500
+"""Garbage collections of the middle generation before one of the oldest, which stops every thread."""
 SWITCH_INTERVAL = 0.0005
 """s for which a thread that takes the processor keeps others waiting, a stop among them."""
 STUDIES = "~/.ros/nao_studies"
@@ -152,7 +152,7 @@ class Console:
         )
         gc.collect()
         gc.freeze()  # what is there by now stays: a look through all of it holds up every thread
-        gc.set_threshold(*gc.get_threshold()[:2], OLD_LOOKS)
+        gc.set_threshold(*gc.get_threshold()[:2], OLDEST_GENERATION)
         sys.setswitchinterval(SWITCH_INTERVAL)
         for line in self.addresses():
             print(line, flush=True)

@@ -146,9 +146,7 @@ class ActionServer(actionlib.ActionServer):
         self._came: dict[str, float] = {}  # id of a goal that is not over -> when it came, by time.monotonic
         self._newest = self._last_end = -math.inf  # when the last goal came, and when a result was published last
         self._status_waits_since = math.inf  # when there was a first status that waits
-        self._pending: deque[tuple[float, Any, Any]] = (
-            deque()
-        )  # feedback to publish: when its goal came, status, feedback
+        self._pending: deque[tuple[float, Any, Any]] = deque()  # when the goal came, its status, feedback to publish
         self._later: threading.Timer | None = None
         super().__init__(*arguments, **options)
 

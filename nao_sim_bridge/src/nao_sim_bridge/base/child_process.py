@@ -28,9 +28,13 @@ SOURCES = Path(__file__).resolve().parents[2]
 
 
 class Deadline:
-    """A time limit for a process, s, in which the time does not count that it waits for a processor (Linux).
+    """A time limit for a process that leaves out the time it waits for a processor (Linux).
 
     On a busy computer an answer that takes one second of work may come after a minute.
+
+    Attributes:
+        seconds: The limit, s.
+        left: s until it is reached; negative afterwards.
     """
 
     def __init__(self, pid: int, seconds: float) -> None:

@@ -17,8 +17,8 @@ log = logging.getLogger(__name__)
 End = Callable[[], None]
 LONGEST_WORK = 30.0
 """s for which others wait for a piece of work, and a page for what comes of it."""
-LONGEST_REST = 2.0
-"""s between two pieces of work."""
+LONGEST_PAUSE = 2.0
+"""s after a piece of work."""
 MOST_WORK = 40
 """Pieces of work that wait for their turn."""
 RETRY = 2.0
@@ -56,13 +56,13 @@ async def in_background(task: Callable[..., Any], *arguments: Any) -> Any:
 class Lane:
     """Work that takes the processor, in threads, one piece at a time: many pages keep half a thread busy. Event loop.
 
-    Behind each piece it rests for as long as that took, so that a stop finds the interpreter free.
+    After each piece it pauses for as long as that took, so that Stop gets the interpreter.
     """
 
     def __init__(self) -> None:
         self._turn = asyncio.Lock()
         self._waiting = 0
-        self._rested = 0.0  # when, by the clock of the loop
+        self._pauses_until = 0.0  # by the clock of the loop
 
     async def do(self, task: Callable[..., Any], *arguments: Any) -> Any:
         """What a function returns, or raises, when its turn has come. Raises NaoError where it takes LONGEST_WORK.
@@ -78,12 +78,12 @@ class Lane:
         try:
             async with self._turn:
                 clock = asyncio.get_running_loop().time
-                await asyncio.sleep(self._rested - clock())
+                await asyncio.sleep(self._pauses_until - clock())
                 began = clock()
                 try:
                     return await asyncio.wait_for(in_background(task, *arguments), LONGEST_WORK)
                 finally:
-                    self._rested = clock() + min(clock() - began, LONGEST_REST)
+                    self._pauses_until = clock() + min(clock() - began, LONGEST_PAUSE)
         except asyncio.TimeoutError:
             raise NaoError(f"it takes longer than {LONGEST_WORK:g} s, and was given up") from None
         finally:
