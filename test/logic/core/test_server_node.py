@@ -12,12 +12,12 @@ import actionlib.msg
 import pytest
 import rospy
 import tf2_ros
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus
 from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import TransformStamped
 
 from nao_library_modules.ros import diagnostics, robot_frames, server_node
-from nao_library_modules.ros.action_server import ActionServer, unless_closed
+from nao_library_modules.ros.action_server import ActionServer, Results, can_have_noted, unless_closed
 from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
 
@@ -90,6 +90,21 @@ def test_the_status_waits_until_the_client_of_the_newest_goal_can_have_noted_it(
         server.publish_status()
     assert published.get(timeout=60.0) >= came + 0.04
     assert published.empty(), "three that came in the meantime are one"
+
+
+@pytest.mark.parametrize("node, noted", [("/client", True), ("/other", False)])
+def test_a_client_that_cancels_its_goal_has_noted_it(node, noted):
+    server = ActionServer("test", actionlib.msg.TestAction, lambda goal: None, auto_start=False, soonest=60.0)
+    server.register_cancel_callback(lambda goal: None)
+    server.result_pub, goal = Results(Mock()), actionlib.msg.TestActionGoal(goal_id=GoalID(id="goal"))
+    goal._connection_header = {"callerid": "/client"}
+    server.internal_goal_callback(goal)
+    came = server.came(goal.goal_id)
+    assert not can_have_noted(came, 60.0)
+    cancel = GoalID(id="goal")
+    cancel._connection_header = {"callerid": node}
+    server.internal_cancel_callback(cancel)
+    assert can_have_noted(server.came(cancel), 60.0) is noted
 
 
 def test_the_result_of_a_goal_is_published_before_the_status_with_its_end(monkeypatch):

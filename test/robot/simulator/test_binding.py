@@ -90,8 +90,8 @@ def broker():
 def served(broker):
     """Registers a service and gives a client that connects after it.
 
-    Under load libqi refuses the calls of a client whose connection and the service were made at the same moment. New for
-    each test: it must not remember what another one served under the same name.
+    Under load libqi refuses the calls of a client whose connection and the service were made at the same moment. New
+    for each test: it must not remember what another one served under the same name.
     """
     names, clients = [], []
 

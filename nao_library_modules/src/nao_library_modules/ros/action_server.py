@@ -63,7 +63,7 @@ class _Topics:
             topic.unregister()
 
 
-class _Results(_Topics, rospy.SubscribeListener):
+class Results(_Topics, rospy.SubscribeListener):
     """Results of goals; one whose client does not listen yet is sent to it when it does.
 
     rospy connects the topics of a client one by one: on a busy computer a goal may come, and be over, before its client
@@ -81,7 +81,12 @@ class _Results(_Topics, rospy.SubscribeListener):
     def note(self, goal: Any) -> None:
         """Note which node sent a goal."""
         with self._lock:
-            self._senders[goal.goal_id.id] = getattr(goal, "_connection_header", {}).get("callerid", "")
+            self._senders[goal.goal_id.id] = _sender(goal)
+
+    def is_from_sender(self, cancel: GoalID) -> bool:
+        """Whether the node that cancels a goal is the one that sent it."""
+        with self._lock:
+            return bool(_sender(cancel)) and self._senders.get(cancel.id) == _sender(cancel)
 
     def publish(self, message: Any) -> None:
         with self._lock:
@@ -112,6 +117,11 @@ class _Results(_Topics, rospy.SubscribeListener):
         """Where a node listens: topic of rospy, connection."""
         impls = [topic.impl for topic in self._topics if topic.impl is not None]  # None: unregistered
         return [(impl, each) for impl in impls for each in impl.connections if each.endpoint_id == node]
+
+
+def _sender(message: Any) -> str:
+    """Name of the node that sent a message; empty: not known."""
+    return getattr(message, "_connection_header", {}).get("callerid", "")
 
 
 def can_have_noted(came: float, soonest: float = SOONEST_END) -> bool:
@@ -167,13 +177,24 @@ class ActionServer(actionlib.ActionServer):
                 self.goal_sub = _Topics(self.goal_sub, goal)
                 cancel = rospy.Subscriber(f"{name}/cancel", GoalID, self.internal_cancel_callback, **sizes)
                 self.cancel_sub = _Topics(self.cancel_sub, cancel)
-            self.result_pub = _Results(*results)
+            self.result_pub = Results(*results)
 
     def internal_goal_callback(self, goal: Any) -> None:
         with self.lock:
             self._newest = self._came[goal.goal_id.id] = time.monotonic()
             self.result_pub.note(goal)
             super().internal_goal_callback(goal)
+
+    def internal_cancel_callback(self, goal_id: GoalID) -> None:
+        with self.lock:
+            if goal_id.id in self._came and self.result_pub.is_from_sender(goal_id):
+                self._came[goal_id.id] = -math.inf  # a client that cancels its goal has noted it
+            super().internal_cancel_callback(goal_id)
+
+    def came(self, goal_id: GoalID) -> float:
+        """When a goal came, by `time.monotonic`; -inf: its client has noted it for certain, or it is over."""
+        with self.lock:
+            return self._came.get(goal_id.id, -math.inf)
 
     def publish_result(self, status: Any, result: Any) -> None:
         """Publish how a goal ended, after all feedback of it."""
@@ -191,8 +212,7 @@ class ActionServer(actionlib.ActionServer):
     def publish_feedback(self, status: Any, feedback: Any) -> None:
         """Publish feedback of a goal, or have it published when its client can have noted it."""
         with self.lock:
-            came = self._came.get(status.goal_id.id, -math.inf)
-            self._pending.append((came, copy.copy(status), feedback))
+            self._pending.append((self.came(status.goal_id), copy.copy(status), feedback))
             self._publish_pending_feedback()
 
     def publish_status(self) -> None:
@@ -257,7 +277,7 @@ class PromptActionServer(actionlib.SimpleActionServer):
     goals that are over only the last ones are told of at all: with hundreds of short ones in it, each status takes
     clients so long to read that they have no time for what comes of their goals.
 
-    A goal that is taken up and would be over at once ends `soonest_end` later: see `let_the_client_note_the_goal`.
+    A goal that would be over at once ends `soonest_end` after it came: see `let_the_client_note_the_goal`.
 
     Everything else is actionlib's.
     """
@@ -267,7 +287,6 @@ class PromptActionServer(actionlib.SimpleActionServer):
     ) -> None:
         """Make a server that is not started. `execute`: carries out a goal. `soonest_end`: s of wall time."""
         self._soonest_end = soonest_end
-        self._taken_up = 0.0
         self._over: dict[Any, float] = {}  # goals in the status that are over -> since when, by time.monotonic
         self._no_goal = type(action().action_goal)()
         self._heap = Heap()
@@ -290,7 +309,6 @@ class PromptActionServer(actionlib.SimpleActionServer):
                     self.execute_condition.wait(SHUTDOWN_POLL)
                     continue
             goal = self.accept_new_goal()
-            self._taken_up = time.monotonic()
             self._carry_out(goal)
             self._empty_goals()
             self._heap.tidy()
@@ -326,16 +344,20 @@ class PromptActionServer(actionlib.SimpleActionServer):
     # The names are actionlib's.
 
     def set_succeeded(self, *arguments: Any, **options: Any) -> None:
-        let_the_client_note_the_goal(self._taken_up, self._soonest_end)
+        self._let_the_client_note_the_goal()
         super().set_succeeded(*arguments, **options)
 
     def set_aborted(self, *arguments: Any, **options: Any) -> None:
-        let_the_client_note_the_goal(self._taken_up, self._soonest_end)
+        self._let_the_client_note_the_goal()
         super().set_aborted(*arguments, **options)
 
     def set_preempted(self, *arguments: Any, **options: Any) -> None:
-        let_the_client_note_the_goal(self._taken_up, self._soonest_end)
+        self._let_the_client_note_the_goal()
         super().set_preempted(*arguments, **options)
+
+    def _let_the_client_note_the_goal(self) -> None:
+        came = self.action_server.came(self.current_goal.get_goal_id())
+        let_the_client_note_the_goal(came, self._soonest_end)
 
     def _terminated(self) -> bool:
         with self.terminate_mutex:
