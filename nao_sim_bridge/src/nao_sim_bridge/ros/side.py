@@ -28,6 +28,8 @@ LOOK_PERIOD = 0.1
 """s of wall time between two looks whether somebody listens, while nobody does."""
 STATUS_PERIOD = 1.0
 STATUS_NAME = "nao_sim: Simulation"
+ASKED, REACHED = "speed asked", "speed reached"
+"""Values of the status."""
 
 
 class RosSide:
@@ -152,7 +154,9 @@ class RosDiagnostics:
 
     ROS API:
         Publishes `/diagnostics` (diagnostic_msgs/DiagnosticArray): `nao_sim: Simulation`, a warning while something has
-        failed since the start of the robot, with who it was, how often, and the last error of each.
+        failed since the start of the robot, with who it was, how often, and the last error of each. While time passes
+        also `speed asked` (inf: as fast as possible) and `speed reached` since the last report: simulated seconds per
+        second of this computer.
 
     Args:
         server: The running simulator; of several robots that of the first.
@@ -160,6 +164,7 @@ class RosDiagnostics:
 
     def __init__(self, server: SimulatorServer) -> None:
         self._server = server
+        self._speed = SpeedMeter()
         self._next = 0.0
         self._publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=5)
 
@@ -170,10 +175,35 @@ class RosDiagnostics:
             return
         self._next = now + STATUS_PERIOD
         status = status_of(self._server.simulation.shared.guard.failures())
+        runner = self._server.runner
+        passed = runner.ticks * self._server.simulation.settings.tick_s
+        reached = self._speed.reached(now, passed, None if runner.paused else runner.speed)
+        if reached is not None:
+            status.values += [KeyValue(ASKED, f"{runner.speed:g}"), KeyValue(REACHED, f"{reached:.3f}")]
         status.hardware_id = f"{self._server.options.address}:{self._server.broker.port}"
         message = DiagnosticArray(status=[status])
         message.header.stamp = rospy.Time.now()
         self._publisher.publish(message)
+
+
+class SpeedMeter:
+    """How fast simulated time passes, from one look to the next."""
+
+    def __init__(self) -> None:
+        self._last: tuple[float, float, float | None] | None = None
+
+    def reached(self, now: float, passed: float, asked: float | None) -> float | None:
+        """Simulated seconds per second since the last look; None where the asked speed has changed meanwhile.
+
+        Args:
+            now: s of this computer.
+            passed: s of simulated time in all.
+            asked: Speed that is asked for; None while time stands still.
+        """
+        last, self._last = self._last, (now, passed, asked)
+        if last is None or asked is None or last[2] != asked or now <= last[0]:
+            return None
+        return (passed - last[1]) / (now - last[0])
 
 
 def status_of(failures: Sequence[Failure]) -> DiagnosticStatus:
