@@ -68,6 +68,12 @@ class SoundRecordingFunctions(Part):
         self._left = left
         self._robot_home = robot_home  # a folder of this computer; None: it is on the robot alone
 
+    @property
+    def running(self) -> list[str]:
+        """Paths of the recordings that run: one, or none."""
+        recording = self._left.recording
+        return [] if recording is None else [recording.path]
+
     def _check_recording_begin(
         self,
         str_param: str,

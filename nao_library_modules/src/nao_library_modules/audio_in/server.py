@@ -16,6 +16,7 @@ from ..audio.sound_card import NaoAudio, put_back
 from ..base.answers import Outcome
 from ..functions.chain import checked_by
 from ..processes.launcher import LaunchPath
+from ..ros.health import recordings_report
 from .contexts import ContextFunctions
 from .energy import EnergyFunctions
 from .fields import SENSES, Parameter, SetParameter, Value
@@ -84,6 +85,7 @@ class NaoAudioInput(NaoAudio):
         left = (self.recordings.drop, self.recognition.drop, self.energies.drop)
         self.at_end(*map(self.with_robot, left))
         self._unrestored: dict[str, Any] | None = self.kept.load(dict)  # what goals had left going, not taken up yet
+        self.own_reports["recordings"] = lambda: recordings_report(self.recordings.running)
         self.serve("nao_audio_in", NaoAudioInAction)
         if self._unrestored:
             self.robot.connection.in_background(self._take_up)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import threading
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Any
@@ -14,6 +16,12 @@ SLOW_ANSWER = 0.5
 
 SILENT = "silent"
 """State, among those of the connection, of a robot that does not answer but is not lost yet."""
+
+
+SILENT_FOR = "silent for (s)"
+"""Value of a report about the connection: how long the robot has not answered, 0 while it does."""
+RECORDINGS = "recordings"
+"""Value of a report about recordings: their names, a list as JSON."""
 
 
 class Level(IntEnum):
@@ -62,7 +70,7 @@ def connection_report(address: str, connection: Any) -> Report:
     values = {
         "address": address,
         "state": SILENT if silent else str(connection.state),
-        "silent for (s)": f"{silent:.1f}",
+        SILENT_FOR: f"{silent:.1f}",
         "latency (ms)": "" if latency is None else f"{1000.0 * latency:.1f}",
         "connections made": str(connection.generation),
         "last error": connection.last_error or "",
@@ -77,6 +85,12 @@ def connection_report(address: str, connection: Any) -> Report:
     if latency is not None and latency > SLOW_ANSWER:
         return Report(Level.WARN, f"connected, but answers take {latency:.1f} s", values)
     return Report(Level.OK, "connected", values)
+
+
+def recordings_report(names: Iterable[str]) -> Report:
+    """What a server records at this moment. `names`: of the recordings that get something to record."""
+    running = sorted(names)
+    return Report(Level.OK, f"records {', '.join(running) or 'nothing'}", {RECORDINGS: json.dumps(running)})
 
 
 def launch_report(supervisor: Supervisor | None) -> Report:

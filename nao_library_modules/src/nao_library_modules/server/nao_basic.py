@@ -36,7 +36,7 @@ from ..robot.event_relay import EventRelay
 from ..robot.robot import Robot
 from ..robot.robot_clock import RobotClock
 from ..ros.body_reports import BodyReporter
-from ..ros.health import GoalCounter, connection_report, launch_report
+from ..ros.health import GoalCounter, Report, connection_report, launch_report
 from ..ros.startup_grace import StartupGrace
 
 log = logging.getLogger(__name__)
@@ -173,6 +173,7 @@ class NaoBasic(FunctionRunner):
         self._launch: Supervisor | None = None
         self._launched: LaunchPath | None = None
         self._diagnostics: Any = None
+        self.own_reports: dict[str, Callable[[], Report]] = {}  # on /diagnostics, by name; filled before `serve`
         self._first_ends: list[Callable[[], Any]] = []
         self._last_ends: list[Callable[[], Any]] = []
         self.robot.connection.add_listener(self._on_connection)
@@ -224,6 +225,7 @@ class NaoBasic(FunctionRunner):
             f"{name} NAO": BodyReporter(self.robot).report,
             f"{name} goals": self._goals.report,
         }
+        reports.update({f"{name} {what}": report for what, report in self.own_reports.items()})
         if self.launchpath is not None:
             reports[f"{name} launch file"] = lambda: launch_report(self._launch)
         self._diagnostics = self._node.publish_diagnostics(self.robot.address, reports)

@@ -9,6 +9,7 @@ from nao_library_actions.msg import NaoVisionAction
 
 from ..base.answers import Outcome
 from ..processes.launcher import LaunchPath
+from ..ros.health import recordings_report
 from ..server.extractor_use import subscriber_name
 from ..server.nao_basic import NaoBasic
 from .capture.base import CAMERA_TOPICS, Cameras, ChainResults
@@ -124,6 +125,7 @@ class NaoVision(NaoBasic):
             detections,
         )
         streaming.make_again()
+        self.own_reports["recordings"] = lambda: recordings_report(self.jobs.recorded())
         self.serve("NaoVision", NaoVisionAction)
 
     def begin_chain(self) -> None:

@@ -31,6 +31,11 @@ class CaptureJobs:
         with self._lock:
             return dict(sorted(self._jobs.items()))
 
+    def recorded(self) -> list[str]:
+        """Names of the recordings that run and still get pictures, or wait for the first."""
+        reports = [job.report() for job in self.known.values()]
+        return [each.id for each in reports if each.kind == "recording" and each.state in ("waiting", "running")]
+
     def get(self, ident: str) -> CaptureJob:
         """The job of a name. Raises BadGoal if there is none."""
         known = self.known
