@@ -20,7 +20,6 @@ from nao_library_modules.console.view.broadcast import MOST_QUEUED, Broadcast, F
 from nao_library_modules.console.view.live_view import watched_traces
 from nao_library_modules.console.view.robot_model import mesh_path, read_model
 from nao_library_modules.console.view.sense_texts import AGAIN, Sightings, clicked, felt, heard, said, touched
-from nao_library_modules.console.view.senses import SENTENCE, Senses
 from nao_library_modules.console.view.traces import CLOSEST, SPAN, Trace, listed_value, split_trace
 from nao_library_modules.nao.touch_names import SENSORS
 from naoqi.errors import NaoError
@@ -273,35 +272,3 @@ def test_a_task_in_the_background_returns_or_raises():
         return await in_background(max, 1, 2)
 
     assert asyncio.run(both()) == 2
-
-
-class SpeakingRobot:
-    """Tells sentences as its memory's topic does: to whoever begins to listen the last one first."""
-
-    name = "/"
-
-    def __init__(self):
-        self.events = EventStream("/", lambda: 0.0)
-        self.last = "Walker online"
-        self.listening = threading.Event()
-
-    def topic(self, *_, **__):
-        return lambda: None
-
-    def watch(self, key, kind, callback):
-        if key == SENTENCE:
-            self.tell = lambda text: callback(
-                SimpleNamespace(data=text, header=SimpleNamespace(stamp=SimpleNamespace(to_sec=lambda: 1.0)))
-            )
-            self.tell(self.last)
-            self.listening.set()
-        return lambda: None
-
-
-def test_what_was_said_before_anybody_listened_is_no_news():
-    robot = SpeakingRobot()
-    release = Senses(robot, robot).acquire()
-    assert robot.listening.wait(60.0)
-    robot.tell("Hello")
-    release()
-    assert [(event.kind, event.text) for event in robot.events.last()] == [("said", "Hello")]

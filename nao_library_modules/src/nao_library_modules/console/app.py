@@ -79,7 +79,7 @@ class Console:
 
     Attributes:
         app: FastAPI application, for routes and WebSockets beside the pages; all of them are behind the guard.
-        views: What pages and trials share of each robot: its senses, its body, its pictures.
+        views: What pages and trials share of each robot: its senses, its body, its alarms, its pictures.
         lanes: Role -> where what takes the processor is done for pages.
     """
 
@@ -93,7 +93,7 @@ class Console:
 
         self.settings = settings
         self.robots = Robots()
-        self.views = Views()
+        self.views = Views(settings.studies)
         self.controls = Controls()
         self.lanes = {role: Lane() for role in ROLES}  # observers never hold up the work of operators
         self.sessions = Sessions(None if settings.users is None else read_users(settings.users))

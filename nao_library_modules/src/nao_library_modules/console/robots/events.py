@@ -11,6 +11,8 @@ from typing import Any
 
 log = logging.getLogger(__name__)
 
+STATE, ALARM = "state", "alarm"
+"""Kinds of events: how the robot is when a trial begins; the begin or the end of an alarm."""
 KEPT = 1000
 """Events that are kept for pages that open later."""
 
@@ -20,7 +22,7 @@ class ConsoleEvent:
     """Something that happened."""
 
     stamp: float  # s of ROS time
-    kind: str  # pressed, sent, ended, cancelled, stopped, walked, said, heard, touched, seen, felt, note, ...
+    kind: str  # pressed, sent, ended, stopped, walked, said, heard, touched, seen, felt, state, alarm, note, ...
     robot: str  # its namespace, with a slash at both ends
     text: str  # for people
     by: str = ""  # who did it at the console; empty: the robot, or another program

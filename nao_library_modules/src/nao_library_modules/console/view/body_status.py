@@ -7,7 +7,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ...nao.body_devices import CHARGING_BIT
+from ...ros.body_reports import BATTERY_FLAGS
+
 JOINT, BATTERY, HEAD = "nao_joint: ", "nao_power: Battery", "nao_cpu: Head Temperature"
+CHARGING = BATTERY_FLAGS[CHARGING_BIT]
 OK, WARN, ERROR, STALE = range(4)
 """Levels of diagnostic_msgs/DiagnosticStatus."""
 LIMP, STIFF = 0.01, 0.99
@@ -37,6 +41,7 @@ class BodyStatus:
     Attributes:
         battery: Percent; not a number until it is told.
         battery_text: As the driver says it.
+        charging: Whether the battery is charged.
         battery_level, head_level: Of the diagnostics.
         head: Of the processor, degC; not a number until it is told.
         stale: The robot cannot be reached: all this is old.
@@ -45,6 +50,7 @@ class BodyStatus:
     battery: float = math.nan
     battery_text: str = ""
     battery_level: int = OK
+    charging: bool = False
     head: float = math.nan
     head_level: int = OK
     joints: Mapping[str, JointStatus] = field(default_factory=dict)
@@ -57,11 +63,21 @@ class BodyStatus:
         return math.fsum(known) / len(known) if known else math.nan
 
     @property
+    def limp(self) -> bool | None:
+        """Whether no motor holds; None while that is not known."""
+        return self.stiffness < LIMP if math.isfinite(self.stiffness) else None
+
+    @property
+    def hot(self) -> tuple[str, ...]:
+        """Joints that are hot by the limits of the driver (its `~warning_threshold`), in the order of their names."""
+        return tuple(sorted(name for name, joint in self.joints.items() if joint.level > OK))
+
+    @property
     def stiffness_text(self) -> str:
         mean = self.stiffness
         if not math.isfinite(mean):
             return "unknown"
-        word = "limp" if mean < LIMP else "stiff" if mean > STIFF else "partly stiff"
+        word = "limp" if self.limp else "stiff" if mean > STIFF else "partly stiff"
         return f"{word} ({100 * mean:.0f} %)"
 
     @property
@@ -99,6 +115,7 @@ def read_status(statuses: Iterable[Any], namespace: str, before: BodyStatus) -> 
         before.battery if battery is None else _value(battery, "Percentage"),
         before.battery_text if battery is None else battery.message,
         before.battery_level if battery is None else _level(battery),
+        before.charging if battery is None else _text(battery, CHARGING) == str(True),
         before.head if head is None else _value(head, "CPU Temperature"),
         before.head_level if head is None else _level(head),
         {**before.joints, **joints},
@@ -113,10 +130,12 @@ def _level(status: Any) -> int:
 
 
 def _value(status: Any, key: str) -> float:
-    for pair in status.values:
-        if pair.key == key:
-            try:
-                return float(pair.value)
-            except ValueError:
-                return math.nan
-    return math.nan
+    try:
+        return float(_text(status, key))
+    except ValueError:
+        return math.nan
+
+
+def _text(status: Any, key: str) -> str:
+    """A value of a report; empty where it has none."""
+    return next((pair.value for pair in status.values if pair.key == key), "")

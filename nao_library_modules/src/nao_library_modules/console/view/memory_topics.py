@@ -9,8 +9,11 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from ...base.suggestion import did_you_mean
+from .latched import Latched
 
 FLOAT, TEXT = "float", "string"
+NOTHING = "null"
+"""JSON of a key without a value."""
 RATE = 10.0
 """Hz, at most so many messages of a key."""
 
@@ -54,6 +57,14 @@ class MemoryTopics:
                 self._leave(key)
 
         return leave
+
+    def watch_last(self, key: str, last: Latched, callback: Callable[[Any], None]) -> Callable[[], None]:
+        """As `watch`, a key of texts that holds what happened last: whether it holds anything yet is asked before."""
+        from nao_library_msgs.srv import GetMemory
+
+        answer = self._robot.call("nao_memory/get", GetMemory, pattern=key)
+        last.held = any(value != NOTHING for value in answer.values)
+        return self.watch(key, TEXT, callback)
 
     def _leave(self, key: str) -> None:
         from nao_library_msgs.srv import UnwatchMemory

@@ -5,8 +5,10 @@ from __future__ import annotations
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+from .alarm_watch import AlarmWatch
 from .body_watch import BodyWatch
 from .camera_feed import NAMES, CameraFeed
 from .live_view import LiveView
@@ -22,15 +24,20 @@ class RobotViews:
     robot: Any  # its RobotClient
     senses: Senses
     body: BodyWatch
+    alarms: AlarmWatch
     simulator: Simulator
     live: LiveView
     cameras: Mapping[str, CameraFeed]
 
 
 class Views:
-    """Of all robots, made when a page or a trial first asks. Any thread."""
+    """Of all robots, made when a page or a trial first asks. Any thread.
 
-    def __init__(self) -> None:
+    `folder`: of the studies.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
         self._lock = threading.Lock()
         self._robots: dict[str, RobotViews] = {}
 
@@ -40,9 +47,10 @@ class Views:
             found = self._robots.get(robot.namespace)
             if found is None or found.robot is not robot:
                 memory, simulator = MemoryTopics(robot), Simulator(robot)
-                senses = Senses(robot, memory)
+                senses, body = Senses(robot, memory), BodyWatch(robot, memory)
+                alarms = AlarmWatch(robot, body, self._folder)
                 live = LiveView(robot, senses, memory, simulator)
                 cameras = {name: CameraFeed(robot, name) for name in NAMES}
-                found = RobotViews(robot, senses, BodyWatch(robot), simulator, live, cameras)
+                found = RobotViews(robot, senses, body, alarms, simulator, live, cameras)
                 self._robots[robot.namespace] = found
             return found

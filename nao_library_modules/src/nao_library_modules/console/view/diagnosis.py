@@ -1,0 +1,74 @@
+"""What /diagnostics tells beside the body: whether the robot answers, how fast time passes, what is recorded. Pure.
+
+Times are given by who asks, s of this computer.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ...ros.health import RECORDINGS, SILENT_FOR
+
+SIMULATION, ASKED, REACHED = "nao_sim: Simulation", "speed asked", "speed reached"
+"""Report of the simulator, and its values: simulated seconds per second of the computer."""
+
+
+@dataclass(frozen=True)
+class SimulatedSpeed:
+    """Simulated seconds per second of the computer that runs the simulator."""
+
+    asked: float  # infinite: as fast as possible
+    reached: float
+    heard: float  # when that was told
+
+
+@dataclass(frozen=True)
+class ServerRecordings:
+    """What one server records."""
+
+    names: frozenset[str]
+    heard: float  # when that was told
+
+
+class Diagnosis:
+    """What was told last.
+
+    Attributes:
+        answered: When the robot answered last; None until somebody tells.
+        speed: None where no simulator tells, and while its time stands still.
+        recordings: Name of a server -> what it records.
+    """
+
+    def __init__(self) -> None:
+        self.answered: float | None = None
+        self.speed: SimulatedSpeed | None = None
+        self.recordings: Mapping[str, ServerRecordings] = {}
+
+    def take(self, statuses: Iterable[Any], address: str, now: float) -> None:
+        """Take the reports of a message. `address`: of the robot, `ip:port`; empty: not known."""
+        for status in statuses:
+            values = {pair.key: pair.value for pair in status.values}
+            if status.name == SIMULATION:
+                asked, reached = _number(values.get(ASKED)), _number(values.get(REACHED))
+                known = not (math.isnan(asked) or math.isnan(reached))
+                self.speed = SimulatedSpeed(asked, reached, now) if known else None
+            if not address or status.hardware_id != address:
+                continue
+            silent = _number(values.get(SILENT_FOR))
+            if not math.isnan(silent) and values.get("state") in ("connected", "silent"):
+                self.answered = max(self.answered or -math.inf, now - silent)
+            if RECORDINGS in values:
+                server = status.name.rpartition(": ")[2].rpartition(" ")[0]
+                told = ServerRecordings(frozenset(json.loads(values[RECORDINGS])), now)
+                self.recordings = {**self.recordings, server: told}
+
+
+def _number(text: Any) -> float:
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return math.nan
