@@ -1,4 +1,4 @@
-"""What all pages have: head line, choice of the robot, the stop, who is there, light and dark."""
+"""What all pages have: head line, choice of the robot, the stop, who is there, light and dark, the alarms."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from ..access.guard import LOGOUT, session_of
 from ..access.sessions import Session
 from ..robots.robot import RobotClient
 from ..view.background import Subscriptions, in_background
+from .alarm_bar import AlarmBar
 
 log = logging.getLogger(__name__)
 
@@ -173,6 +174,7 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
         ui.button("Stop", icon="pan_tool").classes("nao-stop").props(
             'color=negative aria-keyshortcuts="Escape" title="Ends everything that the robot does (Escape)"'
         )
+    AlarmBar(page)
     with ui.column().classes("nao-main w-full"):
         yield page
 

@@ -43,6 +43,7 @@ STATE_COLOURS = {
     "lost": "negative",
     "closed": "negative",
 }
+OLD_COLOUR = "blue-grey-8"
 JOINT = "joint"
 SENSOR_TRACES = tuple(f"{kind}:{name}" for kind, names in TRACE_NAMES.items() for name in names)
 
@@ -118,16 +119,20 @@ class StatusPanel:
         text = f"{state} {body.address}".strip() + (
             f": {body.problem}" if body.problem and state != "connected" else ""
         )
-        self._set("Connection", text, STATE_COLOURS.get(state, "grey-7"))
-        old = " (old)" if status.stale else ""
-        self._set("Battery", (status.battery_text or "unknown") + old, _colour(status.battery_level, status.battery))
-        self._set("Heat", heat_text(status) + old, _colour(status.heat_level, 0.0 if status.hottest else math.nan))
-        self._set("Stiffness", status.stiffness_text + old, "grey-7")
-        self._set("Posture", self._views.senses.posture or "unknown", "grey-7")
+        self._set("Connection", text, STATE_COLOURS.get(state, "grey-7"), body.unheard)
+        battery, old = status.battery_text or "unknown", body.old
+        self._set("Battery", battery, _colour(status.battery_level, status.battery), old)
+        self._set("Heat", heat_text(status), _colour(status.heat_level, 0.0 if status.hottest else math.nan), old)
+        self._set("Stiffness", status.stiffness_text, "grey-7", old)
+        # The memory tells of a posture once: it holds as long as the robot is there.
+        self._set("Posture", body.posture or "unknown", "grey-7", body.unheard)
 
-    def _set(self, name: str, text: str, colour: str) -> None:
+    def _set(self, name: str, text: str, colour: str, age: float | None) -> None:
+        """Show a state; grey and with its age, s, if it is old."""
         badge = self._badges[name]
-        badge.set_text(text)
+        badge.set_text(aged(text, age))
+        if age is not None:
+            colour = OLD_COLOUR
         if badge.props.get("color") != colour:
             badge.props["color"] = colour
             badge.update()
@@ -277,6 +282,11 @@ def event_text(event: ConsoleEvent) -> str:
     """A line of an event: time of day, kind, text and who did it."""
     clock = time.strftime("%H:%M:%S", time.localtime(event.stamp)) if event.stamp > 1e9 else f"{event.stamp:.1f} s"
     return f"{clock}  {event.kind}  {event.text}" + (f"  ({event.by})" if event.by else "")
+
+
+def aged(text: str, age: float | None) -> str:
+    """A state for people. `age`: s, of one that is old; None: it is as it is now."""
+    return text if age is None else f"{text}, {age:.0f} s ago"
 
 
 def _colour(level: int, value: float) -> str:

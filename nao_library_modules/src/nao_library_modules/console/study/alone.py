@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from .files import StudyFiles
@@ -15,13 +14,8 @@ def studies_alone(files: StudyFiles, name: str = "") -> tuple[Studies, Any]:
     `name`: of the robot; empty: the first. Raises NotThere if there is none.
     """
     from ..robots.robots import Robots
+    from ..view.views import Views
 
-    return Studies(files, hold_senses), Robots().robot(name)
-
-
-def hold_senses(robot: Any) -> Callable[[], None]:
-    """Have touches, words and faces among the events of a robot; what comes back ends that."""
-    from ..view.memory_topics import MemoryTopics
-    from ..view.senses import Senses
-
-    return Senses(robot, MemoryTopics(robot)).acquire()
+    views = Views(files.folder)
+    studies = Studies(files, lambda robot: views.of(robot).senses.acquire(), lambda robot: views.of(robot).alarms)
+    return studies, Robots().robot(name)

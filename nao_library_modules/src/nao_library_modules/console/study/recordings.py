@@ -14,11 +14,17 @@ from naoqi.errors import NaoError
 
 from ...base.whole_file import FileTrouble, move_whole
 from ..robots.commands import call
+from ..view.diagnosis import ServerRecordings
 from . import state as told
 from .bag import ACTIVE, BagRecorder, end_bag, is_bag
 from .protocol import WantedRecordings
 
 BAG, VIDEO, SOUND = "bag", "video", "sound"
+SERVERS = {VIDEO: "NaoVision", SOUND: "nao_audio_in"}
+GONE_AFTER = 5.0
+"""s of this computer without a word from a server, which tells once a second what it records."""
+BEGUN_AFTER = 3.0
+"""s of this computer from the begin of a recording until its server's reports count."""
 LIMIT = 30.0
 """s of this computer that a server has for the begin or the end of a recording."""
 
@@ -32,6 +38,8 @@ class TrialRecordings:
     def __init__(self, folder: Path, wanted: WantedRecordings) -> None:
         self._folder, self._wanted = folder, wanted
         self._bag: BagRecorder | None = None
+        self._ending = False
+        self._seen: dict[str, float] = {}  # recording -> when it was first seen to run
 
     def begin(self, runner: Any) -> None:
         """Begin what is wanted and does not run yet. What cannot be recorded is a deviation of the trial."""
@@ -53,6 +61,7 @@ class TrialRecordings:
 
     def end(self, runner: Any) -> None:
         """End what runs, and fetch the files."""
+        self._ending = True
         ends = {BAG: self._end_bag, VIDEO: self._end_video, SOUND: self._end_sound}
         for kind, about in list(runner.state.recordings.items()):
             try:
@@ -60,6 +69,31 @@ class TrialRecordings:
             except (NaoError, OSError, SubprocessError) as error:
                 self._tell_end(runner, kind, error=str(error))
                 runner.deviation(f"the {kind} could not be ended: {error}")
+
+    def stopped(
+        self, running: Mapping[str, Mapping[str, Any]], told: Mapping[str, ServerRecordings], now: float
+    ) -> dict[str, str]:
+        """Recordings that have stopped though nobody has ended them, and why.
+
+        `running`: those of the trial, by the log. `told`: what servers record, at times by the clock of `now`.
+        """
+        if self._ending:
+            return {}
+        found = {}
+        bag = running.get(BAG)
+        if bag is not None and not is_bag(self._folder / str(bag["file"]), bag):
+            found[BAG] = "its process has ended"
+        for kind, server in SERVERS.items():
+            report = told.get(server)
+            if kind not in running or report is None:  # an older server does not tell
+                self._seen.pop(kind, None)
+                continue
+            since = self._seen.setdefault(kind, now)
+            if now - report.heard > GONE_AFTER:
+                found[kind] = f"{server} is gone"
+            elif report.heard > since + BEGUN_AFTER and not report.names:
+                found[kind] = f"{server} gets nothing to record, or was told to stop"
+        return found
 
     def _begin_bag(self, runner: Any) -> None:
         file = _free(self._folder / "trial.bag")
@@ -80,11 +114,11 @@ class TrialRecordings:
 
     def _begin_video(self, runner: Any) -> None:
         fields = {"id": self._name(runner), "camera": self._wanted.video, "file_type": "mp4"}
-        run = self._send(runner, "NaoVision", "startRecording", **fields)
+        run = self._send(runner, SERVERS[VIDEO], "startRecording", **fields)
         self._tell_begin(runner, VIDEO, name=fields["id"], at=_path_of(run))
 
     def _end_video(self, runner: Any, about: Mapping[str, Any]) -> None:
-        run = self._send(runner, "NaoVision", "stopRecording", id=about["name"])
+        run = self._send(runner, SERVERS[VIDEO], "stopRecording", id=about["name"])
         for video in run.result.get("recordings") or [{}]:
             file = self._fetch(video.get("path", ""), f"video{Path(video.get('path', '')).suffix or '.mp4'}")
             self._tell_end(
@@ -98,12 +132,12 @@ class TrialRecordings:
 
     def _begin_sound(self, runner: Any) -> None:
         name = f"{self._name(runner)}.wav"
-        run = self._send(runner, "nao_audio_in", "startRecording", str_param=name, overwrite=True)
+        run = self._send(runner, SERVERS[SOUND], "startRecording", str_param=name, overwrite=True)
         results = run.result.get("results") or [{}]
         self._tell_begin(runner, SOUND, name=name, began=_seconds(results[-1].get("end")) or runner.robot.now())
 
     def _end_sound(self, runner: Any, about: Mapping[str, Any]) -> None:
-        run = self._send(runner, "nao_audio_in", "stopRecording")
+        run = self._send(runner, SERVERS[SOUND], "stopRecording")
         for sound in run.result.get("files") or [{}]:
             file = self._fetch(sound.get("file", ""), "sound.wav")
             duration, began = sound.get("duration", 0.0), about.get("began")

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..robots.events import ALARM, STATE
 from .conditions import NOTHING
 from .course import is_inside
 from .protocol import DONE
@@ -62,6 +63,8 @@ class TrialState:
     ended: float | None = None
     notes: int = 0
     deviations: int = 0  # gaps among them
+    alarms: int = 0  # that began in the trial
+    robot: dict[str, Any] = field(default_factory=dict)  # how it was at the begin; empty: the log does not tell
     gaps: list[str] = field(default_factory=list)  # what the log lacks
     trouble: str = ""  # of the log, until somebody has seen it
     open: list[StepOutcome] = field(default_factory=list)  # steps that run: a `while`, and the one in it
@@ -107,6 +110,9 @@ class TrialState:
         self.notes += kind == "note"
         self.deviations += kind == "deviation"
         what = told.get("what")
+        self.alarms += kind == ALARM and what == BEGAN
+        if kind == STATE and not self.robot:
+            self.robot = dict(told)
         if kind == "deviation" and what == LOG_GAP:
             self.trouble = str(event.get("text", ""))
         if kind != TRIAL or not isinstance(what, str):

@@ -20,6 +20,7 @@ from ...base.paths import config_file
 from ...base.suggestion import of_those
 from ...base.whole_file import FileTrouble
 from ..timeline.stored import SERVICE
+from ..view.alarm_watch import AlarmWatch
 from .ahead import EARS
 from .conditions import filled
 from .errors import StudyError
@@ -32,6 +33,7 @@ from .reader import hash_of
 from .recordings import TrialRecordings
 from .runner import TrialRunner
 from .state import ABORTED, ENDED, FINISHED, TrialState
+from .trial_watch import TrialWatch
 
 log = logging.getLogger(__name__)
 
@@ -43,12 +45,18 @@ class Studies:
     """Studies in a folder. Its functions may be called from any thread.
 
     `files`: of the studies. `senses`: holds what adds touches, words and faces to the events of a robot while a trial
-    runs; returns what ends that.
+    runs; returns what ends that. `alarms`: the watch of a robot, whose state and alarms are in the logs; None: nobody
+    looks.
     """
 
-    def __init__(self, files: StudyFiles, senses: Callable[[Any], Callable[[], None]] = lambda _: lambda: None) -> None:
+    def __init__(
+        self,
+        files: StudyFiles,
+        senses: Callable[[Any], Callable[[], None]] = lambda _: lambda: None,
+        alarms: Callable[[Any], AlarmWatch | None] = lambda _: None,
+    ) -> None:
         self.files = files
-        self._senses = senses
+        self._senses, self._alarms = senses, alarms
         self._lock = threading.Lock()  # pages take it ten times a second: never held while anything is waited for
         self._runners: dict[str, TrialRunner] = {}
         self._beginning: set[str] = set()  # namespaces of robots
@@ -227,19 +235,21 @@ class Studies:
     ) -> TrialRunner:
         trial_log = TrialLog(trial.path)
         state = trial.state()  # read behind the lock of the log
-        leave = self._senses(robot)
+        leave = [self._senses(robot)]
 
         def end(runner: TrialRunner) -> None:
-            leave()
+            for each in leave:
+                each()
             try:
                 write_events_table(trial.path, PATIENCE)
             except FileTrouble as error:
                 log.error("the table of trial %s is missing: %s", trial.id, error)
             self._tell()
 
+        recordings = TrialRecordings(trial.path, wanted)
         runner = TrialRunner(
             *(protocol, robot, trial_log, state, about, ros_after),
-            TrialRecordings(trial.path, wanted),
+            recordings,
             end,
             stops,
             lru_cache(maxsize=None)(partial(behavior_speaks, robot)),
@@ -248,6 +258,11 @@ class Studies:
             self._runners[robot.namespace] = runner
         if listener is not None:
             runner.on_change(listener)
+        watch = self._alarms(robot)
+        if watch is not None:
+            watching = TrialWatch(runner, watch, recordings)
+            leave.append(watching.end)
+            watching.begin()
         runner.start(by)
         self._tell()
         return runner

@@ -20,7 +20,12 @@ BEHIND = (
     *("phase", "path", "round", "outer_round", "label", "kind", "text", "attempt", "began_s", "ended_s", "outcome"),
     *("answer", "reaction_s", "error", "notes", "deviations"),
 )
-OF_TRIAL = ("began_s", "ended_s", "duration_s", "notes", "deviations")
+OF_ROBOT = ("posture", "fallen", "limp", "stiffness", "battery")
+"""What is known of the robot at the begin of a trial; the columns have `begin_` before it."""
+OF_TRIAL = (
+    *("began_s", "ended_s", "duration_s", "notes", "deviations", "alarms"),
+    *(f"begin_{name}" for name in OF_ROBOT),
+)
 ANSWERED = ("wizard", "while", *SENSES)
 """Kinds of steps whose answers are counted, with a label or without; of others the answers of those with a label."""
 
@@ -98,7 +103,8 @@ def trial_row(state: TrialState, study: str, participant: str, trial: int) -> di
     row.update(began_s=state.began or None, ended_s=ended, duration_s=None)
     if ended is not None:
         row.update(duration_s=round(ended - state.began, 4))
-    row.update(notes=state.notes, deviations=state.deviations)
+    row.update(notes=state.notes, deviations=state.deviations, alarms=state.alarms)
+    row.update({f"begin_{name}": state.robot.get(name) for name in OF_ROBOT})
     for outcome in state.outcomes:
         asks = outcome.kind in ANSWERED
         if outcome.label and outcome.outcome in ON and (asks or outcome.answer):

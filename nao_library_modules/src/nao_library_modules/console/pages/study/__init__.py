@@ -11,7 +11,9 @@ from . import replay_page, results_page, trial_page
 
 def build(console: Any) -> None:
     """Add the pages to a console."""
-    studies = Studies(StudyFiles(console.settings.studies), lambda robot: console.views.of(robot).senses.acquire())
+    views = console.views
+    files = StudyFiles(console.settings.studies)
+    studies = Studies(files, lambda robot: views.of(robot).senses.acquire(), lambda robot: views.of(robot).alarms)
     trial_page.build(console, studies)
     results_page.build(console, studies)
     replay_page.build(console, studies)
