@@ -178,6 +178,23 @@ def test_a_run_says_when_it_begins_to_wait(tmp_path, monkeypatch):
     assert "  1.1 wait for a touch: head: waiting" in lines
 
 
+class FallingRobot(PlayedRobot):
+    """Falls when it is to say something."""
+
+    def send(self, command, by="", stops=None):
+        self.events.add("alarm", "The robot has fallen", what="began", code="fallen")
+        return super().send(command, by, stops)
+
+
+def test_a_run_tells_of_an_alarm_that_begins(tmp_path, monkeypatch):
+    monkeypatch.setattr(study_commands, "_studies", lambda settings, files: (Studies(files), FallingRobot()))
+    monkeypatch.setattr(module, "settings", lambda namespace: {})
+    file = tmp_path / "one.yaml"
+    file.write_text("name: one\nphases: [{steps: [{say: One}]}]\n")
+    words = ["study", "run", str(file), "--participant", "P01", "--studies", str(tmp_path)]
+    assert CliRunner().invoke(nao, words).output.count("  alarm: The robot has fallen\n") == 1
+
+
 def test_the_answer_for_programs_has_the_troubles(on_a_full_disk):
     told = on_a_full_disk.run(lambda _: setattr(on_a_full_disk.disk, "room", None), "--json")
     (trouble,) = json.loads(told.stdout[told.stdout.index("{") :])["troubles"]

@@ -416,17 +416,30 @@ def _play(
 
 
 class _LogTeller:
-    """Tells of trouble with the log of a trial when it begins and is over, and of all of it again at the end."""
+    """Tells of trouble with the log of a trial when it begins and is over, and of all of it again at the end.
+
+    Also of alarms: those that were there when the trial began, and each that begins.
+    """
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._failing = False
         self._over: list[str] = []
+        self._alarms = 0  # that were told
+        self._found_told = False
 
     def look(self, runner: TrialRunner) -> None:
         """Tell what is new. Any thread."""
         failing, over = runner.log.trouble, runner.state.trouble
         with self._lock:
+            found = runner.state.robot.get("alarms")
+            if found and not self._found_told:
+                click.echo(f"  alarms as the trial began: {', '.join(found)}", err=True)
+            self._found_told = found is not None
+            fresh = runner.state.alarms[self._alarms :]
+            self._alarms += len(fresh)
+            for alarm in fresh:
+                click.echo(f"  alarm: {alarm}", err=True)
             if failing and not self._failing:
                 click.echo(f"  {failing}. If that lasts, the trial waits before its next step", err=True)
             self._failing = bool(failing)

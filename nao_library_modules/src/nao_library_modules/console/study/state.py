@@ -63,7 +63,7 @@ class TrialState:
     ended: float | None = None
     notes: int = 0
     deviations: int = 0  # gaps among them
-    alarms: int = 0  # that began in the trial
+    alarms: list[str] = field(default_factory=list)  # those that began in the trial, for people
     robot: dict[str, Any] = field(default_factory=dict)  # how it was at the begin; empty: the log does not tell
     gaps: list[str] = field(default_factory=list)  # what the log lacks
     trouble: str = ""  # of the log, until somebody has seen it
@@ -110,7 +110,8 @@ class TrialState:
         self.notes += kind == "note"
         self.deviations += kind == "deviation"
         what = told.get("what")
-        self.alarms += kind == ALARM and what == BEGAN
+        if kind == ALARM and what == BEGAN:
+            self.alarms.append(str(event.get("text", "")))
         if kind == STATE and not self.robot:
             self.robot = dict(told)
         if kind == "deviation" and what == LOG_GAP:

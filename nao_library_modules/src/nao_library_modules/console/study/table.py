@@ -103,7 +103,7 @@ def trial_row(state: TrialState, study: str, participant: str, trial: int) -> di
     row.update(began_s=state.began or None, ended_s=ended, duration_s=None)
     if ended is not None:
         row.update(duration_s=round(ended - state.began, 4))
-    row.update(notes=state.notes, deviations=state.deviations, alarms=state.alarms)
+    row.update(notes=state.notes, deviations=state.deviations, alarms=len(state.alarms))
     row.update({f"begin_{name}": state.robot.get(name) for name in OF_ROBOT})
     for outcome in state.outcomes:
         asks = outcome.kind in ANSWERED

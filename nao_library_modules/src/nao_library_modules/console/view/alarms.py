@@ -22,8 +22,8 @@ LATE = 1.5
 LOST = 3.0
 """Periods after which the reports count as ended."""
 SLOWEST, SPEED_MARGIN, SLOW_FOR = 0.95, 0.02, 3.0
-"""Share of the asked speed: speech, sound and waits of a trial take longer by as much as time is slower, and sounds that
-are recorded are shorter. It has to last so many s: a picture that is drawn takes a moment."""
+"""Share of the asked speed: speech, sound and waits of a trial take longer by as much as time is slower, and what is
+recorded gets shorter. It has to last so many s: a picture that is drawn takes a moment."""
 LEAST_DISK, DISK_MARGIN = 10**9, 10**8
 """Bytes: ten minutes of a rosbag with compressed pictures, so that the trial that runs can end."""
 
