@@ -16,6 +16,7 @@ from nao_library_actions.msg import (
     NaoBehaviorActionGoal,
     NaoBehaviorActionResult,
 )
+from nao_library_msgs.srv import SetMemory
 from nao_sim_bridge.testing import wait_until
 
 PAGES = {
@@ -225,6 +226,41 @@ def test_escape_ends_everything_on_every_page(browser, heard):
     browser.keys(Keys.ESCAPE)
     end = results.wait(lambda each: each.status.goal_id.id == goal.goal_id.id)
     assert end.status.status in (PREEMPTED, ABORTED)  # aborted, where it sees the end of its own goals first
+
+
+PLACES = """
+const strip = document.querySelector(".nao-alarms").getBoundingClientRect();
+return [...document.querySelectorAll(".nao-main button, .nao-stop")].map((each) => {
+  const { x, y, bottom } = each.getBoundingClientRect();
+  return [each.innerText, x, y, bottom <= strip.top || y >= innerHeight];
+});
+"""
+
+
+def set_event(key, value):
+    assert rospy.ServiceProxy("/nao_memory/set", SetMemory)(key=key, value=value, event=True).success
+
+
+def test_an_alarm_is_shown_on_every_page_and_covers_and_moves_nothing(browser):
+    browser.open("/wizard")
+    browser.one("button", "Hello")
+    browser.one(".nao-no-alarm")
+    before = browser.script(PLACES)
+
+    def falls():
+        set_event("robotHasFallen", "true")  # again, until the console listens
+        return browser.all("[data-alarm=fallen]")
+
+    try:
+        browser.until(falls, "the alarm")
+        assert "Lift the robot" in browser.one("[role=alert] [data-alarm=fallen]", "has fallen, since").text
+        assert browser.script(PLACES) == before
+        assert all(free for text, *_, free in before if "STOP" in text.upper())
+        browser.open("/functions")
+        browser.one("[data-alarm=fallen]")
+    finally:
+        set_event("PostureFamilyChanged", '"Standing"')
+    browser.one(".nao-no-alarm")
 
 
 def test_an_observer_sees_and_moves_nothing(program, heard):
