@@ -13,6 +13,7 @@ FILES = sorted(Path(pages.__file__).parent.rglob("*.py"))
 FUNCTIONS = {
     *("open", "model_of", "checked_for", "doubts", "stored_behaviors", "load", "safe_load", "read_layout"),
     *("read_protocol", "compose", "dump", "BehaviorDocument", "tracks_of", "table_of", "summaries_of", "replay_of"),
+    *("schedule_of", "participants_of", "correct_pseudonym", "take_back"),
     *("as_python", "as_command", "as_yaml", "read_model", "project_behavior"),
 }
 """What a module of pages may import and not call in the loop."""

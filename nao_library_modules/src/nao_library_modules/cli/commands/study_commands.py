@@ -111,6 +111,9 @@ def check(context: click.Context, protocol: str, folder: Path) -> None:
     "--value", "given", multiple=True, metavar="NAME=TEXT", help="Of the protocol's values: another one in this trial."
 )
 @click.option("--record", metavar="bag,video,sound", help="What is recorded.  [default: as the protocol has it]")
+@click.option(
+    "--rehearse", is_flag=True, help="No trial of the participant: uses up no number, summaries leave it out."
+)
 @folder_option
 @click.pass_context
 def run(
@@ -122,14 +125,19 @@ def run(
     choose: tuple[str, ...],
     given: tuple[str, ...],
     record: str | None,
+    rehearse: bool,
     folder: Path,
 ) -> None:
     """Run a trial of a participant here, and wait for its end; what the wizard decides is asked.
 
-    Ctrl-C aborts the trial. What was logged stays.
+    Number, order and conditions of the participant are told before. Ctrl-C aborts the trial. What was logged stays.
     """
+    from ...console.study.participants import schedule_of
+
     settings = settings_of(context)
     files = _files(folder)
+    if rehearse and every:
+        raise click.UsageError("--rehearse is one trial: without --all")
     read = _protocol(files, protocol)
     wanted = _recordings(read, record)
     choices, values = _assigned(choose, "LABEL=CHOICE"), _assigned(given, "NAME=TEXT")
@@ -139,12 +147,66 @@ def run(
     studies, robot = _studies(settings, files)
     ids: list[str] = []
     troubles: list[str] = []
+    for line in _told(lambda: schedule_of(files, read, participant)).lines(read.blind):
+        click.echo(line, err=settings.json)
     while not ids or (every and not position and not _done(studies, read, participant)):
-        more = {"position": position or 0, "record": wanted, "values": values}
+        more = {"position": position or 0, "record": wanted, "values": values, "rehearsal": rehearse}
         begin = partial(studies.begin, read, participant, robot, "nao", **more)
         ids.append(_play(settings, begin, choices, troubles))
     if settings.json:
         say_json({"trials": ids, "troubles": troubles})
+
+
+@study_command.command("order", cls=NaoCommand)
+@click.argument("protocol", metavar="PROTOCOL|FILE")
+@click.argument("participant", metavar="PSEUDONYM")
+@folder_option
+@click.pass_context
+def order(context: click.Context, protocol: str, participant: str, folder: Path) -> None:
+    """Number, order and conditions of a participant, also of one who has not begun. Nothing is written."""
+    from ...console.study.participants import schedule_of
+
+    files = _files(folder)
+    read = _protocol(files, protocol)
+    schedule = _told(lambda: schedule_of(files, read, participant))
+    if settings_of(context).json:
+        about = {"number": schedule.number, "new": schedule.new, "order": schedule.order, "next": schedule.next}
+        say_json({"name": read.name, "participant": participant, "blind": read.blind, **({} if read.blind else about)})
+        return
+    say_lines(schedule.lines(read.blind))
+
+
+@study_command.command("rename", cls=NaoCommand)
+@click.argument("study", metavar="STUDY")
+@click.argument("old", metavar="PSEUDONYM")
+@click.argument("new", metavar="NEW")
+@folder_option
+@click.pass_context
+def rename(context: click.Context, study: str, old: str, new: str, folder: Path) -> None:
+    """Correct a mistyped pseudonym in all trials of a participant; number, order and answers stay."""
+    from ...console.study.participants import correct_pseudonym
+
+    number = _told(lambda: correct_pseudonym(_files(folder), study, old, new, "nao"))
+    if settings_of(context).json:
+        say_json({"study": study, "old": old, "participant": new, "number": number})
+        return
+    click.echo(f"{old} is {new} now, participant {number} of {study}")
+
+
+@study_command.command("take-back", cls=NaoCommand)
+@click.argument("study", metavar="STUDY")
+@click.argument("participant", metavar="PSEUDONYM")
+@folder_option
+@click.pass_context
+def take_participant_back(context: click.Context, study: str, participant: str, folder: Path) -> None:
+    """Take back a participant who has played nothing: the number is free again."""
+    from ...console.study.participants import take_back
+
+    number = _told(lambda: take_back(_files(folder), study, participant, "nao"))
+    if settings_of(context).json:
+        say_json({"study": study, "participant": participant, "number": number})
+        return
+    click.echo(f"{participant} is taken back, number {number} of {study} is free")
 
 
 @study_command.command("resume", cls=NaoCommand)
@@ -194,13 +256,23 @@ def abort(context: click.Context, trial: str, folder: Path) -> None:
 @click.option("--csv", "file", default="", type=click.Path(), metavar="FILE.csv", help="A row a step of a trial.")
 @click.option("--trials", "trials", default="", type=click.Path(), metavar="FILE.csv", help="A row a trial.")
 @click.option("--by-round", is_flag=True, help="Answers of each round of a loop.")
+@click.option("--all-trials", is_flag=True, help="Count aborted trials and rehearsals, too.")
 @overwrite_option
 @folder_option
 @click.pass_context
 def study_table(
-    context: click.Context, study: str, file: str, trials: str, by_round: bool, overwrite: bool, folder: Path
+    context: click.Context,
+    study: str,
+    file: str,
+    trials: str,
+    by_round: bool,
+    all_trials: bool,
+    overwrite: bool,
+    folder: Path,
 ) -> None:
     """Answers and reaction times by condition; with --csv and --trials the whole tables as files.
+
+    Trials that were aborted and rehearsals are not counted, and marked in the files.
 
     STUDY is the name of one in the folder of the studies, or its own folder.
     """
@@ -223,7 +295,8 @@ def study_table(
         except FileTrouble as error:
             raise CommandFailed(str(error)) from None
         written.append((target, rows))
-    summaries = summaries_of(found, by_round)
+    summaries = summaries_of(found, by_round, all_trials)
+    left_out = () if all_trials else found.left_out
     if settings_of(context).json:
         rows = [
             {
@@ -240,7 +313,8 @@ def study_table(
         ]
         gaps = [{"trial": trial, "gap": gap} for trial, gap in found.gaps]
         files = {str(target): count for target, count in written}
-        say_json({"rows": len(found.rows), "files": files, "summaries": rows, "gaps": gaps})
+        out = [{"trial": trial, "state": what} for trial, what in left_out]
+        say_json({"rows": len(found.rows), "files": files, "summaries": rows, "gaps": gaps, "left_out": out})
         return
     lines = [("step", *(("round",) if by_round else ()), "condition", "times", "mean s", "median s", "answers")]
     for each in summaries:
@@ -249,6 +323,7 @@ def study_table(
         answers = ", ".join(f"{answer} {count}" for answer, count in sorted(each.answers.items()))
         lines.append((each.label, *rounds, each.condition, *times, answers))
     say_lines(table(lines))
+    say_lines(f"{trial}: not counted, {what}" for trial, what in left_out)
     say_lines(f"{trial}: {gap}" for trial, gap in found.gaps)
     say_lines(f"written: {target}, {count} rows" for target, count in written)
 
@@ -374,7 +449,8 @@ def _play(
         changes.put(runner)
 
     runner = _told(lambda: begin(listener=changed))
-    click.echo(f"trial {runner.id}: {_words(runner.state.about['condition']) or 'no factors'}", err=settings.json)
+    condition = "" if runner.protocol.blind else f": {_words(runner.state.about['condition']) or 'no factors'}"
+    click.echo(f"trial {runner.id}{', a rehearsal' if runner.state.rehearsal else ''}{condition}", err=settings.json)
     shown: set[int] = set()
     asked = None
     try:

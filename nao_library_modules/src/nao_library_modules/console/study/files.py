@@ -99,8 +99,9 @@ class StudyFiles:
         return write_durable(self.folder / OWN / f"{name}{END}", text)
 
     def studies(self) -> list[str]:
-        """Names of the studies that have trials."""
-        return sorted(path.parent.name for path in self.folder.glob(f"*/{PARTICIPANTS}"))
+        """Names of the studies that have trials, or participants."""
+        named = {path.parent.name for path in self.folder.glob(f"*/{PARTICIPANTS}")}
+        return sorted(named | {path.parent.parent.name for path in self.folder.glob(f"*/*/{ABOUT}")})
 
     def trials(self, study: str) -> list[TrialFolder]:
         """Trials of a study, by participant and number."""
@@ -140,31 +141,44 @@ class StudyFiles:
     def number_of(self, study: str, pseudonym: str) -> int:
         """Number of a participant: a new one has that of the pseudonym (P07: 7) if it is free, else the lowest free.
 
-        It is on the disk when this returns, and nobody else ever gets it: the numbers in the trials count as well.
+        It is on the disk when this returns, and nobody else gets it: the numbers in the trials count as well.
         """
-        _require_name(pseudonym, "participant")
-        with self._locked(study):
-            known = self.participants(study)
-            numbers = dict(known) if pseudonym in known else {**known, **self._numbers_in_trials(study, known)}
-            if pseudonym not in numbers:
-                digits = re.search(r"\d+$", pseudonym)
-                number, taken = int(digits[0]) if digits else 0, {*numbers.values()}
-                if number < 1 or number in taken:
-                    number = next(i for i in range(1, len(taken) + 2) if i not in taken)
-                numbers[pseudonym] = number
+        with self.locked(study):
+            known, numbers = self._numbers_with(study, pseudonym)
             if numbers != known:
-                write_durable(self.folder / study / PARTICIPANTS, dump(numbers))
+                self.write_participants(study, numbers)
             return numbers[pseudonym]
+
+    def coming_number(self, study: str, pseudonym: str) -> int:
+        """The number that a participant has, or would get; nothing is written."""
+        return self._numbers_with(study, pseudonym)[1][pseudonym]
+
+    def write_participants(self, study: str, numbers: Mapping[str, int]) -> None:
+        """Write the numbers of the participants; they are on the disk when this returns. Under `locked`."""
+        write_durable(self.folder / study / PARTICIPANTS, dump(dict(numbers)))
+
+    def _numbers_with(self, study: str, pseudonym: str) -> tuple[dict[str, int], dict[str, int]]:
+        """Numbers as the file has them, and with those that only trials have and that of a participant."""
+        require_pseudonym(pseudonym)
+        known = self.participants(study)
+        numbers = dict(known) if pseudonym in known else {**known, **self._numbers_in_trials(study, known)}
+        if pseudonym not in numbers:
+            digits = re.search(r"\d+$", pseudonym)
+            number, taken = int(digits[0]) if digits else 0, {*numbers.values()}
+            if number < 1 or number in taken:
+                number = next(i for i in range(1, len(taken) + 2) if i not in taken)
+            numbers[pseudonym] = number
+        return known, numbers
 
     def _numbers_in_trials(self, study: str, known: Mapping[str, int]) -> dict[str, int]:
         """Numbers of participants who have trials, and are not known: the file of numbers was lost or changed."""
-        left = [trial for trial in self.trials(study) if trial.participant not in known]
-        found = {trial.participant: trial.state().about.get("number") for trial in left}
+        states = [(trial.participant, trial.state()) for trial in self.trials(study) if trial.participant not in known]
+        found = {name: state.about.get("number") for name, state in states if state.holds_number}
         return {name: number for name, number in found.items() if isinstance(number, int)}
 
     def new_trial(self, study: str, pseudonym: str) -> TrialFolder:
         """Folder of a new trial, which has the next number."""
-        with self._locked(study):
+        with self.locked(study):
             number = max((t.number for t in self.trials(study) if t.participant == pseudonym), default=0) + 1
             path = self.folder / study / f"{pseudonym}-{number}"
             try:
@@ -186,9 +200,15 @@ class StudyFiles:
             shutil.rmtree(trial.path, ignore_errors=True)
             raise
 
+    def change_description(self, trial: TrialFolder, changes: Mapping[str, Any]) -> None:
+        """Change what is told of a trial beside its events. Raises FileTrouble if it cannot be written."""
+        path = trial.path / ABOUT
+        if path.is_file():
+            write_durable(path, dump({**load(_text(path), path.name), **changes}))
+
     @contextmanager
-    def _locked(self, study: str) -> Iterator[None]:
-        """Keep other programs from giving the same number at the same time."""
+    def locked(self, study: str) -> Iterator[None]:
+        """Keep other programs from giving, changing or taking back numbers at the same time."""
         _require_name(study, "study")
         folder = self.folder / study
         try:
@@ -207,6 +227,11 @@ def _text(path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise StudyError(f"{path} cannot be read: {error}; mend it, or rename it to go on without it") from error
+
+
+def require_pseudonym(name: str) -> None:
+    """See that a participant may be called so. Raises StudyError."""
+    _require_name(name, "participant")
 
 
 def _require_name(name: str, what: str) -> None:

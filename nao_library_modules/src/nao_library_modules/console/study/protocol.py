@@ -247,8 +247,8 @@ class WantedRecordings:
 class StudyProtocol:
     """A study.
 
-    `order`: one of `order.ORDERS`. `seed`: of random orders. `values`: values that texts may name, of the whole study.
-    `text`: the file as it was read.
+    `order`: one of `order.ORDERS`. `seed`: of what is drawn: orders, pauses. `values`: values that texts may name, of
+    the whole study. `text`: the file as it was read. `blind`: whether the wizard must not know orders and conditions.
     """
 
     name: str
@@ -260,6 +260,7 @@ class StudyProtocol:
     record: WantedRecordings
     phases: tuple[StudyPhase, ...]
     text: str
+    blind: bool = False
 
     def values_in(self, condition: Mapping[str, str]) -> dict[str, Any]:
         """Values of a condition: those of the study, the levels by their factors, and the values of the levels."""

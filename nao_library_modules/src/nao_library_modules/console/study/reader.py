@@ -54,7 +54,7 @@ TOPIC = re.compile(r"/?[A-Za-z]\w*(/[A-Za-z]\w*)*")
 LONGEST, DEFAULT_WAIT = 3600.0, 3600.0
 """s: the longest wait of the servers, and that of a step that names none."""
 MOST_ROUNDS, MOST_CONDITIONS = 1000, 64
-_TOP = ("name", "help", "factors", "order", "seed", "values", "record", "phases")
+_TOP = ("name", "help", "factors", "order", "seed", "blind", "values", "record", "phases")
 _COMMON = ("label", "timeout", "on_error")
 _KEYS = {
     "wizard": ("choices", "label", "timeout"),
@@ -131,6 +131,7 @@ class _Reader(FileReader):
             self._recordings(top),
             tuple(self._phases(top)),
             text,
+            self.flag(top, "blind", ""),
         )
         self._check_texts(protocol)
         if not self.problems:  # what is wrong otherwise may be what a condition lacks

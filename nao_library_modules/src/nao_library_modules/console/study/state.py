@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -19,6 +20,7 @@ BEGAN, RESUMED, STEP_BEGAN, STEP_ENDED, PAUSED, CONTINUED, HELD, ENDED = (
 TROUBLE_SEEN = "trouble seen"
 LOG_GAP = "log gap"
 """What a deviation has as `what` that tells when the log could not be written."""
+CORRECTED, TAKEN_BACK = "pseudonym corrected", "participant taken back"
 RECORDING_BEGAN, RECORDING_ENDED = "recording began", "recording ended"
 RUNNING, INTERRUPTED, FINISHED, ABORTED = "running", "interrupted", "finished", "aborted"
 STATES = (RUNNING, PAUSED, HELD, INTERRUPTED, FINISHED, ABORTED)
@@ -46,6 +48,8 @@ class StepOutcome:
     seconds: float | None = None  # reaction time: from `began` to the answer
     error: str = ""
     finished: float | None = None  # when what the robot did was over, of speech the last sound; None: it does not tell
+    note_texts: list[str] = field(default_factory=list)  # written before the next step began
+    deviation_texts: list[str] = field(default_factory=list)
 
 
 @dataclass
@@ -61,11 +65,12 @@ class TrialState:
     files: list[dict[str, Any]] = field(default_factory=list)  # recordings that have ended
     began: float = 0.0
     ended: float | None = None
-    notes: int = 0
-    deviations: int = 0  # gaps among them
+    note_texts: list[str] = field(default_factory=list)
+    deviation_texts: list[str] = field(default_factory=list)  # gaps among them
     alarms: list[str] = field(default_factory=list)  # those that began in the trial, for people
     robot: dict[str, Any] = field(default_factory=dict)  # how it was at the begin; empty: the log does not tell
     gaps: list[str] = field(default_factory=list)  # what the log lacks
+    taken_back: bool = False  # its participant was, before a step began
     trouble: str = ""  # of the log, until somebody has seen it
     open: list[StepOutcome] = field(default_factory=list)  # steps that run: a `while`, and the one in it
 
@@ -91,6 +96,41 @@ class TrialState:
         return self.status in (FINISHED, ABORTED)
 
     @property
+    def rehearsal(self) -> bool:
+        """Whether it only rehearses: it is none of the participant's trials."""
+        return bool(self.about.get("rehearsal", False))
+
+    @property
+    def holds_number(self) -> bool:
+        """Whether the number of its participant is used up by it: it is no rehearsal, and was not taken back."""
+        return not self.rehearsal and not self.taken_back
+
+    @property
+    def counts(self) -> bool:
+        """Whether summaries count it: it is neither aborted nor a rehearsal."""
+        return self.status != ABORTED and not self.rehearsal
+
+    @property
+    def status_text(self) -> str:
+        """Its status, and whether it is a rehearsal, for people."""
+        return f"{self.status or 'empty'}{', rehearsal' if self.rehearsal else ''}"
+
+    @property
+    def steps_text(self) -> str:
+        """How many steps were begun, which are its rows in the table, and how they ended, for people."""
+        ends = Counter(outcome.outcome or "not ended" for outcome in self.outcomes)
+        told = ", ".join(f"{count} {end}" for end, count in ends.items())
+        return f"{len(self.outcomes)} steps" + (f": {told}" if told else "")
+
+    @property
+    def notes(self) -> int:
+        return len(self.note_texts)
+
+    @property
+    def deviations(self) -> int:
+        return len(self.deviation_texts)
+
+    @property
     def current(self) -> StepOutcome | None:
         """The step that was begun and has not ended; of a `while` and the step in it the `while`."""
         return self.open[0] if self.open else None
@@ -107,13 +147,15 @@ class TrialState:
     def apply(self, event: Mapping[str, Any]) -> None:
         """Take an event into account; `event`: as it is logged."""
         kind, stamp, told = event.get("kind"), float(event.get("stamp") or 0.0), event.get("data") or {}
-        self.notes += kind == "note"
-        self.deviations += kind == "deviation"
         what = told.get("what")
         if kind == ALARM and what == BEGAN:
             self.alarms.append(str(event.get("text", "")))
         if kind == STATE and not self.robot:
             self.robot = dict(told)
+        if kind == "note":
+            self._mark(str(event.get("text", "")), lambda of: of.note_texts)
+        elif kind == "deviation":
+            self._mark(str(event.get("text", "")), lambda of: of.deviation_texts)
         if kind == "deviation" and what == LOG_GAP:
             self.trouble = str(event.get("text", ""))
         if kind != TRIAL or not isinstance(what, str):
@@ -132,6 +174,11 @@ class TrialState:
             self.open.append(self.outcomes[-1])
         elif what == STEP_ENDED:
             self._end(self._begun(told), told, stamp)
+        elif what == CORRECTED:
+            self.about.update(participant=told["participant"], trial=told["corrected"])
+            self.values["participant"] = told["participant"]
+        elif what == TAKEN_BACK:
+            self.taken_back = True
         elif what == TROUBLE_SEEN:
             self.trouble = ""
         elif what == RECORDING_BEGAN:
@@ -180,8 +227,14 @@ class TrialState:
     def _lacks(self, what: str) -> str:
         """Note what the log lacks, a deviation; `what`."""
         self.gaps.append(what)
-        self.deviations += 1
+        self.deviation_texts.append(what)
         return what
+
+    def _mark(self, text: str, texts_of: Callable[[TrialState | StepOutcome], list[str]]) -> None:
+        """Keep the text of a note or a deviation, of the trial and of the step that was begun last."""
+        texts_of(self).append(text)
+        if self.outcomes:
+            texts_of(self.outcomes[-1]).append(text)
 
 
 def _outcome(told: Mapping[str, Any], began: float | None, error: str = "") -> StepOutcome:

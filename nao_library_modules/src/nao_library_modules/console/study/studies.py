@@ -28,11 +28,12 @@ from .files import StudyFiles, TrialFolder
 from .left import LeftTrial
 from .log import PATIENCE, TrialLog, read_events, write_events_table
 from .order import order_of
+from .participants import correct_pseudonym, finished_positions, take_back
 from .protocol import StudyProtocol, WantedRecordings
 from .reader import hash_of
 from .recordings import TrialRecordings
 from .runner import TrialRunner
-from .state import ABORTED, ENDED, FINISHED, TrialState
+from .state import ABORTED, ENDED, TrialState
 from .trial_watch import TrialWatch
 
 log = logging.getLogger(__name__)
@@ -84,13 +85,7 @@ class Studies:
 
         Raises StudyError if all are.
         """
-        finished = {
-            state.about.get("position")
-            for trial in self.files.trials(protocol.name)
-            if trial.participant == pseudonym
-            for state in (trial.state(),)
-            if state.status == FINISHED
-        }
+        finished = finished_positions(self.files, protocol.name, pseudonym)
         count = len(order_of(protocol, 1))
         position = next((i for i in range(1, count + 1) if i not in finished), 0)
         if not position:
@@ -108,6 +103,7 @@ class Studies:
         listener: Callable[[TrialRunner], None] | None = None,
         values: Mapping[str, Any] | None = None,
         stops: int | None = None,
+        rehearsal: bool = False,
     ) -> TrialRunner:
         """Begin a trial.
 
@@ -121,6 +117,7 @@ class Studies:
             listener: Called after each event, also the first one.
             values: Those of the protocol that this trial has others of.
             stops: Of the robot when the trial was asked for; None: as many as now. A later stop holds it back.
+            rehearsal: Whether it is none of the participant's trials: it uses up no number, and summaries leave it out.
 
         Raises:
             StudyError: It cannot begin: a trial runs on the robot, the participant is done, files cannot be written, a
@@ -132,7 +129,8 @@ class Studies:
             if name not in protocol.values:
                 raise StudyError(f"{protocol.name} has no value {name!r}{of_those(name, protocol.values)}")
         with self._turn_of(robot):
-            number = self.files.number_of(protocol.name, pseudonym)
+            number_of = self.files.coming_number if rehearsal else self.files.number_of
+            number = number_of(protocol.name, pseudonym)
             order = order_of(protocol, number)
             position = position or self.position_of(protocol, pseudonym)
             if not 1 <= position <= len(order):
@@ -151,6 +149,7 @@ class Studies:
                 "condition": condition,
                 "order": order,
                 "seed": protocol.seed,
+                "rehearsal": rehearsal,
                 "protocol_sha256": hash_of(protocol.text),
                 "record": _plain(asdict(wanted)),
             }
@@ -216,6 +215,18 @@ class Studies:
             raise StudyError(f"trial {trial_id} is not aborted: {trouble}")
         write_events_table(trial.path)
         return left.state
+
+    def correct_pseudonym(self, study: str, old: str, new: str, by: str = "", robot: Any = None) -> int:
+        """As `participants.correct_pseudonym`; pages are told."""
+        number = correct_pseudonym(self.files, study, old, new, by, robot)
+        self._tell()
+        return number
+
+    def take_back(self, study: str, pseudonym: str, by: str = "", robot: Any = None) -> int:
+        """As `participants.take_back`; pages are told."""
+        number = take_back(self.files, study, pseudonym, by, robot)
+        self._tell()
+        return number
 
     def on_change(self, listener: Callable[[], None]) -> Callable[[], None]:
         """Have a function called when a trial begins or is over; returns what ends that."""

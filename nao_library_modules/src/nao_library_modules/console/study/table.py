@@ -15,15 +15,15 @@ from .log import csv_text
 from .protocol import DONE, SENSES
 from .state import ON, TIMEOUT, TrialState
 
-BEFORE = ("study", "participant", "number", "trial", "position", "trial_state")
+BEFORE = ("study", "participant", "number", "trial", "position", "trial_state", "rehearsal")
 BEHIND = (
     *("phase", "path", "round", "outer_round", "label", "kind", "text", "attempt", "began_s", "ended_s", "outcome"),
-    *("answer", "reaction_s", "error", "notes", "deviations"),
+    *("answer", "reaction_s", "error", "notes", "deviations", "note_text", "deviation_text"),
 )
 OF_ROBOT = ("posture", "fallen", "limp", "stiffness", "battery")
 """What is known of the robot at the begin of a trial; the columns have `begin_` before it."""
 OF_TRIAL = (
-    *("began_s", "ended_s", "duration_s", "notes", "deviations", "alarms"),
+    *("began_s", "ended_s", "duration_s", "steps", "notes", "deviations", "note_text", "deviation_text", "alarms"),
     *(f"begin_{name}" for name in OF_ROBOT),
 )
 ANSWERED = ("wizard", "while", *SENSES)
@@ -39,12 +39,14 @@ class StudyTable:
         rows: Of a step each: column -> value.
         trials: Of a trial each: column -> value, with the answers by their labels.
         gaps: Id of a trial, and what its log lacks.
+        left_out: Ids of the trials that summaries leave out, and what they are.
     """
 
     factors: tuple[str, ...]
     rows: tuple[Mapping[str, Any], ...]
     trials: tuple[Mapping[str, Any], ...] = ()
     gaps: tuple[tuple[str, str], ...] = ()
+    left_out: tuple[tuple[str, str], ...] = ()
 
     def csv(self) -> str:
         """A row a step, as CSV."""
@@ -93,7 +95,8 @@ def table_of(files: StudyFiles, study: str) -> StudyTable:
     rows = [row for trial, state in states for row in rows_of(state, study, trial.participant, trial.number)]
     whole = [trial_row(state, study, trial.participant, trial.number) for trial, state in states]
     gaps = tuple((trial.id, gap) for trial, state in states for gap in state.gaps)
-    return StudyTable(tuple(factors), tuple(rows), tuple(whole), gaps)
+    left_out = tuple((trial.id, state.status_text) for trial, state in states if not state.counts)
+    return StudyTable(tuple(factors), tuple(rows), tuple(whole), gaps, left_out)
 
 
 def trial_row(state: TrialState, study: str, participant: str, trial: int) -> dict[str, Any]:
@@ -103,7 +106,8 @@ def trial_row(state: TrialState, study: str, participant: str, trial: int) -> di
     row.update(began_s=state.began or None, ended_s=ended, duration_s=None)
     if ended is not None:
         row.update(duration_s=round(ended - state.began, 4))
-    row.update(notes=state.notes, deviations=state.deviations, alarms=len(state.alarms))
+    row.update(steps=len(state.outcomes), notes=state.notes, deviations=state.deviations, alarms=len(state.alarms))
+    row.update(note_text=_joined(state.note_texts), deviation_text=_joined(state.deviation_texts))
     row.update({f"begin_{name}": state.robot.get(name) for name in OF_ROBOT})
     for outcome in state.outcomes:
         asks = outcome.kind in ANSWERED
@@ -123,6 +127,7 @@ def _about(state: TrialState, study: str, participant: str, trial: int) -> dict[
         "trial": trial,
         "position": state.about.get("position"),
         "trial_state": state.status,
+        "rehearsal": state.rehearsal,
         **state.about.get("condition", {}),
     }
 
@@ -149,16 +154,26 @@ def rows_of(state: TrialState, study: str, participant: str, trial: int) -> Iter
             "error": outcome.error,
             "notes": state.notes,
             "deviations": state.deviations,
+            "note_text": _joined(outcome.note_texts),
+            "deviation_text": _joined(outcome.deviation_texts),
         }
 
 
-def summaries_of(table: StudyTable, by_round: bool = False) -> list[ConditionSummary]:
+def summaries_of(table: StudyTable, by_round: bool = False, all_trials: bool = False) -> list[ConditionSummary]:
     """Answers and reaction times by step and condition, of the steps that have answers; unlabelled ones by their path.
 
-    What was repeated or stopped does not count. `by_round`: a summary for each round of a loop as well.
+    What was repeated or stopped does not count.
+
+    Args:
+        table: Of the study.
+        by_round: A summary for each round of a loop as well.
+        all_trials: Also those that were aborted, and rehearsals.
     """
+    left_out = set() if all_trials else {trial for trial, _ in table.left_out}
     groups: dict[tuple[str, str, int], list[Mapping[str, Any]]] = {}
     for row in table.rows:
+        if f"{row['study']}/{row['participant']}-{row['trial']}" in left_out:
+            continue
         if (row["kind"] in ANSWERED or (row["label"] and row["answer"])) and row["outcome"] in (DONE, TIMEOUT):
             condition = ", ".join(f"{name}: {row.get(name)}" for name in table.factors) or "all"
             label = str(row["label"] or any_round(row["path"]))
@@ -176,6 +191,10 @@ def _summary(condition: str, label: str, number: int | None, rows: Sequence[Mapp
         answers[answer] = answers.get(answer, 0) + 1
     reactions = tuple(row["reaction_s"] for row in rows if row["reaction_s"] is not None)
     return ConditionSummary(condition, label, number, len(rows), answers, reactions)
+
+
+def _joined(texts: Sequence[str]) -> str:
+    return "; ".join(texts)
 
 
 def _csv(columns: Sequence[str], rows: Iterable[Mapping[str, Any]]) -> str:

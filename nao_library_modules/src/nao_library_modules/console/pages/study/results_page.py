@@ -13,7 +13,7 @@ from naoqi.errors import NaoError
 
 from ...study.conditions import NOTHING
 from ...study.studies import Studies
-from ...study.table import ConditionSummary, summaries_of, table_of
+from ...study.table import ConditionSummary, StudyTable, summaries_of, table_of
 from ..frame import framed, page_at
 from .links import study_links
 
@@ -23,6 +23,8 @@ MOST_TRIALS = 100
 """Trials in the list, the newest; the table has all."""
 
 
+SWITCHES = {"by_round": "By round", "all_trials": "Count aborted trials and rehearsals, too"}
+"""Parameters of the address -> what their switches say."""
 COLOURS = ("#1565c0", "#e65100", "#2e7d32", "#8e24aa", "#c62828", "#00838f", "#f9a825", "#6d4c41")
 GREY = "#9e9e9e"
 
@@ -47,21 +49,26 @@ def build(console: Any, studies: Studies) -> None:
                     f"/study/results?robot={quote(page.robot.name)}&study={quote(event.value)}"
                 ),
             ).classes("min-w-[16rem]")
-            by_round = request.query_params.get("by_round") == "1"
+            switches = {name: request.query_params.get(name) == "1" for name in SWITCHES}
             try:
-                trials, gaps, summaries = await page.work(_results_of, studies, chosen, by_round)
+                trials, table, summaries = await page.work(_results_of, studies, chosen, *switches.values())
             except NaoError as error:
                 ui.label(str(error)).classes("text-negative")
                 return
             _trials(page, trials)
-            ui.switch(
-                "By round",
-                value=by_round,
-                on_change=lambda event: ui.navigate.to(
-                    f"/study/results?robot={quote(page.robot.name)}&study={quote(chosen)}&by_round={int(event.value)}"
-                ),
-            )
-            for trial, gap in gaps:
+            address = f"/study/results?robot={quote(page.robot.name)}&study={quote(chosen)}"
+            for name, text in SWITCHES.items():
+                ui.switch(
+                    text,
+                    value=switches[name],
+                    on_change=lambda event, name=name: ui.navigate.to(
+                        address + "".join(f"&{key}={int(on)}" for key, on in {**switches, name: event.value}.items())
+                    ),
+                )
+            if table.left_out:
+                verb = "Counted too" if switches["all_trials"] else "Left out"
+                ui.label(f"{verb}: {', '.join(f'{trial} ({what})' for trial, what in table.left_out)}")
+            for trial, gap in table.gaps:
                 ui.label(f"{trial}: {gap}").classes("text-negative")
             _summaries(summaries)
 
@@ -77,11 +84,13 @@ def build(console: Any, studies: Studies) -> None:
             ui.button("A row a trial", icon="download", on_click=download_trials).props("no-caps")
 
 
-def _results_of(studies: Studies, study: str, by_round: bool) -> tuple[list[Any], Any, list[ConditionSummary]]:
-    """The newest trials of a study with their states, gaps, and what was measured in all. Reads all its files."""
+def _results_of(
+    studies: Studies, study: str, by_round: bool, all_trials: bool
+) -> tuple[list[Any], StudyTable, list[ConditionSummary]]:
+    """The newest trials of a study with their states, its table, and what was measured. Reads all its files."""
     table = table_of(studies.files, study)
     trials = sorted(studies.files.trials(study), key=lambda trial: trial.path.stat().st_mtime)[-MOST_TRIALS:]
-    return [(each, each.state()) for each in trials], table.gaps, summaries_of(table, by_round)
+    return [(each, each.state()) for each in trials], table, summaries_of(table, by_round, all_trials)
 
 
 def _trials(page: Any, trials: list[Any]) -> None:
@@ -94,8 +103,8 @@ def _trials(page: Any, trials: list[Any]) -> None:
         for trial, state in trials:
             ui.label(trial.path.name)
             ui.label(", ".join(f"{name}: {level}" for name, level in state.about.get("condition", {}).items()))
-            ui.label(state.status or "empty")
-            ui.label(str(len(state.outcomes)))
+            ui.label(state.status_text).classes("" if state.counts else "text-negative")
+            ui.label(state.steps_text)
             ui.label(f"{state.notes}, {state.deviations}")
             target = f"/study/replay?robot={quote(page.robot.name)}&trial={quote(trial.id)}"
             ui.link("replay", target).props(f'aria-label="replay of {trial.path.name}"')

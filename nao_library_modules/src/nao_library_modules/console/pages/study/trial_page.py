@@ -23,6 +23,7 @@ from ...study.conditions import filled
 from ...study.course import all_steps, any_round
 from ...study.errors import StudyError
 from ...study.order import order_of
+from ...study.participants import schedule_of
 from ...study.protocol import BAG_TOPICS, BranchStep, ChoiceStep, RoundsStep, StudyProtocol, WantedRecordings
 from ...study.reader import read_protocol
 from ...study.runner import TrialRunner
@@ -30,6 +31,7 @@ from ...study.state import CUT, DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, S
 from ...study.studies import Studies
 from ..frame import framed, page_at, sure
 from .links import study_links
+from .participants_card import ParticipantsCard
 
 PERIOD = 0.1
 """s between looks at whether the trial has changed, while the page is open."""
@@ -140,8 +142,7 @@ class _StudyPage:
         last = self.runner
         if last is not None:
             state = last.state
-            done = sum(each.outcome == DONE for each in state.outcomes)
-            ui.label(f"Trial {last.id} is {state.status}: {done} steps were done.").props('role="status"')
+            ui.label(f"Trial {last.id} is {state.status_text}; {state.steps_text}.").props('role="status"')
             self._build_trouble()
         opened = await self.page.work(self._opened)
         if opened:
@@ -177,8 +178,12 @@ class _StudyPage:
                 self._bag = ui.checkbox("Rosbag")
                 self._video = ui.checkbox("Video of the camera")
                 self._sound = ui.checkbox("Sound of the microphones")
+                self._rehearsal = ui.checkbox("Rehearsal").tooltip(
+                    "No trial of the participant: it uses up no number, and results leave it out"
+                )
             self._begin_button = ui.button("Start trial", icon="play_arrow", on_click=self._begin).props("no-caps")
             self._problems = ui.column().classes("text-negative gap-0").props('role="alert"')
+        self._participants = ParticipantsCard(self.page, self.studies, self._tell_order)
         with ui.expansion("Protocol as YAML", icon="edit").classes("w-full"):
             self._name = ui.input("Name", value=NEW).props("maxlength=64")
             self._text = (
@@ -213,6 +218,8 @@ class _StudyPage:
             self._problems.clear()
         self._begin_button.set_enabled(self.protocol is not None)
         self._build_values()
+        if self.protocol is not None:
+            await self._participants.show(self.protocol)
         await self._tell_order()
 
     def _build_values(self) -> None:
@@ -231,22 +238,14 @@ class _StudyPage:
             return
         self._help.text = protocol.help
         try:
-            number = (await self.page.work(self.studies.files.participants, protocol.name)).get(person, 0)
-        except (NaoError, OSError) as error:
-            self._tell_problems([error])
-            return
+            schedule = await self.page.work(schedule_of, self.studies.files, protocol, person) if person else None
+            lines = [f"A participant has {len(order_of(protocol, 1))} trials."] if protocol.factors else []
+            lines = schedule.lines(protocol.blind) if schedule is not None else lines
+        except (NaoError, OSError) as error:  # half a pseudonym may be none
+            lines = [str(error)]
         if self._help.is_deleted or (protocol, person) != (self.protocol, self._person.value.strip()):
             return  # a trial has begun meanwhile, or somebody has typed on, which is told by itself
-        lines = [protocol.help]
-        if protocol.factors and number:
-            order = order_of(protocol, number)
-            lines += [f"Participant {number} has {len(order)} trials, in this order:"]
-            lines += [
-                f"{i}. {', '.join(f'{name}: {level}' for name, level in c.items())}" for i, c in enumerate(order, 1)
-            ]
-        elif protocol.factors:
-            lines += [f"A participant has {len(order_of(protocol, 1))} trials."]
-        self._help.text = "\n".join(lines)
+        self._help.text = "\n".join(filter(None, (protocol.help, *lines)))
 
     async def _begin(self) -> None:
         if self.protocol is None or not self.page.operate():
@@ -265,6 +264,7 @@ class _StudyPage:
         values = {name: text for name, text in given.items() if text != text_of(protocol.values[name])}
         by = self.page.visitor.name
         more = {"record": wanted, "values": values, "stops": self.robot.stops}
+        more["rehearsal"] = bool(self._rehearsal.value)
         await self._try(lambda: self.studies.begin(protocol, pseudonym, self.robot, by, **more))
 
     async def _resume(self, trial: str) -> None:
@@ -331,8 +331,10 @@ class _StudyPage:
             with ui.row().classes("items-center w-full"):
                 ui.label(f"{about['study']}, {about['participant']}, trial {about['position']}").classes("text-h6")
                 condition = ", ".join(f"{name}: {level}" for name, level in about["condition"].items())
-                if condition:
+                if condition and not runner.protocol.blind:
                     ui.label(condition)
+                if runner.state.rehearsal:
+                    ui.badge("rehearsal")
                 self._status = ui.badge().props('role="status"')
                 self._recorded = ui.row()
             self._now = ui.label().classes("text-h5").props('role="status" aria-live="polite"')
