@@ -310,11 +310,17 @@ def limits() -> str:
     """Bounds of the numbers that come in from outside, by kind."""
     sides = (("servers, driver, behaviours", limits_of_modules()), ("simulator", limits_of_simulator()))
     rows = [
-        (side, row.kind, bound(row.lowest), bound(row.highest), row.unit, places(row.where))
+        (side, row.kind, bound(row.lowest), bound(row.highest), usual_of(row), row.unit, places(row.where))
         for side, declared in sides
         for row in declared
     ]
-    return table(("of", "kind", "lowest", "highest", "unit", "where"), rows)
+    return table(("of", "kind", "lowest", "highest", "usual", "unit", "where"), rows)
+
+
+def usual_of(row: Any) -> str:
+    """What is usual of a kind of number, where checks look at that."""
+    found = getattr(row, "usual", None)
+    return "" if found is None else f"{bound(found[0])} to {bound(found[1])}"
 
 
 def sizes() -> str:

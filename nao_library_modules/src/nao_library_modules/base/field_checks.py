@@ -33,6 +33,17 @@ def require_within(field: str, value: float, limit: Limit, allowed: str = "") ->
     return require_number(field, value, limit.lowest, limit.highest, allowed or limit.text)
 
 
+UNUSUAL = "unusual"
+"""Key of a step, in behaviours, protocols and the wizard's file, that means a number which is not usual."""
+
+
+def require_usual(field: str, value: float, limit: Limit | None) -> None:
+    """A number within what is usual of its kind; 0, which often stands for something else, always is."""
+    if limit is not None and value != 0.0 and not limit.lowest <= value <= limit.highest:
+        allowed = f"usual is {limit.text}; with `{UNUSUAL}: true` beside it, it is allowed"
+        raise BadGoal(field, value, allowed, problem=f"{value:g} is unusual")
+
+
 def require_zero_or(field: str, value: float, limit: Limit, zero: str = "") -> float:
     """As `require_within`; 0 is allowed as well; `zero` says what it stands for: ": the default"."""
     if value == 0.0:

@@ -30,14 +30,21 @@ def limit(kind: str) -> Limit:
     return Limit(declared["lowest"], declared["highest"], declared["unit"])
 
 
+def usual(kind: str) -> Limit | None:
+    """The bounds of what is usual of a kind of number, which checks before a run look at; None: all that is allowed."""
+    declared = _declared()[kind]
+    return Limit(*declared["usual"], declared["unit"]) if "usual" in declared else None
+
+
 class Row(NamedTuple):
-    """A line of the table of bounds: a kind of number, its bounds, and where they hold, in words."""
+    """A line of the table of bounds: a kind of number, its bounds, where they hold, in words, and what is usual."""
 
     kind: str
     lowest: float
     highest: float
     unit: str
     where: str
+    usual: tuple[float, float] | None = None
 
 
 def table() -> list[Row]:

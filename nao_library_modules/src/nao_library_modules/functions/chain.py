@@ -190,6 +190,12 @@ class BoundFunction:
             value = getattr(message, name)
             field.require(name, seconds(value) if hasattr(value, "to_sec") else value)
 
+    def check_usual(self, message: Any) -> None:
+        """See that the numbers of its fields are usual. Raises BadGoal, which names the first field that is not."""
+        for name, field in {**self.fields, "time": COMMON["time"]}.items():
+            value = getattr(message, name)
+            field.require_usual(name, seconds(value) if hasattr(value, "to_sec") else value)
+
     def run_check(self, message: Any, context: dict[str, Any], stand_in: StandIn = lambda owner: owner) -> None:
         """Run the check, if there is one.
 
@@ -288,6 +294,20 @@ class FunctionChain:
             try:
                 binding = self._guarded(i, message, self.bind_one)
                 self._guarded(i, message, lambda m, b=binding: b.run_check(m, context, stand_in))
+            except FunctionFailed as failed:
+                found.append(failed)
+        return found
+
+    def unusual(self, messages: Sequence[Any]) -> list[FunctionFailed]:
+        """Functions whose fields hold numbers that are allowed and not usual; those that are wrong are left out."""
+        found = []
+        for i, message in enumerate(messages, start=1):
+            try:
+                binding = self.bind_one(message)
+            except (BadGoal, UnknownFunction):
+                continue
+            try:
+                self._guarded(i, message, binding.check_usual)
             except FunctionFailed as failed:
                 found.append(failed)
         return found

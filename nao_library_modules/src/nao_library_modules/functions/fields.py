@@ -13,6 +13,7 @@ fields, or on the robot, is said by the check beside the function (`chain.checke
 from __future__ import annotations
 
 import inspect
+import itertools
 import logging
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -29,9 +30,10 @@ from ..base.field_checks import (
     require_number,
     require_rising,
     require_text,
+    require_usual,
     require_whole,
 )
-from ..base.limits import Limit, limit
+from ..base.limits import Limit, limit, usual
 
 __all__ = ["Annotated", "Field", "fields_of", "flag", "free", "moments", "number", "numbers", "text", "whole", "word"]
 
@@ -56,6 +58,7 @@ class Field:
         choices: The words that it may hold, where they are the same for all robots.
         asked: What to ask the robot for these words, where they are not.
         check: Raises BadGoal for a value that will not do; takes the name of the field and the value.
+        usual: Bounds of what is usual of its numbers; of a list with several for each place, in turn. None: anything.
     """
 
     help: str
@@ -66,6 +69,7 @@ class Field:
     choices: Sequence[str] = ()
     asked: Sequence[Question] = ()
     check: Callable[[str, Any], object] | None = None
+    usual: Sequence[Limit | None] = ()
 
     def but(self, **changes: Any) -> Field:
         """The same with some attributes changed."""
@@ -75,6 +79,12 @@ class Field:
         """See that a value will do. Raises BadGoal if it will not."""
         if self.check is not None:
             self.check(name, value)
+
+    def require_usual(self, name: str, value: Any) -> None:
+        """See that a value is usual, too. Raises BadGoal if it is not."""
+        values = value if isinstance(value, (list, tuple)) else [value]
+        for each, bounds in zip(values, itertools.cycle(self.usual)):
+            require_usual(name, each, bounds)
 
 
 def free(meaning: str, unit: str = "", allowed: str = "", **more: Any) -> Field:
@@ -105,7 +115,8 @@ def number(bounds: Bounds, meaning: str, unit: str = "", zero: str | None = None
         if zero is None or value != 0.0:
             require_number(name, value, lowest, highest, allowed)
 
-    return Field(meaning, unit, allowed, lowest if zero is None else min(lowest, 0.0), highest, check=check)
+    least = lowest if zero is None else min(lowest, 0.0)
+    return Field(meaning, unit, allowed, least, highest, check=check, usual=_usual(bounds))
 
 
 def numbers(
@@ -145,7 +156,8 @@ def moments(bounds: Bounds, meaning: str, most: Limit = KEY_FRAMES, shared: bool
     def check(name: str, times: Sequence[float]) -> None:
         require_rising(name, times, limit_of_each, most, shared)
 
-    return Field(meaning, "s", allowed, limit_of_each.lowest, limit_of_each.highest, check=check)
+    lowest, highest, _ = limit_of_each
+    return Field(meaning, "s", allowed, lowest, highest, check=check, usual=_usual(bounds))
 
 
 def word(choices: Sequence[str], meaning: str, kind: str = "", empty: str | None = None) -> Field:
@@ -168,6 +180,10 @@ def word(choices: Sequence[str], meaning: str, kind: str = "", empty: str | None
 def text(what: str, meaning: str) -> Field:
     """A text with something in it. `what`: it in words, for refusals: "the name of a group". `meaning`: the help."""
     return Field(meaning, "", what, check=lambda name, value: require_text(name, value, what))
+
+
+def _usual(bounds: Bounds) -> Sequence[Limit | None]:
+    return (usual(bounds),) if isinstance(bounds, str) else ()
 
 
 def _limit(bounds: Bounds, unit: str) -> Limit:

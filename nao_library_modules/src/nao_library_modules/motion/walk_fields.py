@@ -7,7 +7,7 @@ from typing import List
 
 from ..base.errors import BadGoal
 from ..base.field_checks import require_count, require_each, require_length, require_within
-from ..base.limits import Limit, limit
+from ..base.limits import Limit, limit, usual
 from ..base.suggestion import did_you_mean
 from ..functions.fields import Annotated, Field, flag, free, moments, number, numbers, word
 from .facts import ARMS, LEGS
@@ -169,6 +169,7 @@ Ways = Annotated[
         help="x, y, theta of each place on the way, seen from the robot",
         allowed=f"for each place {_in_plane(WAY, TURN)}",
         check=_require_ways,
+        usual=(usual("way"), usual("way"), None),
     ),
 ]
 Places = Annotated[List[float], _PLACES]
@@ -189,7 +190,7 @@ Velocity = Annotated[
         TURNING,
         "x, y (m/s), theta (rad/s)",
         free("velocity along x, y and around z", "m/s, rad/s", _in_plane(PACE, TURNING)),
-    ),
+    ).but(usual=(usual("walking speed"), usual("walking speed"), usual("turning speed"))),
 ]
 VelocityShares = Annotated[
     List[float],

@@ -9,7 +9,8 @@ from typing import Any, Callable
 from naoqi.errors import NaoError
 
 from ...base.errors import BadGoal
-from ...base.limits import limit
+from ...base.field_checks import require_usual
+from ...base.limits import limit, usual
 from .errors import BehaviorError, Problem
 from .expressions import UNKNOWN, NotKnown, substitute, text_of
 from .messages import message_of
@@ -161,16 +162,16 @@ class _Binder:
             "line": step.line,
         }
         if step.limit is not None:
-            common["limit"] = _seconds("for", step.limit, scope.values)
+            common["limit"] = self._seconds("for", step.limit, step, scope)
         if step.at is not None:
             at = step.at
-            common["at"] = At(_seconds("at", at.offset, scope.values), at.label, at.of_end)
+            common["at"] = At(self._seconds("at", at.offset, step, scope), at.label, at.of_end)
         if isinstance(step, Unreadable):
             return None
         if isinstance(step, Functions):
             return self._goal(step, scope, common)
         if isinstance(step, Wait):
-            return Pause(**common, duration=_seconds("wait", step.duration, scope.values))
+            return Pause(**common, duration=self._seconds("wait", step.duration, step, scope))
         if isinstance(step, Barrier):
             where, branch = home or (None, 0)
             return BarrierNode(**common, name=step.name, home=where, branch=branch)
@@ -183,6 +184,20 @@ class _Binder:
         if isinstance(step, Timeline):
             return OnTimeline(**common, nodes=self._all(step.parts, scope))
         return SequenceNode(**common, nodes=self._all(step.parts, scope, home))
+
+    def _seconds(self, key: str, value: Any, step: Step, scope: _Scope) -> float:
+        """A time of a step, s; noted where it is not usual."""
+        found = _seconds(key, value, scope.values)
+        self._look_whether_usual(key, found, "wait", step, scope)
+        return found
+
+    def _look_whether_usual(self, key: str, value: float, kind: str, step: Step, scope: _Scope) -> None:
+        """Note a number of a step that is not usual, unless the step says that it is meant."""
+        if self._checks and not step.unusual:
+            try:
+                require_usual(key, value, usual(kind))
+            except BadGoal as error:
+                self._note(step, scope, str(error))
 
     def _goal(self, step: Functions, scope: _Scope, common: dict[str, Any]) -> Node | None:
         server = self._tables.server(step.server)
@@ -202,6 +217,8 @@ class _Binder:
                     self._note(step, scope, str(error))
             messages.append(message)
         failures = self._tables.check(server, messages)[0] if self._checks else []
+        if self._checks and not step.unusual:
+            failures += self._tables.unusual(server, messages)
         for failed in failures:
             if failed.position not in wrong:  # a field without its value would be told as another mistake
                 self._note(step, scope, str(failed if len(messages) > 1 else failed.cause))
@@ -242,6 +259,7 @@ class _Binder:
         whole = isinstance(count, int) or (isinstance(count, float) and count.is_integer())
         if isinstance(count, bool) or not whole or not 0 <= count <= MOST_ROUNDS:
             raise BadGoal("repeat", count, f"a whole number 0..{MOST_ROUNDS}")
+        self._look_whether_usual("repeat", count, "rounds", step, scope)
         path: PathParts = common["path"]
 
         def one(number: int, binder: _Binder) -> SequenceNode:

@@ -34,6 +34,7 @@ class Step:
     policy: FailurePolicy = FailurePolicy()  # what happens when it fails
     limit: Any = None  # s after which it is ended and counts as done; None for no limit. May hold `${}`
     at: At | None = None  # when it begins, on a timeline
+    unusual: bool = False  # whether its numbers are meant though they are not usual
     whole: bool = True  # whether all of it could be read; what is inside of it does not count
 
     @property

@@ -103,6 +103,10 @@ class FunctionTables:
         unfinished = [failed.position for failed in failures if isinstance(failed.cause, _AtTheServer)]
         return [failed for failed in failures if failed.position not in unfinished], unfinished
 
+    def unusual(self, server: ServerType, messages: Sequence[Any]) -> list[FunctionFailed]:
+        """Functions of a goal whose numbers are allowed and not usual, as far as they are known here."""
+        return self._chain(server).unusual(messages) if server.ours else []
+
     def check_goals(self, name: str, goals: Sequence[Any]) -> GoalCheck:
         """Check goals as their server would for a robot that is as all of its family are.
 

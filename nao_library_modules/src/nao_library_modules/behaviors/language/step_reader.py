@@ -9,6 +9,7 @@ from typing import Any, Callable
 
 from ...base.errors import BadGoal
 from ...base.failure_policy import FailurePolicy
+from ...base.field_checks import UNUSUAL
 from ...base.suggestion import did_you_mean
 from .errors import Problem
 from .expressions import IDENTIFIER, UNKNOWN, names_in
@@ -31,7 +32,7 @@ from .model import (
 from .times import LABEL, at_of
 from .yaml_text import line_in, line_of
 
-COMMON = ("label", "on_error", "for")
+COMMON = ("label", "on_error", "for", UNUSUAL)
 KINDS = ("SERVER.FUNCTION", "parallel", "race", "timeline", "behavior", "chain", "wait", "repeat", "do", "barrier")
 FURTHER = {"behavior": ("parameters",), "repeat": ("do", "as")}
 """Keys that a kind has beside its own."""
@@ -92,6 +93,9 @@ class StepReader:
         common["policy"] = self._policy(content)
         if "for" in content:
             common["limit"] = self._number("for", content["for"], "s")
+        common["unusual"] = content.get(UNUSUAL, False)
+        if not isinstance(common["unusual"], bool):
+            raise BadGoal(UNUSUAL, common["unusual"], "true or false")
         if timed:
             common["at"] = at_of(content.get("at", 0.0))
             if not self._known_names("at", common["at"].offset):

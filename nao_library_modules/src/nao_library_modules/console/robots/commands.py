@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Callable
 
 from ...base.errors import BadGoal
+from ...base.field_checks import UNUSUAL
 from ...base.suggestion import did_you_mean, of_those
 from ...behaviors.language.expressions import text_of
 from ...behaviors.language.messages import message_of
@@ -35,7 +36,7 @@ FORMS: Mapping[str, tuple[str, ...]] = {
     "stop": (),
 }
 """First key of each form -> the keys that may stand beside it."""
-KEYS = (*FORMS, "animated", "with", "steps")
+KEYS = (*FORMS, "animated", "with", "steps", UNUSUAL)
 """All keys of commands: a file may have others beside them."""
 _PLACES = {
     "call": "fields of the function stand in with: {{{}: ...}}",
@@ -61,6 +62,7 @@ class RobotCommand:
     server: str = ""
     chain: tuple[tuple[str, Mapping[str, Any]], ...] = ()
     source: Mapping[str, Any] | None = None  # as the file has it
+    unusual: bool = False  # whether its numbers are meant though they are not usual
 
     @property
     def stops(self) -> bool:
@@ -142,9 +144,9 @@ def read_command(reader: FileReader, holder: Any, where: str) -> RobotCommand | 
     for key in ("animated", "with", "steps"):
         if key in holder and key not in FORMS[kind]:
             reader.note(where, f"{key} is not for {kind}", line_in(holder, key))
-    source = {key: holder[key] for key in (kind, *FORMS[kind]) if key in holder}
+    source = {key: holder[key] for key in (kind, *FORMS[kind], UNUSUAL) if key in holder}
     made = _READERS[kind](reader, holder, where)
-    return None if made is None else replace(made, source=source)
+    return None if made is None else replace(made, source=source, unusual=reader.flag(holder, UNUSUAL, where))
 
 
 def _read_say(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:

@@ -54,7 +54,7 @@ class ProtocolCheck:
         return list(found)
 
     def _command(self, command: RobotCommand) -> list[str]:
-        key = repr((command.server, command.chain))
+        key = repr((command.server, command.chain, command.unusual))
         if key not in self._told:
             self._told[key] = command_problems(command, self._describe) or self._values(command)
         return self._told[key]
@@ -71,9 +71,11 @@ class ProtocolCheck:
         return self._goal(command, types)
 
     def _goal(self, command: RobotCommand, types: ServerType) -> list[str]:
-        check = self._tables.check_goals(command.server, [goal_of(command, types).goal])
+        goal = goal_of(command, types).goal
         single = len(command.chain) == 1
-        return [each.text if single else str(each) for each in check.problems]
+        found = [each.text if single else str(each) for each in self._tables.check_goals(types.name, [goal]).problems]
+        unusual = [] if command.unusual else self._tables.unusual(types, goal.functions)
+        return [*found, *(str(each.cause if single else each) for each in unusual)]
 
     def _behavior(self, fields: Mapping[str, Any]) -> list[str]:
         name, given = str(fields.get("str_param", "")), list(fields.get("parameters", []))

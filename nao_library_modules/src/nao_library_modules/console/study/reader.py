@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...base.errors import BadGoal
+from ...base.limits import limit
 from ...base.suggestion import of_those
 from ...behaviors.language.errors import Problem
 from ...behaviors.language.expressions import IDENTIFIER
@@ -51,7 +52,7 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 """What studies and participants may be called: it is the name of a folder, too."""
 NAME_FORM = "letters, digits, _ and -, a letter or digit first, 64 at most"
 TOPIC = re.compile(r"/?[A-Za-z]\w*(/[A-Za-z]\w*)*")
-LONGEST, DEFAULT_WAIT = 3600.0, 3600.0
+LONGEST = DEFAULT_WAIT = limit("timeout").highest
 """s: the longest wait of the servers, and that of a step that names none."""
 MOST_ROUNDS, MOST_CONDITIONS = 1000, 64
 _TOP = ("name", "help", "factors", "order", "seed", "blind", "values", "record", "phases")
