@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,9 @@ import click
 from naoqi.errors import NaoError
 
 from ..errors import CommandFailed
-from ..settings import NaoCommand
+from ..output import say_json
+from ..settings import CliSettings, NaoCommand, settings_of
+from .command_check import command_check
 
 FILE = click.Path(dir_okay=False, path_type=Path)
 
@@ -29,14 +32,26 @@ FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--observer", is_flag=True, help="With --add-user: who only looks on.")
 @click.option("--cert", "certificate", type=FILE, metavar="FILE", help="Certificate for https, PEM.")
 @click.option("--key", type=FILE, metavar="FILE", help="Its key.")
+@click.option("--check", "checked", type=FILE, metavar="FILE", help="Check a file of the wizard's page, and end.")
 @click.option("--console", "buttons", type=FILE, metavar="FILE", help="Buttons of the wizard's page.")
 @click.option("--studies", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help="Folder of trials.")
-def console_command(users: Path | None, add_user: str | None, observer: bool, **options: Any) -> None:
+@click.pass_context
+def console_command(
+    context: click.Context,
+    users: Path | None,
+    add_user: str | None,
+    observer: bool,
+    checked: Path | None,
+    **options: Any,
+) -> None:
     """Serve the console: prints its address, ends with Ctrl-C."""
     from ...console.access.users import OBSERVER, OPERATOR
     from ...console.access.users import add_user as write_user
 
     try:
+        if checked is not None:
+            _check(settings_of(context), checked)
+            return
         if add_user is not None:
             if users is None:
                 raise click.UsageError("--add-user NAME goes with --users FILE")
@@ -49,3 +64,27 @@ def console_command(users: Path | None, add_user: str | None, observer: bool, **
         serve_console(users=users, **{name: value for name, value in options.items() if value is not None})
     except NaoError as error:
         raise CommandFailed(str(error)) from None
+
+
+def _check(settings: CliSettings, path: Path) -> None:
+    """Tell all that is wrong with a file of the wizard's page, each mistake with its line; nothing is started.
+
+    Raises CommandFailed if there is anything.
+    """
+    from ...console.files.yaml_file import ConsoleFileError
+    from ...console.wizard.check import layout_problems
+    from ...console.wizard.layout_file import LayoutFile
+
+    try:
+        layout = LayoutFile(path, path).layout()
+        problems = layout_problems(layout, command_check(settings))
+    except ConsoleFileError as error:
+        problems = [*error.problems]
+    if problems:
+        told = [str(replace(problem, file=str(path))) for problem in problems]
+        raise CommandFailed("\n".join([f"{path} cannot be used:", *told]))
+    count = sum(1 for _ in layout.buttons())
+    if settings.json:
+        say_json({"file": str(path), "buttons": count})
+        return
+    click.echo(f"nothing wrong was found in {path}: {count} buttons")

@@ -16,13 +16,13 @@ from naoqi.errors import NaoError
 
 from ...base.suggestion import of_those
 from ...base.whole_file import FileTrouble, write_whole
-from ..errors import CommandFailed, CommandInterrupted, StackMissing
+from ..errors import CommandFailed, CommandInterrupted
 from ..files import overwrite_option, wanted_file
 from ..output import say_json, say_lines, table
 from ..settings import CliSettings, NaoCommand, NaoGroup, settings_of
+from .command_check import command_check
 
 if TYPE_CHECKING:
-    from ...console.study.checking import ProtocolCheck
     from ...console.study.files import StudyFiles, TrialFolder
     from ...console.study.protocol import StudyProtocol, WantedRecordings
     from ...console.study.runner import TrialRunner
@@ -83,10 +83,11 @@ def check(context: click.Context, protocol: str, folder: Path) -> None:
     Servers and stored behaviours are those that run. Where none does, the code tells what this package's servers can
     do, and the behaviours are those of the usual folder.
     """
+    from ...console.study.checking import ProtocolCheck
     from ...console.study.order import order_of
 
     read = _protocol(_files(folder), protocol)
-    problems = _checks(settings_of(context)).problems(read)
+    problems = ProtocolCheck(command_check(settings_of(context))).problems(read)
     if problems:
         raise CommandFailed("\n".join([f"protocol {read.name} cannot be run:", *map(str, problems)]))
     order = order_of(read, 1)
@@ -361,29 +362,6 @@ def _told(act: Callable[[], Any]) -> Any:
         raise CommandFailed("\n".join([f"{error.name} cannot be run:", *map(str, error.problems)])) from None
     except (NaoError, OSError) as error:
         raise CommandFailed(str(error)) from None
-
-
-def _checks(settings: CliSettings) -> ProtocolCheck:
-    from nao_library_msgs.srv import ListBehaviorsRequest
-
-    from ...console.robots.errors import NotThere
-    from ...console.study.checking import ProtocolCheck
-
-    stack = settings.stack
-
-    def running() -> list[str]:
-        try:
-            return stack.servers()
-        except click.ClickException:
-            return []
-
-    def ask(**fields: Any) -> Any:
-        try:
-            return stack.list_behaviors(ListBehaviorsRequest(**fields), patient=True)
-        except StackMissing as error:
-            raise NotThere(error.message) from None
-
-    return ProtocolCheck(stack.describe, running, ask)
 
 
 def _studies(settings: CliSettings, files: StudyFiles) -> tuple[Studies, Any]:

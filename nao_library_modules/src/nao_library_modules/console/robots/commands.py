@@ -26,6 +26,7 @@ from ...functions.server_types import ACTIONS, ServerType, described_type, serve
 from ..files.yaml_file import FileReader
 
 SPEECH, MOTION, BEHAVIORS = "nao_audio_out", "NaoMotion", "NaoBehavior"
+RUN = "runBehavior"
 FORMS: Mapping[str, tuple[str, ...]] = {
     "say": ("animated",),
     "run": ("with",),
@@ -105,7 +106,7 @@ def say(text: str, animated: bool = False) -> RobotCommand:
 
 def run_behavior(name: str, parameters: Mapping[str, Any]) -> RobotCommand:
     given = [f"{key}={text_of(value)}" for key, value in parameters.items()]
-    return call(BEHAVIORS, "runBehavior", str_param=name, **({"parameters": given} if given else {}))
+    return call(BEHAVIORS, RUN, str_param=name, **({"parameters": given} if given else {}))
 
 
 def posture(name: str) -> RobotCommand:

@@ -9,10 +9,10 @@ from naoqi.errors import NaoError
 
 from ...base.suggestion import of_those
 from ...behaviors.language.errors import Problem
-from ..robots.commands import BEHAVIORS, RobotCommand, command_problems
+from ...behaviors.language.servers import FunctionTables
+from ..robots.commands import BEHAVIORS, RUN, RobotCommand, command_problems, goal_of, type_of
+from ..timeline.command_check import CommandCheck
 from .model import WizardButton, WizardLayout
-
-RUN = "runBehavior"
 
 
 def doubts(layout: WizardLayout, robot: Any, behaviors: Collection[str] | None) -> list[Problem]:
@@ -26,12 +26,23 @@ def doubts(layout: WizardLayout, robot: Any, behaviors: Collection[str] | None) 
         behaviors: Names of the stored behaviours; None: not known.
     """
     found = []
+    tables = FunctionTables()
     for group, button in layout.buttons():
         if button.robot and button.robot.strip("/") != robot.namespace.strip("/"):
             continue
         where = f"{group.title}: {button.label}"
-        found += [Problem(where, text, button.line) for text in _problems(button, robot, behaviors)]
+        found += [Problem(where, text, button.line) for text in _problems(button, robot, behaviors, tables)]
     return found
+
+
+def layout_problems(layout: WizardLayout, check: CommandCheck) -> list[Problem]:
+    """What robots would refuse of all buttons, in the order of the file; plans are not looked at."""
+    return [
+        Problem(f"{group.title}: {button.label}", text, button.line)
+        for group, button in layout.buttons()
+        if isinstance(button.action, RobotCommand)
+        for text in check.problems(button.action)
+    ]
 
 
 def stored_behaviors(robot: Any) -> list[str] | None:
@@ -44,7 +55,7 @@ def stored_behaviors(robot: Any) -> list[str] | None:
         return None
 
 
-def _problems(button: WizardButton, robot: Any, behaviors: Collection[str] | None) -> list[str]:
+def _problems(button: WizardButton, robot: Any, behaviors: Collection[str] | None, tables: FunctionTables) -> list[str]:
     command = button.action
     if not isinstance(command, RobotCommand) or command.stops:
         return []
@@ -54,4 +65,8 @@ def _problems(button: WizardButton, robot: Any, behaviors: Collection[str] | Non
         wanted = str(fields.get("str_param", ""))
         if name == RUN and wanted and wanted not in behaviors and not button.names:
             problems.append(f"there is no behavior {wanted!r}{of_those(wanted, behaviors)}")
+    if not problems and not command.unusual:
+        types = type_of(command.server, robot.describe)
+        unusual = tables.unusual(types, goal_of(command, types).goal.functions)
+        problems += [str(each.cause if len(command.chain) == 1 else each) for each in unusual]
     return problems
