@@ -165,3 +165,28 @@ def test_what_those_do_not_have_is_refused(step, told, library):
     with pytest.raises(BehaviorError) as caught:
         check(read(f"help: x\ndo: [{step}]\n", "test"), library, None, FunctionTables(others))
     assert told in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "step, told",
+    [
+        ("NaoMotion.moveTo: {values: [30, 0, 0]}", "field values: 30 is unusual: usual is -10..10 m"),
+        ("NaoMotion.move: {values: [0.5, 0, 0]}", "usual is -0.2..0.2 m/s"),
+        ("NaoLights.reset: {lights: [FaceLeds], time: 80000}", "field time: 80000 is unusual: usual is 0..3600 s"),
+        ("NaoMotion.angleInterpolation: {names: [HeadYaw], angles: [0.1], times: [9000]}", "field times: 9000"),
+        ("wait: 7200", "field wait: 7200 is unusual"),
+        ("wait: 1, for: 7200", "field for: 7200 is unusual"),
+        ("repeat: 5000, do: [{wait: 1}]", "field repeat: 5000 is unusual: usual is 0..1000"),
+    ],
+)
+def test_a_number_that_is_not_usual_is_refused_unless_the_step_says_that_it_is_meant(step, told, library, tables):
+    with pytest.raises(BehaviorError) as caught:
+        check(read(f"help: x\ndo: [{{{step}}}]\n", "test"), library, None, tables)
+    assert told in str(caught.value)
+    check(read(f"help: x\ndo: [{{{step}, unusual: true}}]\n", "test"), library, None, tables)
+
+
+def test_what_no_robot_takes_is_refused_though_the_step_says_that_it_is_meant(library, tables):
+    step = "{NaoMotion.setAngles: {names: [HeadYaw], angles: [5.0], speed: 0.2}, unusual: true}"
+    with pytest.raises(BehaviorError, match="HeadYaw cannot go to 5.0000 rad: -2.0857 to 2.0857 rad"):
+        check(read(f"help: x\ndo: [{step}]\n", "test"), library, None, tables)

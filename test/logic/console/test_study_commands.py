@@ -51,6 +51,13 @@ def test_protocols_that_come_along_fit_the_servers(run, tmp_path, name):
         ("{run: hello, with: {colour: '{participant}'}}", "there is no parameter 'colour'"),
         ("posture: Stnd", "did you mean 'Stand'"),
         ("{call: NaoLights.setColor, with: {lights: [FaceLeds], str_param: '{n}'}}", "unknown colour 'gren'"),
+        ("walk_to: [30, 0, 0]", "function 2 (moveTo): field values: 30 is unusual: usual is -10..10 m"),
+        ("{call: nao_audio_out.say, with: {str_param: Hi, time: 90000}}", "0..86400 s"),
+        ("{call: nao_audio_out.say, with: {str_param: Hi, time: 80000}}", "usual is 0..3600 s"),
+        (
+            "{call: NaoMotion.setAngles, with: {names: [HeadYaw], angles: [5.0], speed: 0.2}}",
+            "HeadYaw cannot go to 5.0000 rad: -2.0857 to 2.0857 rad",
+        ),
     ],
 )
 def test_what_the_robot_would_refuse_is_told_with_its_line(run, tmp_path, step, told):
@@ -60,6 +67,12 @@ def test_what_the_robot_would_refuse_is_told_with_its_line(run, tmp_path, step, 
     assert answer.exit_code == 1
     assert "line 4" in answer.output
     assert told in answer.output
+
+
+def test_a_step_that_says_that_its_number_is_meant_is_right(run, tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text("phases:\n  - steps:\n      - {walk_to: [30, 0, 0], unusual: true}\n")
+    assert run("check", file).exit_code == 0
 
 
 def test_what_only_the_trial_has_is_not_looked_at(run, tmp_path):

@@ -9,9 +9,11 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import pytest
+from click.testing import CliRunner
 
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.paths import config_file
+from nao_library_modules.cli.app import nao
 from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from nao_library_modules.console.pages.wizard_page import WizardParts
 from nao_library_modules.console.robots.errors import Stopped
@@ -246,6 +248,31 @@ def test_the_mistakes_of_a_file_are_in_the_terminal_when_the_console_starts(tmp_
     path.write_text("groups: wrong")
     WizardParts(SimpleNamespace(settings=SimpleNamespace(buttons=path)))
     assert f"{path}: groups: a list is wanted" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "line, told",
+    [
+        ("{label: Go, key: Hyper+Q, say: Hi}", "key"),
+        ("{label: Go, walk_to: [30, 0, 0]}", "Body: Go: function 2 (moveTo): field values: 30 is unusual"),
+        ("{label: Go, call: NaoLights.onn}", "Body: Go: NaoLights has no function 'onn': did you mean 'on'"),
+        ("{label: Go, posture: Stnd}", "did you mean 'Stand'"),
+    ],
+)
+def test_a_file_is_checked_in_a_shell_and_nothing_is_started(tmp_path, line, told):
+    path = tmp_path / "mine.yaml"
+    path.write_text(f"groups:\n  - group: Body\n    buttons:\n      - {line}\n")
+    answer = CliRunner().invoke(nao, ["console", "--check", str(path)])
+    assert answer.exit_code == 1
+    assert f"{path}:4: " in answer.output and told in answer.output
+
+
+def test_a_file_that_is_right_is_told_as_such(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("groups: [{group: Body, buttons: [{label: Go, walk_to: [30, 0, 0], unusual: true}]}]\n")
+    answer = CliRunner().invoke(nao, ["console", "--check", str(path)])
+    assert (answer.exit_code, answer.output) == (0, f"nothing wrong was found in {path}: 1 buttons\n")
+    assert CliRunner().invoke(nao, ["console", "--check", str(tmp_path / "none.yaml")]).exit_code == 1
 
 
 # --- keys, colours, texts ---------------------------------------------------------------------------------------------
