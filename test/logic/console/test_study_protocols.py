@@ -11,7 +11,7 @@ from played_study import PROTOCOL
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from nao_library_modules.console.study.conditions import StudyCondition
-from nao_library_modules.console.study.course import following, step_at
+from nao_library_modules.console.study.course import following, rounds_of, step_at
 from nao_library_modules.console.study.order import balanced_rows, order_of
 from nao_library_modules.console.study.reader import read_protocol, read_protocol_file
 
@@ -240,3 +240,40 @@ def test_rounds_know_their_number():
 )
 def test_conditions_compare_values_of_the_trial(text, values, holds):
     assert StudyCondition.read(text).holds(values) is holds
+
+
+def test_a_wait_that_is_drawn_is_the_same_again_for_a_participant_and_evenly_spread():
+    protocol = read_protocol(f"seed: 3\n{HEAD}    - wait: [2, 5]\n", "x")
+    step = step_at(protocol, "1.1")
+    drawn = [step.drawn("1.1", {"number": number, "trial": 1}).seconds for number in range(1, 201)]
+    assert drawn == [step.drawn("1.1", {"number": number, "trial": 1}).seconds for number in range(1, 201)]
+    assert (2 <= min(drawn), max(drawn) <= 5, len({*drawn}) > 150) == (True, True, True)
+    assert 3.2 < sum(drawn) / len(drawn) < 3.8
+    assert step.text == "wait 2 to 5 s"
+
+
+@pytest.mark.parametrize("wait", ["[5, 2]", "[1]", "[1, 5000]", "[a, b]", "[-1, 2]"])
+def test_bounds_of_a_wait_that_are_none_are_refused(wait):
+    with pytest.raises(ConsoleFileError, match=r"two numbers 0\.\.3600, as wait: \[2, 5\]"):
+        read_protocol(f"{HEAD}    - wait: {wait}\n", "x")
+
+
+ROUNDS = HEAD + "    - repeat: 4\n      as: i\n      order: random\n      steps: [{when: i == 3, then: [{wait: 1}]}]\n"
+
+
+def test_rounds_in_a_random_order_have_each_number_once_and_the_same_order_again():
+    protocol = read_protocol(ROUNDS, "x")
+    orders = []
+    for number in range(1, 30):
+        values = {"number": number, "trial": 1}
+        orders.append(tuple(rounds_of(protocol, f"1.1.r{i}.1", values)["i"] for i in range(1, 5)))
+        third = orders[-1].index(3) + 1
+        assert course(protocol, **values) == [f"1.1.r{third}.1.b1.1"]
+        assert orders[-1] == tuple(rounds_of(protocol, f"1.1.r{i}.1", values)["i"] for i in range(1, 5))
+    assert {tuple(sorted(order)) for order in orders} == {(1, 2, 3, 4)} and len({*orders}) > 5
+
+
+@pytest.mark.parametrize("wrong", ["order: mixed, as: i", "order: random"])
+def test_an_order_of_rounds_that_there_is_not_is_refused(wrong):
+    with pytest.raises(ConsoleFileError, match="order"):
+        read_protocol(f"{HEAD}    - {{repeat: 2, {wrong}, steps: [{{wait: 1}}]}}\n", "x")

@@ -443,6 +443,20 @@ def test_the_table_has_a_row_a_trial_and_the_round_of_each_step(tmp_path):
     assert [each.count for each in summaries_of(table)] == [2]
 
 
+def test_what_is_drawn_is_in_the_log_and_the_table(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "ros_after", lambda seconds, callback: callback() or (lambda: None))
+    steps = "- wait: [2, 5]\n- {repeat: 3, as: i, order: random, steps: [{say: 'Item {i}'}]}"
+    trial = steps_of(tmp_path, steps).begin()
+    state = trial.end()
+    began = [each["data"] for each in read_events(trial.files.trial("steps/P01-1").path)]
+    began = [each for each in began if each.get("what") == "step began"]
+    assert began[0]["title"] == f"wait {began[0]['seconds']:g} s" and 2 <= began[0]["seconds"] <= 5
+    rows = table_of(trial.files, "steps").rows[1:]
+    assert [f"say Item {row['round_value']}" for row in rows] == [row["text"] for row in rows]
+    assert [each["rounds"]["i"] for each in began[1:]] == [row["round_value"] for row in rows]
+    assert state.about["seed"] == 0 and sorted(row["round_value"] for row in rows) == [1, 2, 3]
+
+
 def test_all_that_happens_to_the_robot_is_logged_with_notes_and_deviations(trial):
     trial.begin().at("2.1")
     trial.robot.events.add("heard", "a noise", loud=True)

@@ -23,7 +23,7 @@ def following(protocol: StudyProtocol, path: str, values: Mapping[str, Any]) -> 
         lists = _lists(protocol, parts)
         while lists:
             group, steps, length = lists.pop()
-            prefix, known = parts[:length], {**values, **_rounds(protocol, parts[:length])}
+            prefix, known = parts[:length], {**values, **_rounds(protocol, parts[:length], values)}
             found = _first(steps, prefix, known, int(parts[length]))
             if not found and isinstance(group, RoundsStep):
                 found = _first_round(group, prefix[:-1], known, int(prefix[-1][1:]) + 1)
@@ -46,7 +46,8 @@ def first_inside(protocol: StudyProtocol, path: str, number: int, values: Mappin
     """Path of the first step in a round of the `while` at a path; empty if none is done."""
     step = step_at(protocol, path)
     assert isinstance(step, WhileStep)
-    return ".".join(_first(step.steps, [*path.split("."), f"w{number}"], {**values, **rounds_of(protocol, path)}, 0))
+    known = {**values, **rounds_of(protocol, path, values)}
+    return ".".join(_first(step.steps, [*path.split("."), f"w{number}"], known, 0))
 
 
 def is_inside(path: str) -> bool:
@@ -79,9 +80,9 @@ def phase_of(protocol: StudyProtocol, path: str) -> str:
     return protocol.phases[int(path.partition(".")[0]) - 1].name
 
 
-def rounds_of(protocol: StudyProtocol, path: str) -> dict[str, int]:
-    """Values of the rounds that a step is in: name -> 1, 2, ..."""
-    return _rounds(protocol, path.split("."))
+def rounds_of(protocol: StudyProtocol, path: str, values: Mapping[str, Any]) -> dict[str, int]:
+    """Values of the rounds that a step is in, from outside: name -> 1, 2, ... `values`: of the trial."""
+    return _rounds(protocol, path.split("."), values)
 
 
 def all_steps(protocol: StudyProtocol) -> Iterator[tuple[str, ProtocolStep]]:
@@ -121,12 +122,13 @@ def _lists(protocol: StudyProtocol, parts: list[str]) -> list[tuple[Any, tuple[P
     return lists
 
 
-def _rounds(protocol: StudyProtocol, parts: list[str]) -> dict[str, int]:
-    values = {}
+def _rounds(protocol: StudyProtocol, parts: list[str], values: Mapping[str, Any]) -> dict[str, int]:
+    found = {}
     for group, _, length in _lists(protocol, [*parts, "1"] if len(parts) % 2 else parts):
         if isinstance(group, RoundsStep) and group.name:
-            values[group.name] = int(parts[length - 1][1:])
-    return values
+            path = ".".join(parts[: length - 1])
+            found[group.name] = group.value(int(parts[length - 1][1:]), path, values)
+    return found
 
 
 def _first(steps: tuple[ProtocolStep, ...], prefix: list[str], values: Mapping[str, Any], start: int) -> list[str]:
@@ -145,7 +147,7 @@ def _first(steps: tuple[ProtocolStep, ...], prefix: list[str], values: Mapping[s
 
 def _first_round(group: RoundsStep, path: list[str], values: Mapping[str, Any], start: int) -> list[str]:
     for number in range(start, group.count + 1):
-        known = {**values, group.name: number} if group.name else values
+        known = {**values, group.name: group.value(number, ".".join(path), values)} if group.name else values
         found = _first(group.steps, [*path, f"r{number}"], known, 0)
         if found:
             return found

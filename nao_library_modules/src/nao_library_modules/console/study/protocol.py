@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from ...nao.touch_names import names_of, sensors_of
 from ..robots.commands import RobotCommand
 from .conditions import NOTHING, StudyCondition
+from .drawing import generator
 
 HOLD, SKIP, STOP = "hold", "skip", "stop"
 ON_ERROR = (HOLD, SKIP, STOP)
@@ -135,11 +136,20 @@ class PauseStep(ProtocolStep):
     """Time passes."""
 
     kind: ClassVar[str] = "time"
-    seconds: float  # of ROS time
+    seconds: float  # of ROS time; the least, where it is drawn
+    longest: float | None = None  # where it is drawn evenly: the most
+    seed: int = 0
 
     @property
     def text(self) -> str:
-        return f"wait {self.seconds:g} s"
+        return f"wait {self.seconds:g} s" if self.longest is None else f"wait {self.seconds:g} to {self.longest:g} s"
+
+    def drawn(self, path: str, values: Mapping[str, Any]) -> PauseStep:
+        """With the time that is drawn for a place in a trial, in ms."""
+        if self.longest is None:
+            return self
+        seconds = generator(self.seed, values, path).uniform(self.seconds, self.longest)
+        return replace(self, seconds=round(seconds, 3), longest=None)
 
 
 @dataclass(frozen=True)
@@ -180,6 +190,15 @@ class RoundsStep(ProtocolStep):
     count: int
     name: str  # of the value that is 1, 2, ...; empty: none
     steps: tuple[ProtocolStep, ...]
+    seed: int | None = None  # of the order in which the value is 1, 2, ...; None: as they are counted
+
+    def value(self, number: int, path: str, values: Mapping[str, Any]) -> int:
+        """The value in a round. `number`: of the round, from 1. `path`: of this step. `values`: of the trial."""
+        if self.seed is None:
+            return number
+        order = list(range(1, self.count + 1))
+        generator(self.seed, values, path).shuffle(order)
+        return order[number - 1]
 
     def inner(self) -> Iterator[tuple[str, tuple[ProtocolStep, ...]]]:
         return ((f"r{i}", self.steps) for i in range(1, self.count + 1))
@@ -194,6 +213,14 @@ class WhileStep(ProtocolStep):
     steps: tuple[ProtocolStep, ...]  # of the robot, pauses, and groups of those
     rounds: int  # how often they are done; 0: until it ends
     timeout: float  # s of ROS time; 0: none
+
+    def drawn(self, path: str, values: Mapping[str, Any]) -> WhileStep:
+        """With the times that are drawn for a place in a trial."""
+        waits = (
+            each.drawn(f"{path}.{i}", values) if isinstance(each, PauseStep) else each
+            for i, each in enumerate(self.waits, 1)
+        )
+        return replace(self, waits=tuple(waits))
 
     @property
     def text(self) -> str:

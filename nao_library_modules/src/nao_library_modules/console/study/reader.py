@@ -20,7 +20,7 @@ from ..robots.commands import FORMS, place_of_field, read_command
 from ..robots.commands import KEYS as COMMAND_KEYS
 from .conditions import FORM, NOTHING, StudyCondition, unknown_names
 from .course import all_steps, steps_in
-from .order import LATIN_SQUARE, ORDERS
+from .order import FIXED, LATIN_SQUARE, ORDERS, RANDOM
 from .possible import impossible_conditions
 from .protocol import (
     FIRST,
@@ -62,7 +62,7 @@ _KEYS = {
     "wait": (),
     "when": ("then", "else"),
     "choose": ("cases", "else"),
-    "repeat": ("as", "steps"),
+    "repeat": ("as", "order", "steps"),
     "while": (),
 }
 _SENSE_KEYS = {"touch": ("sensors",), "word": ("words",), "sound": (), "face": ("names",)}
@@ -99,6 +99,7 @@ class _Reader(FileReader):
         super().__init__(text, name)
         self._names: set[str] = set()
         self._labels: dict[str, int] = {}
+        self._seed = 0
 
     def protocol(self, text: str) -> StudyProtocol:
         top = self.content
@@ -116,6 +117,8 @@ class _Reader(FileReader):
         seed = top.get("seed", 0)
         if not _whole(seed):
             self.note("seed", f"{seed!r} is no whole number", line_in(top, "seed"))
+            seed = 0
+        self._seed = seed
         order = top.get("order", LATIN_SQUARE)
         if order not in ORDERS:
             self.note("order", f"there is no order {order!r}{of_those(str(order), ORDERS)}", line_in(top, "order"))
@@ -127,7 +130,7 @@ class _Reader(FileReader):
             self._plain_text(top, "help", ""),
             factors,
             str(order),
-            seed if _whole(seed) else 0,
+            seed,
             values,
             self._recordings(top),
             tuple(self._phases(top)),
@@ -266,6 +269,9 @@ class _Reader(FileReader):
         if isinstance(what, (int, float)) and not isinstance(what, bool):
             self._keys(value, ("wait",), where, line)
             return PauseStep(line, "", self._seconds(value, "wait", where, line, 0.0))
+        if isinstance(what, list):
+            self._keys(value, ("wait",), where, line)
+            return self._drawn_pause(what, where, line_in(value, "wait") or line)
         if what == "until":
             self._keys(value, ("wait", "until", "label", "timeout", "since"), where, line)
             known = {*self._names, *LIVE}
@@ -276,6 +282,12 @@ class _Reader(FileReader):
             text = f"there is no wait for {what!r}{of_those(str(what), (*_WAITS, 'until'))}, or a number of seconds"
             self._fail(where, text, line)
         return self._sense(value, str(what), where, line, label, ("wait", "label", "timeout"))
+
+    def _drawn_pause(self, bounds: list[Any], where: str, line: int) -> PauseStep:
+        if len(bounds) != 2 or not all(map(_number, bounds)) or not 0 <= bounds[0] <= bounds[1] <= LONGEST:
+            told = f"the least and the most seconds of a wait that is drawn are two numbers 0..{LONGEST:g}"
+            self._fail(where, f"{told}, as wait: [2, 5], not {bounds!r}", line)
+        return PauseStep(line, "", float(bounds[0]), float(bounds[1]), self._seed)
 
     def _sense(
         self, value: dict[str, Any], what: str, where: str, line: int, label: str, known: Sequence[str]
@@ -425,7 +437,15 @@ class _Reader(FileReader):
             self._fail(where, f"repeat is a whole number 1..{MOST_ROUNDS}, not {count!r}", line)
         if name and not _identifier(name):
             self.note(where, f"{name!r} is no name: letters, digits and _", line_in(value, "as"))
-        return RoundsStep(line, "", count, str(name), self._steps(value.get("steps"), f"{path}.r1", line))
+        order = value.get("order", FIXED)
+        if order not in (FIXED, RANDOM):
+            text = f"order of rounds is {FIXED} (1, 2, 3) or {RANDOM}, not {order!r}"
+            self.note(where, text, line_in(value, "order") or line)
+        elif order == RANDOM and not name:
+            text = f"order: {RANDOM} needs as: NAME, the value that is drawn for each round"
+            self.note(where, text, line_in(value, "order") or line)
+        seed = self._seed if order == RANDOM else None
+        return RoundsStep(line, "", count, str(name), self._steps(value.get("steps"), f"{path}.r1", line), seed)
 
     def _conditions(self, value: Any, where: str, line: int, known: Iterable[str]) -> tuple[StudyCondition, ...]:
         texts = value if isinstance(value, list) else [value]

@@ -28,6 +28,7 @@ from .protocol import (
     STOP,
     ChoiceStep,
     CommandStep,
+    PauseStep,
     ProtocolStep,
     SenseStep,
     StudyProtocol,
@@ -420,10 +421,16 @@ class TrialRunner:
         """Do a step; the events of its begin and its end."""
         step = step_at(self.protocol, path)
         attempt = self.state.attempts(path) + 1
-        values = {**self.state.values, **rounds_of(self.protocol, path)}
+        rounds = rounds_of(self.protocol, path, self.state.values)
+        values = {**self.state.values, **rounds}
+        if isinstance(step, (PauseStep, WhileStep)):
+            step = step.drawn(path, values)
         title = filled(step.text, values)
         begin = {"path": path, "phase": phase_of(self.protocol, path), "label": step.label, "step": step.kind}
-        self.tell(told.STEP_BEGAN, f"step {path}: {title}", **begin, title=title, attempt=attempt)
+        more = {"seconds": step.seconds} if isinstance(step, PauseStep) else {}
+        self.tell(
+            told.STEP_BEGAN, f"step {path}: {title}", **begin, title=title, attempt=attempt, rounds=rounds, **more
+        )
         began = self.state.outcomes[-1].began or 0.0
         zero = self._zero(step, began)
         try:

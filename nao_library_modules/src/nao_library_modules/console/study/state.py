@@ -48,6 +48,7 @@ class StepOutcome:
     seconds: float | None = None  # reaction time: from `began` to the answer
     error: str = ""
     finished: float | None = None  # when what the robot did was over, of speech the last sound; None: it does not tell
+    rounds: Mapping[str, int] = field(default_factory=dict)  # name of a loop's value -> value, from outside
     note_texts: list[str] = field(default_factory=list)  # written before the next step began
     deviation_texts: list[str] = field(default_factory=list)
 
@@ -240,4 +241,6 @@ class TrialState:
 def _outcome(told: Mapping[str, Any], began: float | None, error: str = "") -> StepOutcome:
     """A step, of the event of its begin or its end."""
     names = ("path", "phase", "label", "step", "title")
-    return StepOutcome(*(told.get(name, "") for name in names), told.get("attempt", 1), began, error=error)
+    rounds = told.get("rounds") or {}
+    about = (told.get(name, "") for name in names)
+    return StepOutcome(*about, told.get("attempt", 1), began, error=error, rounds=rounds)

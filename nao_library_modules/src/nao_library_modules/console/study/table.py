@@ -17,7 +17,20 @@ from .state import ON, TIMEOUT, TrialState
 
 BEFORE = ("study", "participant", "number", "trial", "position", "trial_state", "rehearsal")
 BEHIND = (
-    *("phase", "path", "round", "outer_round", "label", "kind", "text", "attempt", "began_s", "ended_s", "outcome"),
+    *(
+        "phase",
+        "path",
+        "round",
+        "outer_round",
+        "round_value",
+        "label",
+        "kind",
+        "text",
+        "attempt",
+        "began_s",
+        "ended_s",
+        "outcome",
+    ),
     *("answer", "reaction_s", "error", "notes", "deviations", "note_text", "deviation_text"),
 )
 OF_ROBOT = ("posture", "fallen", "limp", "stiffness", "battery")
@@ -142,6 +155,7 @@ def rows_of(state: TrialState, study: str, participant: str, trial: int) -> Iter
             "path": outcome.path,
             "round": rounds[-1],
             "outer_round": rounds[-2],
+            "round_value": next(reversed([*outcome.rounds.values()]), None),
             "label": outcome.label,
             "kind": outcome.kind,
             "text": outcome.text,
