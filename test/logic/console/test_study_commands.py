@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import threading
 from types import SimpleNamespace
 
 import pytest
@@ -236,3 +237,53 @@ def test_an_interrupted_run_waits_for_its_log_until_it_is_interrupted_again(on_a
     told = on_a_full_disk.run(interrupt)
     assert told.exit_code == 130, told.output
     assert "the trial is aborted" in told.output and "are lost" in told.output
+
+
+class StoppedRobot(PlayedRobot):
+    """Another program stops it while it says Two."""
+
+    def __init__(self):
+        super().__init__(plays=())
+
+    def send(self, command, by="", stops=None):
+        run = super().send(command, by, stops)
+        if command.chain[0][1]["str_param"] == "Two":
+            threading.Thread(target=self.stop, args=("/nao_stop",)).start()
+            run.end("preempted")
+        else:
+            run.end()
+        return run
+
+
+@pytest.fixture
+def stopped_run(tmp_path, monkeypatch):
+    """Run a trial that another program stops; what the command has told, the robot, and the events of the trial."""
+    robot = StoppedRobot()
+    monkeypatch.setattr(study_commands, "_studies", lambda settings, files: (Studies(files), robot))
+    for name, value in (("settings", lambda _: {}), ("ros_after", lambda seconds, callback: lambda: None)):
+        monkeypatch.setattr(module, name, value)
+    file = tmp_path / "three.yaml"
+    file.write_text("name: three\nphases: [{steps: [{say: One}, {say: Two, on_error: skip}, {say: Three}]}]\n")
+
+    def run():
+        words = ["study", "run", str(file), "--participant", "P01", "--studies", str(tmp_path)]
+        return CliRunner().invoke(nao, words), robot, read_events(tmp_path / "three/P01-1")
+
+    return run
+
+
+def test_a_stop_of_another_program_ends_a_run_that_nobody_can_be_asked_about(stopped_run):
+    told, robot, events = stopped_run()
+    assert (told.exit_code, "the trial was stopped" in told.output) == (1, True)
+    assert [run.command.chain[0][1]["str_param"] for run in robot.runs] == ["One", "Two"]
+    assert [each["by"] for each in events if each["kind"] == "stopped"] == ["/nao_stop"]
+    assert events[-1]["data"]["outcome"] == "aborted"
+
+
+def test_a_run_that_was_stopped_continues_where_somebody_says_so(stopped_run, monkeypatch):
+    answers = iter(["c", "a"])
+    monkeypatch.setattr(study_commands.click, "prompt", lambda *_, **__: next(answers))
+    monkeypatch.setattr(study_commands, "_can_ask", lambda: True)
+    told, robot, _ = stopped_run()
+    assert [run.command.chain[0][1]["str_param"] for run in robot.runs] == ["One", "Two", "Two"]
+    assert told.exit_code == 1

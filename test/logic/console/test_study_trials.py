@@ -339,6 +339,34 @@ def test_a_stop_while_a_trial_is_prepared_holds_its_first_goal_back(trial, monke
     trial.end()
 
 
+@pytest.mark.parametrize("on_error", ["hold", "skip", "stop"])
+@pytest.mark.parametrize("first", ["stop", "goal"])
+@pytest.mark.parametrize("step", ["{run: nod, on_error: %s}", "{wait: touch, timeout: 5}"])
+def test_a_step_that_a_stop_has_ended_restarts_however_late_the_stop_is_heard(tmp_path, step, first, on_error):
+    trial = steps_of(tmp_path, f"- {step.replace('%s', on_error)}\n- {{say: Behind it}}").begin()
+    trial.at("1.1")
+    assert trial.robot.sent.acquire(timeout=LIMIT)
+    acts = [lambda: by_another(trial.robot.stop), lambda: trial.robot.runs[0].end("preempted", "cancelled")]
+    for act in acts if first == "stop" else reversed(acts):
+        act()
+    trial.until(lambda: trial.runner.state.status == "paused")
+    assert [each.outcome for each in trial.runner.state.outcomes] == ["stopped"]
+    trial.runner.go_on()
+    trial.at("1.1", 2).runner.abort()
+    trial.end()
+
+
+def test_a_goal_that_somebody_cancels_without_a_stop_fails(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "ros_after", lambda seconds, callback: callback() or (lambda: None))
+    trial = steps_of(tmp_path, "- {run: nod}", plays=()).begin()
+    assert trial.robot.sent.acquire(timeout=LIMIT)
+    trial.robot.runs[0].end("preempted", "another goal came")
+    trial.until(lambda: trial.runner.state.status == "held")
+    assert trial.runner.state.outcomes[0].error == "another goal came"
+    trial.runner.abort()
+    trial.end()
+
+
 def test_a_trial_that_stops_the_robot_itself_goes_on(tmp_path):
     begin, _, _ = PROTOCOL.partition("phases:")
     trial = Trial(tmp_path, text=begin + "phases: [{steps: [{stop: true}, {say: Hello}, {stop: true}]}]").begin()

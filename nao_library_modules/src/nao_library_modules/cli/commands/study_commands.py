@@ -36,7 +36,9 @@ LOOK_PERIOD = 0.5
 """s between looks at a trial in which nothing happens."""
 TOLD_AFTER = 3.0
 """s between two lines about a log that a trial waits for at its end."""
-WIZARD = {"n": "next", "r": "repeat", "a": "abort"}
+WIZARD = {"n": ("next", "next"), "r": ("repeat", "repeat"), "a": ("abort", "abort")}
+STOPPED = {"c": ("continue", "go_on"), "n": ("next", "next"), "a": ("abort", "abort")}
+"""Of a trial whose step failed, or that was stopped: key -> what it does in words, and the control of the trial."""
 folder_option = click.option(
     "--studies",
     "folder",
@@ -417,7 +419,7 @@ def _play(
     `troubles`: what was wrong with its log is added.
     """
     from ...console.study.protocol import ChoiceStep, SenseStep
-    from ...console.study.state import FINISHED, HELD
+    from ...console.study.state import FINISHED, HELD, PAUSED
 
     changes: queue.SimpleQueue[Any] = queue.SimpleQueue()
     log_teller = _LogTeller()
@@ -430,7 +432,7 @@ def _play(
     condition = "" if runner.protocol.blind else f": {_words(runner.state.about['condition']) or 'no factors'}"
     click.echo(f"trial {runner.id}{', a rehearsal' if runner.state.rehearsal else ''}{condition}", err=settings.json)
     shown: set[int] = set()
-    asked = None
+    asked, pauses = None, 0
     try:
         while not runner.wait(0):
             try:
@@ -438,6 +440,10 @@ def _play(
             except queue.Empty:  # the last change may come just before its thread ends
                 continue
             _show(settings, runner, shown)
+            if runner.state.status == PAUSED and runner.pauses != pauses:
+                pauses = runner.pauses
+                _decide(runner, "the trial was stopped", STOPPED)
+                continue
             outcome = runner.outcome
             place = (outcome.path, outcome.attempt, outcome.outcome) if outcome is not None else None
             if place == asked or outcome is None:
@@ -445,7 +451,7 @@ def _play(
             step = runner.step
             if runner.state.status == HELD:
                 asked = place
-                _decide(runner, outcome.error)
+                _decide(runner, f"a step failed: {outcome.error}", WIZARD)
             elif isinstance(step, SenseStep) and outcome.ended is None:  # the participant may have to act now
                 asked = place
                 click.echo(f"  {outcome.path} {outcome.text}: waiting", err=settings.json)
@@ -537,19 +543,23 @@ def _chosen(step: Any, question: str, choices: Mapping[str, str]) -> str:
     choice = choices.get(step.label)
     if choice is not None:
         return choice
-    if not sys.stdin.isatty():
+    if not _can_ask():
         label = step.label or "LABEL"
         raise CommandFailed(f"{question}: nobody can be asked; --choose {label}={step.choices[0]} does that")
     return click.prompt(question, type=click.Choice(step.choices), err=True)
 
 
-def _decide(runner: TrialRunner, error: str) -> None:
-    """Ask what is to be done with a step that failed."""
-    if not sys.stdin.isatty():
-        raise CommandFailed(f"a step failed: {error}")
-    words = ", ".join(f"{key}: {word}" for key, word in WIZARD.items())
-    key = click.prompt(f"a step failed: {error}. {words}", type=click.Choice(tuple(WIZARD)), err=True)
-    getattr(runner, WIZARD[key])("nao")
+def _decide(runner: TrialRunner, what: str, controls: Mapping[str, tuple[str, str]]) -> None:
+    """Ask what is to be done with a trial that waits. Raises CommandFailed if nobody can be asked."""
+    if not _can_ask():
+        raise CommandFailed(what)
+    words = ", ".join(f"{key}: {word}" for key, (word, _) in controls.items())
+    key = click.prompt(f"{what}. {words}", type=click.Choice(tuple(controls)), err=True)
+    getattr(runner, controls[key][1])("nao")
+
+
+def _can_ask() -> bool:
+    return sys.stdin.isatty()
 
 
 def _words(condition: Mapping[str, str]) -> str:

@@ -233,6 +233,12 @@ class RobotClient:
         _in_thread(self._stop_others, set(ready))
         self.events.add("stopped", "everything is told to stop", by)  # last: whoever listens may take a while
 
+    def was_stopped(self, by: str) -> None:
+        """Another program has ended all goals; what was wanted before is not sent any more."""
+        with self._lock:
+            self._stops += 1
+        self.events.add("stopped", f"everything was told to stop by {by}", by)
+
     def walk(self, x: float, y: float, theta: float, by: str = "") -> None:
         """Walk at shares -1..1 of the top speed, ahead, to the left and turning left, for WALK_HOLD s."""
         way = tuple(max(-1.0, min(1.0, float(value))) for value in (x, y, theta))

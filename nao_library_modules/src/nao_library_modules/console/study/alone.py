@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from .files import StudyFiles
 from .studies import Studies
+
+if TYPE_CHECKING:
+    from ..view.views import Views
 
 
 def studies_alone(files: StudyFiles, name: str = "") -> tuple[Studies, Any]:
@@ -17,5 +21,20 @@ def studies_alone(files: StudyFiles, name: str = "") -> tuple[Studies, Any]:
     from ..view.views import Views
 
     views = Views(files.folder)
-    studies = Studies(files, lambda robot: views.of(robot).senses.acquire(), lambda robot: views.of(robot).alarms)
-    return studies, Robots().robot(name)
+    return studies_of(files, views), Robots().robot(name)
+
+
+def studies_of(files: StudyFiles, views: Views) -> Studies:
+    """Studies that log what robots sense, stops of other programs and alarms."""
+    from ..robots.foreign_stops import hear_stops
+
+    def listen(robot: Any) -> Callable[[], None]:
+        deaf, leave = hear_stops(robot), views.of(robot).senses.acquire()
+
+        def end() -> None:
+            deaf()
+            leave()
+
+        return end
+
+    return Studies(files, listen, lambda robot: views.of(robot).alarms)

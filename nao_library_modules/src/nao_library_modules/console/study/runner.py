@@ -122,6 +122,8 @@ class TrialRunner:
         self._listeners: list[Callable[[TrialRunner], None]] = []
         # Stops of the robot when somebody last wanted it to move: after a further one no goal is sent.
         self._stops: int = robot.stops if stops is None else stops
+        self.pauses = 0
+        """How often it has begun to wait because it was paused, or stopped."""
         self.lost = 0
         """Events that are not in the log, of a trial that is over."""
         self._log_failed = 0.0  # ROS time since which the log cannot be written
@@ -173,6 +175,11 @@ class TrialRunner:
     def trouble(self) -> str:
         """What is wrong with the log, or was until somebody has seen it; empty: nothing."""
         return self.log.trouble or self.state.trouble
+
+    @property
+    def pausing(self) -> bool:
+        """Whether it was paused, or stopped, and nobody has continued it; it may still come to that."""
+        return self._pausing
 
     @property
     def title(self) -> str:
@@ -361,6 +368,7 @@ class TrialRunner:
                 if not self._pausing:
                     return "", path
             self.ahead.end()
+            self.pauses += 1
             self.tell(told.PAUSED, "paused")
             control = self._until_control()
             self._pausing = False

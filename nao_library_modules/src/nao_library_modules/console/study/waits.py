@@ -28,8 +28,12 @@ CHOICE, RUN_ENDED, TIMER, HAPPENED = "choice", "run ended", "timer", "happened"
 """Messages to a trial: a choice of the wizard, the end of a goal, a time that is over, an event of the robot."""
 EVENT_OF = {"touch": TOUCHED, "word": "heard", "face": "seen"}
 """Sense -> kind of the events that tell of it."""
+STOP_LAG = 1.0
+"""s of ROS time by which a stop of another program may be heard later than the end of the goal that it cancelled."""
 GOAL_LAG = 0.5
 """s of ROS time by which a goal may tell of a touch later than the topics: its onset is the better one."""
+CANCELLED = ("preempted", "recalled")
+"""States of a goal that somebody has cancelled."""
 _TRUTHS = {"True": "true", "False": "false", "None": NOTHING}
 
 
@@ -65,6 +69,7 @@ class Wait:
     def __init__(self, trial: Any, step: ProtocolStep, values: Mapping[str, Any], began: float) -> None:
         self.trial, self.step, self.values, self.began = trial, step, values, began
         self.over: StepEnd | None = None
+        self._failed: tuple[StepEnd, object] | None = None  # its goal was cancelled; with the time to hear of a stop
         self._timers: list[Any] = []
 
     def begin(self) -> None:
@@ -72,14 +77,25 @@ class Wait:
 
     def take(self, what: str, about: Any) -> None:
         """A message has come."""
+        if what == TIMER and self._failed is not None and about is self._failed[1]:
+            self.over = self._failed[0]
 
     def look(self) -> None:
         """See whether it is over, without a message."""
+        if self._failed is not None and self.over is None and self.trial.pausing:
+            self.over = StepEnd(told.STOPPED, error=self._failed[0].error)
 
     def close(self) -> None:
         """Wait no longer."""
         for _, prevent in self._timers:
             prevent()
+
+    def _fail(self, end: StepEnd, state: str) -> None:
+        """The goal has failed, with a state of its own. One that somebody has cancelled may have been by a stop."""
+        if state in CANCELLED:
+            self._failed = (end, self._set_timer(STOP_LAG))
+        else:
+            self.over = end
 
     def _set_timer(self, seconds: float) -> object:
         token = object()
@@ -117,9 +133,11 @@ class CommandWait(Wait):
             self.over = StepEnd(told.DONE)
 
     def take(self, what: str, about: Any) -> None:
+        super().take(what, about)
         if what == RUN_ENDED and about is self.run:
             if about.state != "succeeded":
-                self.over = StepEnd(told.FAILED, error=about.text or about.state, on_error=self.step.on_error)
+                end = StepEnd(told.FAILED, error=about.text or about.state, on_error=self.step.on_error)
+                self._fail(end, about.state)
             else:
                 answer = _values_of(about.result) if self.step.asks else ""
                 last = (about.result.get("results") or [{}])[-1]
@@ -186,6 +204,7 @@ class SenseWait(Wait):
         self.run = self.trial.send(command_of(self.step, timeout))
 
     def take(self, what: str, about: Any) -> None:
+        super().take(what, about)
         if what == RUN_ENDED and about is self.run:
             self._ended(about)
         elif what == TIMER and about is self._token and about is not None:
@@ -212,7 +231,10 @@ class SenseWait(Wait):
                 self._send(left)  # a hand that lay there already has moved
                 return
             end = StepEnd(told.TIMEOUT)
-        self.over = end
+        if end.outcome == told.FAILED:
+            self._fail(end, run.state)
+        else:
+            self.over = end
 
 
 def _felt(event: ConsoleEvent) -> StepEnd:

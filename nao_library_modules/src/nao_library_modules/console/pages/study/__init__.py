@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...study.alone import studies_of
 from ...study.files import StudyFiles
-from ...study.studies import Studies
 from . import replay_page, results_page, trial_page
 
 
 def build(console: Any) -> None:
     """Add the pages to a console."""
-    views = console.views
-    files = StudyFiles(console.settings.studies)
-    studies = Studies(files, lambda robot: views.of(robot).senses.acquire(), lambda robot: views.of(robot).alarms)
+    studies = console.studies = studies_of(StudyFiles(console.settings.studies), console.views)
     trial_page.build(console, studies)
     results_page.build(console, studies)
     replay_page.build(console, studies)
