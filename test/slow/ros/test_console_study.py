@@ -2,6 +2,7 @@
 
 import resource
 import shutil
+import subprocess
 import tempfile
 from pathlib import Path
 
@@ -115,6 +116,44 @@ class ConsoleStudy(RobotTestCase):
         other.click("a", "replay")
         other.click("button", "Play")
         other.until(lambda: other.script("return (document.querySelector('video') || {}).currentTime > 0"), "the video")
+
+    def test_pseudonym_conditions_and_notes_are_seen_on_the_pages(self):
+        protocols = self.folder / "studies" / "protocols"
+        (protocols / "two.yaml").write_text(
+            "name: two\nfactors: {voice: {levels: [low, high]}}\n"
+            "phases: [{steps: [{wizard: Well, choices: [good]}, {say: Hi}]}]\n"
+        )
+        self.browser.open("/study", protocol="two", participant="P02")
+        self.browser.reads("Participant 2 (new), 2 trials in this order", "1. voice: high (next)")
+        self.browser.click("button", "Start trial")
+        self.browser.reads("trial 1")
+        self.browser.open("/wizard")
+        self.browser.type("input[aria-label='Note to the trial']", "looks away")
+        self.browser.keys(Keys.ENTER)
+        trial = self.files.trial("two/P02-1")
+        wait_until(lambda: trial.state().note_texts == ["looks away"], LIMIT, "the note")
+        self.browser.open("/study", protocol="two")
+        self.browser.click("button", "Abort")
+        self.browser.click("button", "Abort the trial")
+        self.browser.reads("is aborted; 1 steps: 1 stopped")
+        self.browser.click(".q-expansion-item", "Participants")
+        self.browser.type("input[aria-label='Right pseudonym of P02']", "P12")
+        self.browser.click("[aria-label='Correct P02']")
+        self.browser.click("button", "Correct")
+        self.browser.reads("P12: number 2, 1 trials")
+        self.assertEqual(self.files.participants("two"), {"P12": 2})
+        self.browser.open("/study/results")
+        self.browser.reads("Left out: two/P12-1 (aborted)")
+
+    def test_a_stop_in_a_shell_pauses_the_trial(self):
+        self.browser.open("/study", protocol=STUDY, participant="P01")
+        self.browser.reads("One trial of ten steps")
+        self.browser.click("button", "Start trial")
+        self.at("1.3")
+        stopped = subprocess.run(["nao", "stop"], capture_output=True, text=True, timeout=LIMIT, check=False)
+        self.assertEqual(stopped.returncode, 0, stopped.stderr)
+        self.browser.reads("paused")
+        wait_until(lambda: self.files.trial(TRIAL).state().status == "paused", LIMIT, "the pause")
 
     def test_a_log_that_cannot_be_written_is_told_until_somebody_has_seen_that(self):
         self.browser.open("/study", protocol=STUDY, participant="P01")

@@ -24,6 +24,8 @@ from .access.users import OBSERVER, OPERATOR, ROLES, read_users
 from .page_loop import PageLoop
 from .robots.robots import Robots
 from .stop_line import PATH, StopLine
+from .study.alone import studies_of
+from .study.files import StudyFiles
 from .view.background import Lane
 from .view.views import Views
 
@@ -81,6 +83,7 @@ class Console:
         app: FastAPI application, for routes and WebSockets beside the pages; all of them are behind the guard.
         views: What pages and trials share of each robot: its senses, its body, its alarms, its pictures.
         lanes: Role -> where what takes the processor is done for pages.
+        studies: Begins trials, and knows those that run.
     """
 
     def __init__(self, settings: ConsoleSettings) -> None:
@@ -98,6 +101,7 @@ class Console:
         self.lanes = {role: Lane() for role in ROLES}  # observers never hold up the work of operators
         self.sessions = Sessions(None if settings.users is None else read_users(settings.users))
         self.sessions.on_end = self.controls.forget
+        self.studies = studies_of(StudyFiles(settings.studies), self.views)
         self.app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
         frame.build(self)
         for build in PAGES:

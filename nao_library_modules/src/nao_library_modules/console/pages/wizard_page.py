@@ -27,6 +27,7 @@ from ..wizard.model import WizardLayout
 from ..wizard.session import HEAD, STOP, WALK, PageRights, WizardSession, read_message
 from ..wizard.wire import layout_message
 from .frame import PageContext, framed, page_at
+from .trial_note import TrialNote
 from .wizard_editor import WizardEditor
 
 OWN_FILE = "~/.ros/nao_console.yaml"
@@ -114,6 +115,7 @@ class _WizardPage:
                 self._problems = ui.label().classes("text-negative").props("role=alert")
                 ui.element("nao-wizard-buttons").props(f'robot="{self._space}"')
             with ui.column().classes("w-full gap-3"):
+                TrialNote(page, self._parts.console.studies)
                 self._names_card()
                 with ui.card().classes("w-full"):
                     self._camera()
