@@ -35,7 +35,7 @@ from nao_library_modules.behaviors.language.model import (
     Wait,
 )
 from nao_library_modules.behaviors.language.program import GoalNode, walk
-from nao_library_modules.behaviors.language.servers import NAMES
+from nao_library_modules.behaviors.language.servers import NAMES, FunctionTables
 from nao_library_modules.behaviors.language.times import At
 from nao_library_modules.behaviors.language.writer import text_of
 from nao_library_modules.behaviors.language.yaml_text import dump, load
@@ -270,7 +270,7 @@ def goals_in(text):
     return [each for each in walk(bind(read(text, "test"), {}, lambda name: None)) if isinstance(each, GoalNode)]
 
 
-def recorded(*goals, servers=NAMES):
+def recorded(*goals, servers=NAMES, check=lambda step: None):
     """A recording of goals: server, goal, when it was sent, how and when it ended, s."""
     recording = BehaviorRecording("x", servers)
     for number, (server, goal, sent, *_) in enumerate(goals):
@@ -278,7 +278,7 @@ def recorded(*goals, servers=NAMES):
     for number, (_, _, _, *end) in sorted(enumerate(goals), key=lambda each: each[1][4:]):
         if end:
             recording.ended(str(number), *end)
-    return recording.timeline(lambda step: None)
+    return recording.timeline(check)
 
 
 def test_names_change_and_users_of_a_box_are_known(store):
@@ -300,6 +300,16 @@ def test_a_goal_becomes_a_behaviour_that_sends_it(server, goal):
     assert (node.server, node.goal) == (server, goal)
     with pytest.raises(BadGoal, match="would end itself"):
         from_goal("NaoBehavior", RED)
+
+
+def test_a_recorded_goal_that_is_not_usual_was_meant():
+    far = NaoMotionGoal([MotionFunction(function="moveTo", values=[30.0, 0.0, 0.0])])
+
+    def check(step):
+        bind(read(text_of("x", [step]), "test"), {}, lambda name: None, FunctionTables())
+
+    entries, left = recorded(("NaoMotion", far, 1.0), ("NaoMotion", MOVE, 2.0), check=check)
+    assert left == [] and [entry.get("unusual") for entry in entries] == [True, None]
 
 
 def test_recorded_goals_come_again_at_their_times_and_are_cut_short_again():

@@ -53,7 +53,8 @@ class LibraryFunctions(Part):
             if goal is None:
                 since = "so far" if server in NAMES else "since NaoBehavior listens to it, which it does from now on"
                 raise BadGoal("server", server, "one that got a goal", problem=f"{server} got no goal {since}")
-            text = from_goal(server, goal)
+            kind = self.tables.server(server, "server")
+            text = from_goal(server, goal, unusual=bool(self.tables.unusual(kind, getattr(goal, goal.__slots__[0]))))
             bind(read(text, str_param), {}, self._store.load, self.tables)
         self._module.remark(f"written: {self._store.save(str_param, text, overwrite)}")
 

@@ -65,6 +65,17 @@ class BehaviorRecording:
             if heard is not None and heard.ended is None:
                 heard.ended, heard.status = time, status
 
+    @staticmethod
+    def _entry(heard: HeardGoal, check: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+        """A goal as a step that `check` lets pass; what it raises otherwise."""
+        entry = step_of(heard.server, heard.goal)
+        try:
+            check(entry)
+        except NaoError:  # who sent it meant its numbers, usual or not
+            entry = step_of(heard.server, heard.goal, unusual=True)
+            check(entry)
+        return entry
+
     def timeline(self, check: Callable[[dict[str, Any]], None]) -> tuple[list[dict[str, Any]], list[str]]:
         """Entries of a timeline that begins with the first goal; and what was left out, and why.
 
@@ -76,8 +87,7 @@ class BehaviorRecording:
         left_out: list[str] = []
         for i, each in enumerate(heard):
             try:
-                entry = step_of(each.server, each.goal)
-                check(entry)
+                entry = self._entry(each, check)
             except NaoError as error:
                 left_out.append(f"left out, a goal of {each.server} at {each.time - heard[0].time:.3f} s: {error}")
                 continue
