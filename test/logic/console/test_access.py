@@ -5,6 +5,9 @@ from __future__ import annotations
 import asyncio
 import stat
 import threading
+import time
+from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -12,8 +15,9 @@ from nao_library_modules.console.access.connections import address_group
 from nao_library_modules.console.access.controls import Controls
 from nao_library_modules.console.access.guard import COOKIE, LARGEST, SESSION, Guard
 from nao_library_modules.console.access.logins import MOST_WAITING, Logins
+from nao_library_modules.console.access.session_file import LONGEST, SessionFile
 from nao_library_modules.console.access.sessions import TRIES, TRY_PERIOD, Session, Sessions
-from nao_library_modules.console.access.users import OBSERVER, OPERATOR, add_user, read_users
+from nao_library_modules.console.access.users import OBSERVER, OPERATOR, add_user, hashed, read_users
 from nao_library_modules.console.app import ConsoleSettings
 from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from naoqi.errors import NaoError
@@ -295,3 +299,94 @@ def test_controls_are_free_when_the_last_page_of_their_holder_is_gone(two):
     assert controls.holder("/") is ann
     pages[1]()
     assert controls.holder("/") is None and controls.visitors("/") == [bob]
+
+
+# --- sessions that survive their console ------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def kept(tmp_path):
+    """The file of the sessions, and what makes a console's sessions of it, as after a restart."""
+
+    def restarted(users=None, clock=time.time):
+        file = SessionFile(path, clock)
+        made = Sessions(users)
+        made.keep_in(file)
+        files.append(file)
+        return made
+
+    def written():
+        assert all(file.wait(LIMIT) for file in files)
+        return path
+
+    files, path = [], tmp_path / "ros" / "sessions.json"
+    return SimpleNamespace(restarted=restarted, written=written, path=path)
+
+
+def test_a_browser_is_known_to_the_restarted_console_with_its_role(kept):
+    first = kept.restarted()
+    made = [first.by_token(first.tokens[role]) for role in (OPERATOR, OBSERVER)]
+    kept.written()
+    again = kept.restarted()
+    found = [again.get(each.key) for each in made]
+    assert [(each.name, each.role) for each in found] == [(each.name, each.role) for each in made]
+    assert again.by_token(again.tokens[OPERATOR]).name not in {each.name for each in made}
+
+
+def test_only_its_owner_can_read_the_sessions(kept):
+    first = kept.restarted()
+    first.by_token(first.tokens[OPERATOR])
+    assert stat.S_IMODE(kept.written().stat().st_mode) == 0o600
+
+
+def test_who_has_logged_out_is_not_known_after_a_restart(kept):
+    first = kept.restarted()
+    session = first.by_token(first.tokens[OPERATOR])
+    first.end(session)
+    kept.written()
+    assert kept.restarted().get(session.key) is None
+
+
+def test_a_session_of_another_day_is_not_known_after_a_restart(kept):
+    first = kept.restarted()
+    session = first.by_token(first.tokens[OPERATOR])
+    kept.written()
+    assert kept.restarted(clock=lambda: session.began + LONGEST + 1.0).get(session.key) is None
+
+
+def test_a_person_is_known_after_a_restart_with_the_role_of_now_and_not_with_another_password(kept, people):
+    session = kept.restarted(read_users(people)).by_password("ann", "long enough")
+    kept.written()
+    users = read_users(people)
+    assert kept.restarted(users).get(session.key).operator
+    demoted = {"ann": replace(users["ann"], role=OBSERVER)}
+    assert not kept.restarted(demoted).get(session.key).operator
+    changed = {"ann": replace(users["ann"], password=hashed("another one"))}
+    assert [kept.restarted(each).get(session.key) for each in (changed, {}, None)] == [None, None, None]
+
+
+def test_who_had_a_token_is_not_known_where_people_log_in(kept, people):
+    first = kept.restarted()
+    session = first.by_token(first.tokens[OPERATOR])
+    kept.written()
+    assert kept.restarted(read_users(people)).get(session.key) is None
+
+
+ONE = '[{"key": "k", "name": "operator", "role": "operator", "proof": "", "began": %f}]'
+
+
+@pytest.mark.parametrize("text", ["", "{", "[1]", "3", '[{"key": "k"}]', ONE.replace('"k"', "7") % 1.0, "[" * 10_000])
+def test_a_file_that_is_none_of_the_consoles_lets_in_nobody_and_is_put_aside(kept, text):
+    kept.path.parent.mkdir()
+    kept.path.touch(0o600)
+    kept.path.write_text(text)
+    assert kept.restarted().get("k") is None
+    assert not kept.path.exists() and kept.path.with_name("sessions.json.broken").read_text() == text
+
+
+@pytest.mark.parametrize("mode, known", [(0o600, True), (0o660, False), (0o644, False)])
+def test_sessions_that_others_may_have_read_or_written_are_not_believed(kept, mode, known):
+    kept.path.parent.mkdir()
+    kept.path.write_text(ONE % time.time())
+    kept.path.chmod(mode)
+    assert (kept.restarted().get("k") is not None) == known

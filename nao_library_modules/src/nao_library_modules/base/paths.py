@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 PACKAGE = "nao_library_modules"
@@ -24,3 +25,8 @@ def config_file(name: str) -> Path:
     if installed is not None and installed.exists():
         return installed
     raise FileNotFoundError(f"no configuration file {name}: looked beside the sources and in package {PACKAGE}")
+
+
+def ros_home() -> Path:
+    """The folder of what ROS and its programs keep for a user."""
+    return Path(os.environ.get("ROS_HOME") or Path.home() / ".ros")

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from .connections import address_group
+from .session_file import KeptSession, SessionFile
 from .users import OBSERVER, OPERATOR, ConsoleUser
 
 TRIES, TRY_PERIOD = 5, 60.0
@@ -28,12 +29,14 @@ class Session:
 
     Attributes:
         dark: Whether pages are dark; None: as the computer is.
+        began: s since 1970.
     """
 
     name: str
     role: str
     key: str = field(repr=False, default_factory=lambda: secrets.token_urlsafe(32))
     dark: bool | None = None
+    began: float = field(default_factory=time.time)
 
     @property
     def operator(self) -> bool:
@@ -62,6 +65,7 @@ class Sessions:
         self._clock = clock
         self._lock = threading.Lock()
         self._sessions: dict[str, Session] = {}
+        self._file: SessionFile | None = None
         self._failures: dict[str, list[float]] = {}
         self._count = 0
 
@@ -70,15 +74,54 @@ class Sessions:
         with self._lock:
             return self._sessions.get(key)
 
+    def keep_in(self, file: SessionFile) -> None:
+        """Have the sessions of a file, which an earlier console has left, and keep all in it from now on.
+
+        Left out are those of people whose password, or who themselves, are not in the file of people any more, and
+        those that were got in the other way: with a token where people log in, or the reverse.
+        """
+        for kept in file.read():
+            session = self._restored(kept)
+            if session is not None:
+                with self._lock:
+                    self._sessions.setdefault(session.key, session)
+        self._file = file
+
+    def _restored(self, kept: KeptSession) -> Session | None:
+        if self.users is None:
+            return None if kept.proof else Session(kept.name, kept.role, kept.key, began=kept.began)
+        user = self.users.get(kept.name)
+        if user is None or not hmac.compare_digest(kept.proof.encode(), _signed(user, kept.key).encode()):
+            return None
+        return Session(user.name, user.role, kept.key, began=kept.began)
+
+    def _write(self) -> None:
+        """Have the sessions in the file, beside the event loop. Under the lock."""
+        if self._file is not None:
+            self._file.write(self._kept(each) for each in self._sessions.values())
+
+    def _kept(self, session: Session) -> KeptSession:
+        user = (self.users or {}).get(session.name)
+        proof = "" if user is None else _signed(user, session.key)
+        return KeptSession(session.key, session.name, session.role, proof, session.began)
+
     def by_token(self, token: str) -> Session | None:
         """A new session for whoever shows a token; None if it is none."""
         for role, known in self.tokens.items():
             if secrets.compare_digest(token.encode(), known.encode()):
                 with self._lock:
-                    self._count += 1
-                    name = role if self._count == 1 else f"{role} {self._count}"
+                    name = self._new_name(role)
                 return self._keep(Session(name, role))
         return None
+
+    def _new_name(self, role: str) -> str:
+        """Name of whoever comes with a token; nobody else has it. Under the lock."""
+        taken = {each.name for each in self._sessions.values()}
+        while True:
+            self._count += 1
+            name = role if self._count == 1 else f"{role} {self._count}"
+            if name not in taken:
+                return name
 
     def source_of(self, name: str, address: str, device: str) -> str:
         """Whose budget a try is counted on: that of a browser which this person has logged in with, or its address.
@@ -126,11 +169,13 @@ class Sessions:
         """Forget a session; `on_end` is told."""
         with self._lock:
             self._sessions.pop(session.key, None)
+            self._write()
         self.on_end(session)
 
     def _keep(self, session: Session) -> Session:
         with self._lock:
             self._sessions[session.key] = session
+            self._write()
         return session
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +10,7 @@ from urllib.parse import unquote
 
 from naoqi.errors import NaoError
 
+from ...base.paths import ros_home
 from ...base.whole_file import write_whole
 from .camera_calibration import Calibration, from_yaml, to_yaml
 
@@ -19,10 +19,6 @@ log = logging.getLogger(__name__)
 FILE, PACKAGE = "file://", "package://"
 DEFAULT_URL = "file://${ROS_HOME}/camera_info/${NAME}.yaml"
 UNSAFE = re.compile(r"[^A-Za-z0-9_]")
-
-
-def ros_home() -> Path:
-    return Path(os.environ.get("ROS_HOME") or Path.home() / ".ros")
 
 
 def camera_name(words: str) -> str:
