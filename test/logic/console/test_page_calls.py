@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 import nao_library_modules.console.pages as pages
+from nao_library_modules.console.access.pulse import LATE, console_time
+from nao_library_modules.console.pages.frame import PageContext
 
 FILES = sorted(Path(pages.__file__).parent.rglob("*.py"))
 FUNCTIONS = {
@@ -102,3 +104,12 @@ def test_pages_leave_to_threads_what_takes_a_while(path):
 def test_the_look_at_pages_finds_what_is_called_in_the_loop(text, right):
     found = [call for each in in_loop(ast.parse(text)) for call in calls_in(each) if is_long(call)]
     assert (not found) == right
+
+
+def test_a_press_that_comes_late_is_told_and_not_passed_on():
+    page, passed, told = object.__new__(PageContext), [], []
+    page._handle, page.notify = passed.append, lambda text, kind: told.append(text)
+    late, fresh, typed = {"id": 1, "at": console_time() - 2 * LATE}, {"id": 2, "at": console_time()}, {"id": 3}
+    for event in (late, fresh, typed):
+        page._take_event(event)
+    assert passed == [fresh, typed] and "late" in told[0]

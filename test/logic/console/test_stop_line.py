@@ -21,10 +21,13 @@ from nao_library_modules.console.access.connections import (
     CountedListener,
 )
 from nao_library_modules.console.access.guard import COOKIE, Guard
+from nao_library_modules.console.access.pulse import console_time
 from nao_library_modules.console.access.sessions import Sessions
 from nao_library_modules.console.access.users import OBSERVER, OPERATOR
 from nao_library_modules.console.page_loop import PageLoop
 from nao_library_modules.console.robots.errors import NotThere
+from nao_library_modules.console.robots.last_stop import STOPPED, STOPPING, LastStop
+from nao_library_modules.console.robots.runs import Run
 from nao_library_modules.console.stop_line import PATH, StopLine
 from nao_library_modules.console.view.background import Lane
 
@@ -37,7 +40,7 @@ class FakeRobots:
 
     def __init__(self):
         self.stops = []
-        self._robot = SimpleNamespace(name="nao1", stop=self.stops.append)
+        self._robot = SimpleNamespace(name="nao1", stop=self.stops.append, stop_state="stopping")
 
     def known(self, name):
         return self._robot if name == "nao1" else None
@@ -79,8 +82,12 @@ async def ask(app, session, path, method="GET", told=(), kind="http"):
     return answers
 
 
-def guard_of(robots, sessions, pages=None):
-    return Guard(pages, sessions, ("127.0.0.1",), own={PATH: StopLine(robots, sessions)})
+def guard_of(robots, sessions, pages=None, answers=lambda: True):
+    return Guard(pages, sessions, ("127.0.0.1",), own={PATH: StopLine(robots, sessions, answers)})
+
+
+def told_by(message):
+    return json.loads(message["text"])
 
 
 def test_a_stop_comes_through_while_a_page_holds_up_all_others(robots, sessions):
@@ -119,8 +126,10 @@ def test_a_stop_that_is_sent_on_both_ways_is_carried_out_once(robots, sessions):
         return line, await ask(guard, operator, f"{PATH}?robot=nao1&id=b", "POST")
 
     line, request = asyncio.run(run())
-    assert [json.loads(each["text"]) for each in line[1:]] == [{"id": each, "stopped": "nao1"} for each in "ab"]
-    assert json.loads(request[1]["body"]) == {"stopped": "nao1"} and robots.stops == ["operator", "operator"]
+    told = {"stopped": "nao1", "state": "stopping"}
+    answers = [each for each in map(told_by, line[1:]) if "id" in each]
+    assert answers == [{"id": each, **told} for each in "ab"]
+    assert json.loads(request[1]["body"]) == told and robots.stops == ["operator", "operator"]
 
 
 @pytest.mark.parametrize("told", ["", "{", "[]", "1", '{"robot": "nao1"}', "x" * 10_000])
@@ -130,21 +139,73 @@ def test_a_line_that_brings_nonsense_is_closed(robots, sessions, told):
     assert answers[-1]["type"] == "websocket.close" and not robots.stops
 
 
-def test_observers_and_who_has_logged_out_stop_nothing(robots, sessions):
-    observer, operator = (sessions.by_token(sessions.tokens[role]) for role in (OBSERVER, OPERATOR))
+def status_of_stop(robots, sessions, session, robot="nao1"):
     line = StopLine(robots, sessions)
-    status = lambda session, robot: asyncio.run(  # noqa: E731
-        ask(
-            lambda scope, *more: line({**scope, "nao_session": session}, *more),
-            session,
-            f"{PATH}?robot={robot}",
-            "POST",
-        )
-    )[0]["status"]
-    assert status(observer, "nao1") == 403
-    assert status(operator, "nao7") == 404
+    app = lambda scope, *more: line({**scope, "nao_session": session}, *more)  # noqa: E731
+    return asyncio.run(ask(app, session, f"{PATH}?robot={robot}", "POST"))[0]["status"]
+
+
+def test_who_looks_on_may_stop_a_robot_and_the_robot_is_told_who(robots, sessions):
+    observer = sessions.by_token(sessions.tokens[OBSERVER])
+    assert status_of_stop(robots, sessions, observer) == 200 and robots.stops == ["observer"]
+
+
+def test_who_has_logged_out_stops_nothing(robots, sessions):
+    operator = sessions.by_token(sessions.tokens[OPERATOR])
+    assert status_of_stop(robots, sessions, operator, "nao7") == 404
     sessions.end(operator)
-    assert status(operator, "nao1") == 403 and not robots.stops
+    assert status_of_stop(robots, sessions, operator) == 403 and not robots.stops
+
+
+async def first_beats(robots, sessions, count=1, answers=lambda: True):
+    """What a page hears that says nothing."""
+    operator, heard, enough = sessions.by_token(sessions.tokens[OPERATOR]), [], asyncio.Event()
+
+    async def receive():
+        if heard:
+            await enough.wait()
+            return {"type": "websocket.disconnect"}
+        heard.append({})
+        return {"type": "websocket.connect"}
+
+    async def send(message):
+        if "text" in message:
+            heard.append(told_by(message))
+        if len(heard) > count:
+            enough.set()
+
+    headers = [(b"host", HERE.encode()), (b"cookie", f"{COOKIE}={operator.key}".encode())]
+    headers += [(b"origin", f"http://{HERE}".encode())]
+    scope = {"type": "websocket", "path": PATH, "query_string": b"robot=nao1", "headers": headers}
+    await asyncio.wait_for(guard_of(robots, sessions, answers=answers)(scope, receive, send), LIMIT)
+    return heard[1:]
+
+
+def test_a_page_hears_that_the_console_lives_and_how_far_its_stop_is(robots, sessions):
+    first, second = asyncio.run(first_beats(robots, sessions, 2))
+    assert first["beat"] < second["beat"] <= console_time() and first["console"] == second["console"]
+    assert (first["pages"], first["state"]) == (True, "stopping")
+
+
+def test_a_page_hears_of_a_loop_of_pages_that_hangs(robots, sessions):
+    async def page(scope, receive, send):
+        held.set()
+        go.wait(LIMIT)
+
+    held, go = threading.Event(), threading.Event()
+    pages = PageLoop(page)
+    assert pages.answers()
+    looked = threading.Thread(target=lambda: asyncio.run(pages({}, None, None)))
+    looked.start()
+    held.wait(LIMIT)
+    deadline = time.monotonic() + LIMIT
+    while pages.answers() and time.monotonic() < deadline:
+        held.wait(0.01)
+    (beat,) = asyncio.run(first_beats(robots, sessions, answers=pages.answers))
+    go.set()
+    looked.join(LIMIT)
+    pages.close()
+    assert beat["pages"] is False
 
 
 def test_work_for_pages_keeps_one_thread_busy():
@@ -182,6 +243,43 @@ def test_work_of_pages_pauses_as_long_as_it_takes():
     asyncio.run(run())
     began, ended, again, _ = times
     assert again - ended >= ended - began
+
+
+# --- the state of a stop ----------------------------------------------------------------------------------------------
+
+
+def test_a_stop_is_over_when_what_ran_and_its_own_steps_are():
+    last, run = LastStop(), Run("1", "/", "NaoMotion", ["walk"], "walk", "ann", 0.0)
+    assert last.state([run]) == ""
+    done = []
+    steps = last.begin([run], lambda: done.append("walk"), lambda: done.append("others"))
+    states = [last.state([run])]
+    for step in steps:
+        step()
+        states.append(last.state([run]))
+    assert states == [STOPPING] * 3 and done == ["walk", "others"]
+    assert last.state([]) == STOPPED
+
+
+def test_a_stop_is_past_when_something_begins():
+    last, later = LastStop(), Run("2", "/", "NaoMotion", ["walk"], "walk", "ann", 0.0)
+    last.begin([])
+    assert last.state([later]) == "" and last.state([]) == ""
+    last.begin([])
+    last.has_begun()
+    assert last.state([]) == ""
+
+
+def test_a_step_of_a_stop_that_fails_is_over():
+    last = LastStop()
+
+    def fails():
+        raise OSError
+
+    (step,) = last.begin([], fails)
+    with pytest.raises(OSError):
+        step()
+    assert last.state([]) == STOPPED
 
 
 # --- connections ------------------------------------------------------------------------------------------------------

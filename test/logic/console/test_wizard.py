@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.cli.app import nao
+from nao_library_modules.console.access.pulse import LATE, console_time
 from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from nao_library_modules.console.pages.wizard_page import WizardParts
 from nao_library_modules.console.robots.errors import Stopped
@@ -440,9 +441,9 @@ def test_free_texts_are_filled_and_kept_each_once_the_newest_first(desk, robot):
 
 @pytest.fixture
 def pages(desk, robot, layout):
-    made = SimpleNamespace(refusal="", operator=True, points=[], other=FakeRobot("/nao2/"), closed=[])
+    made = SimpleNamespace(refusal="", known=True, points=[], other=FakeRobot("/nao2/"), closed=[])
     pointer = SimpleNamespace(point=lambda *a: made.points.append(a), close=lambda: made.closed.append(True))
-    rights = PageRights("eva", lambda _: made.refusal, lambda: made.operator)
+    rights = PageRights("eva", lambda _: made.refusal, lambda: made.known)
     found = {}
 
     def find(name):
@@ -547,8 +548,34 @@ def test_a_button_of_another_robot_goes_there_and_a_stop_too(pages, robot, layou
     assert pages.take({"press": "6", "revision": layout.revision}) == ""
     assert len(pages.other.sent) == 1 and not robot.sent
     assert pages.take({"stop": True}) == "" and pages.other.stops == 1
-    pages.operator = False
-    assert "observers" in pages.take({"stop": True})
+    pages.known = False
+    assert "logged out" in pages.take({"stop": True}) and pages.other.stops == 1
+
+
+def test_who_looks_on_may_stop_and_do_nothing_else(pages, robot, layout):
+    pages.refusal = "observers look on"
+    assert pages.take({"press": "4", "revision": layout.revision}) == "" and robot.stops == 1
+    assert pages.take({"press": "2", "revision": layout.revision}) == "observers look on" and not robot.sent
+
+
+def test_what_waited_in_a_network_that_was_cut_moves_nothing(pages, robot, layout):
+    old = console_time() - 2 * LATE
+    for message in ({"walk": [1, 0, 0]}, {"press": "2", "revision": layout.revision},
+                    {"head": {"kind": "click", "camera": "top", "x": 0, "y": 0}}):  # fmt: skip
+        assert "late" in pages.take({**message, "at": old})
+    assert not robot.walks and not robot.sent and not pages.points
+
+
+def test_a_stop_and_the_end_of_a_walk_are_never_too_late(pages, robot, layout):
+    old = console_time() - 2 * LATE
+    pages.take({"walk": [1, 0, 0], "at": console_time()})
+    assert pages.take({"walk": [0, 0, 0], "at": old}) == "" and robot.walks[-1] == (0.0, 0.0, 0.0)
+    assert pages.take({"press": "4", "revision": layout.revision, "at": old}) == "" and robot.stops == 1
+
+
+@pytest.mark.parametrize("stamp", [None, "now", True, math.nan])
+def test_a_stamp_that_is_none_holds_nothing_up(stamp, pages, robot):
+    assert pages.take({"walk": [1, 0, 0], "at": stamp}) == "" and robot.walks
 
 
 def test_an_integer_that_no_float_holds_is_a_velocity_at_its_limit(pages, robot):

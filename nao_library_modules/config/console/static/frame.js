@@ -1,23 +1,144 @@
-// The stop of every page: on a line of its own that is open already, and by a request as well; what comes first counts.
+// What every page has: the stop, on a line of its own that is open already and by a request as well, what comes first
+// counts; and the console's pulse, by which a page knows whether what it shows is true. See console/stop_line.py.
+
+const PATH = "/console/stop";
+const AGAIN = 700; // ms until a line that broke is opened again
+const SILENT = 1400; // ms without a beat, after which the console does not answer
+const LOOK = 200; // ms between two looks
+const BEATS = 60; // of which the console's clock is known
+const OPEN = ".q-dialog__inner, .q-menu"; // what Escape closes
+const STATES = { stopping: "Stopping…", stopped: "Stopped" };
+const WAY_OUT = "Press the robot's chest button twice, or run “nao stop”.";
+const GONE = `The console does not answer. What this page shows may be old, and Stop does not reach it. ${WAY_OUT}`;
+const HUNG = "This page has lost its console: what it shows may be old, and only Stop works.";
+const OUT = "You are logged out, and Stop does not reach the console: open its address again.";
 
 const header = () => document.querySelector("[data-robot]");
-const PATH = "/console/stop";
-const AGAIN = 2000; // ms until a line that broke is opened again
+const robotShown = () => header()?.dataset.robot ?? "";
 const waiting = new Map(); // id of a stop -> what takes its answer
+const offsets = []; // s from this page's clock to the console's, as the last beats told
 let line = null;
+let beat = null; // the last one
+let heard = performance.now(); // ms, when it came
+let owed = null; // id of a stop that did not reach the console
+let sent = false; // whether a stop is on its way
+let loggedOut = false;
 
 function tell(message, type) {
   window.Quasar?.Notify?.create({ message, type });
 }
 
-function connect() {
-  line = new WebSocket(location.origin.replace(/^http/, "ws") + PATH);
-  line.addEventListener("message", (event) => {
-    const answer = JSON.parse(event.data);
-    waiting.get(answer.id)?.(answer);
-  });
-  line.addEventListener("close", () => setTimeout(connect, AGAIN));
+// --- the pulse
+
+// Whether the console answers: "" all is well, "hung" its pages do not, "gone" nothing does.
+export function trouble() {
+  if (loggedOut) return "out";
+  if (performance.now() - heard > SILENT) return "gone";
+  return beat && (!beat.pages || !window.socket?.connected) ? "hung" : "";
 }
+
+// Now, by the console's clock, in s; undefined before it is known.
+export function consoleTime() {
+  return offsets.length ? performance.now() / 1000 + Math.max(...offsets) : undefined;
+}
+
+function take(message) {
+  if (beat && message.console !== beat.console) {
+    location.reload(); // another console: this one's page is not known there
+    return;
+  }
+  beat = message;
+  heard = performance.now();
+  offsets.push(message.beat - heard / 1000);
+  if (offsets.length > BEATS) offsets.shift();
+  if (message.state) sent = false;
+  show();
+}
+
+function show() {
+  const now = trouble();
+  const before = document.body.dataset.console ?? "";
+  if (now !== before) {
+    document.body.dataset.console = now;
+    window.dispatchEvent(new CustomEvent("nao-console", { detail: { answers: !now } }));
+    if (now === "gone") reconnectPage();
+  }
+  const text = { gone: GONE, hung: HUNG, out: OUT }[now] ?? "";
+  setText(".nao-told", text);
+  const state = now === "gone" || now === "out" ? "No connection" : sent ? "Sent…" : STATES[beat?.state] ?? "";
+  setText(".nao-stop-state", state);
+  const button = document.querySelector(".nao-stop");
+  if (button && button.dataset.state !== (beat?.state ?? "")) button.dataset.state = beat?.state ?? "";
+}
+
+function setText(css, text) {
+  const found = document.querySelector(css);
+  if (found && found.textContent !== text) found.textContent = text;
+}
+
+// The page's own connection is taken anew: what waits in it would come late.
+function reconnectPage() {
+  window.socket?.io?.engine?.close();
+}
+
+// What acts is not sent while the console does not answer, and has a stamp else. Values of fields are let through: page
+// and console agree on them then.
+function guardPresses(socket) {
+  const emit = socket.emit;
+  socket.emit = function (name, message, ...rest) {
+    if (name !== "event" || isValue(message)) return emit.call(socket, name, message, ...rest);
+    if (trouble()) {
+      tell("Not sent: the console does not answer", "negative");
+      return socket;
+    }
+    return emit.call(socket, name, { ...message, at: consoleTime() }, ...rest);
+  };
+  socket.guarded = true;
+}
+
+function isValue(message) {
+  const events = window.mounted_app?.elements[message.id]?.events ?? [];
+  return events.some((each) => each.listener_id === message.listener_id && each.type.startsWith("update:"));
+}
+
+function look() {
+  if (window.socket && !window.socket.guarded) guardPresses(window.socket);
+  show();
+  if (trouble() === "gone" && line?.readyState === WebSocket.OPEN) line.close();
+}
+
+function connect() {
+  const query = new URLSearchParams({ robot: robotShown() });
+  const made = new WebSocket(`${location.origin.replace(/^http/, "ws")}${PATH}?${query}`);
+  line = made;
+  offsets.length = 0;
+  let over = false;
+  const again = () => {
+    if (over) return;
+    over = true;
+    setTimeout(connect, AGAIN);
+  };
+  made.addEventListener("open", () => {
+    if (owed !== null) stop(owed); // late, but never lost
+  });
+  made.addEventListener("message", (event) => {
+    const message = JSON.parse(event.data);
+    if (message.beat !== undefined) {
+      if (made === line) take(message);
+    } else {
+      waiting.get(message.id)?.(message);
+    }
+  });
+  made.addEventListener("close", async () => {
+    again();
+    // A WebSocket does not say why it is not let in; a request does.
+    const answer = await fetch(PATH).catch(() => null);
+    loggedOut = answer?.status === 401;
+    show();
+  });
+}
+
+// --- the stop
 
 function byLine(robot, id) {
   return new Promise((resolve, reject) => {
@@ -33,29 +154,52 @@ async function byRequest(robot, id) {
   return (await fetch(`${PATH}?${query}`, { method: "POST", keepalive: true })).json();
 }
 
-async function stop() {
-  const robot = header()?.dataset.robot ?? "";
-  const id = `${Date.now()}-${Math.random()}`;
-  const button = document.querySelector(".nao-stop");
+async function stop(id = `${Date.now()}-${Math.random()}`) {
+  window.dispatchEvent(new CustomEvent("nao-stop")); // whatever else the page holds
+  const robot = robotShown();
+  owed = id;
+  sent = true;
+  show();
   try {
     const answer = await Promise.any([byLine(robot, id), byRequest(robot, id)]);
-    button?.classList.toggle("nao-stop-failed", Boolean(answer.error));
-    if (answer.error) tell(answer.error, "warning");
-    else tell("Everything is told to stop", "positive");
+    owed = null;
+    if (answer.error) tell(answer.error, "negative");
+    else if (beat) beat = { ...beat, state: answer.state };
   } catch {
-    button?.classList.add("nao-stop-failed"); // the console is gone: a robot's goals end with it
-    tell("The console does not answer: nothing was stopped", "negative");
+    tell("Stop did not reach the console. It is sent as soon as the console answers.", "negative");
   } finally {
+    sent = false;
     waiting.delete(id);
+    show();
   }
 }
 
+// What is open, the last one first; not what is closing already.
+function opened() {
+  return [...document.querySelectorAll(OPEN)].filter((each) => !each.closest("[class*=leave-active]")).pop();
+}
+
+// A dialog that does not close by Escape has a button for it: Escape goes there, and then presses it.
+function leave(dialog) {
+  const button = dialog.querySelector(".nao-close");
+  if (!button) return;
+  if (document.activeElement === button) button.click();
+  else button.focus();
+}
+
 connect();
+setInterval(look, LOOK);
 window.addEventListener(
   "keydown",
   (event) => {
-    if (event.key === "Escape" && !event.repeat) stop();
+    if (event.key !== "Escape" || event.repeat) return;
+    const over = opened();
+    if (over) leave(over);
+    else stop();
   },
   { capture: true },
 );
 window.addEventListener("click", (event) => event.target.closest?.(".nao-stop") && stop(), { capture: true });
+new ResizeObserver(() => {
+  document.documentElement.style.setProperty("--nao-bar", `${header()?.offsetHeight ?? 0}px`);
+}).observe(document.querySelector(".nao-header") ?? document.body);

@@ -1,6 +1,8 @@
 // The wizard's page: <nao-wizard-buttons>, <nao-wizard-drive>, keys, gamepad and pointing on <nao-camera>.
 // All of it goes over one WebSocket a page, /console/drive; console/wizard/session.py tells the messages.
 
+import { consoleTime, trouble } from "./frame.js";
+
 const PERIOD = 100; // ms between two velocities while one is held
 const DEAD_ZONE = 0.15; // of a gamepad's sticks
 const DEAD_MAN = [4, 5, 6, 7]; // shoulder buttons of a gamepad: one is held while it walks
@@ -36,9 +38,9 @@ nao-wizard-buttons .state:empty { display: none; }
 nao-wizard-buttons kbd, nao-wizard-drive kbd { font: 600 12px monospace; padding: 2px 6px; border-radius: 4px;
   border: 1px solid currentColor; white-space: nowrap; }
 nao-wizard-buttons p { margin: 0; }
-nao-wizard-buttons .told:not(:empty) { margin-bottom: 8px; }
-nao-wizard-buttons .notice { position: sticky; top: 64px; z-index: 3; background: #fff3cd; color: #000; padding: 8px 12px;
-  border: 2px solid #b26a00; border-radius: 6px; margin-bottom: 10px; }
+nao-wizard-buttons .told { min-height: 1.5em; }
+nao-wizard-buttons .notice { position: fixed; inset: auto 0 0; height: var(--nao-strip); z-index: 1501; overflow-y: auto;
+  background: #fff3cd; color: #000; padding: 8px 12px; border: 2px solid #b26a00; }
 nao-wizard-buttons .notice:empty { display: none; }
 nao-wizard-drive .pads { display: flex; gap: 16px; align-items: center; flex-wrap: wrap; }
 nao-wizard-drive .pad { position: relative; touch-action: none; background: rgba(127, 127, 127, 0.18);
@@ -136,10 +138,10 @@ class WizardLink extends EventTarget {
     this.gamepadFree = false; // whether it was let go since the last stop
     this.ends = new AbortController();
     const until = { signal: this.ends.signal };
-    window.addEventListener("keydown", (event) => this.escape(event), { ...until, capture: true });
     window.addEventListener("keydown", (event) => this.down(event), until);
     window.addEventListener("keyup", (event) => this.up(event), { ...until, capture: true });
-    document.addEventListener("click", (event) => element(event).closest(".nao-stop") && this.stopOthers(), until);
+    window.addEventListener("nao-stop", () => this.stopOthers(), until);
+    window.addEventListener("nao-console", (event) => event.detail.answers || this.socket.close(), until);
     window.addEventListener("blur", () => this.letGo(), until);
     window.addEventListener("pagehide", () => this.letGo(), until);
     document.addEventListener("visibilitychange", () => document.hidden && this.letGo(), until);
@@ -187,8 +189,9 @@ class WizardLink extends EventTarget {
   }
 
   send(message) {
-    if (!this.connected) return false;
-    this.socket.send(JSON.stringify(message));
+    const ends = message.stop || message.walk?.every((part) => part === 0);
+    if (!this.connected || (trouble() && !ends)) return false;
+    this.socket.send(JSON.stringify({ ...message, at: consoleTime() }));
     return true;
   }
 
@@ -226,11 +229,7 @@ class WizardLink extends EventTarget {
     if (!this.send(message)) this.notice("no connection to the console: nothing was sent");
   }
 
-  // The frame's own Escape stops the robot of the page; this one ends what is held, and the other robots.
-  escape(event) {
-    if (event.key === "Escape" && !event.repeat) this.stopOthers();
-  }
-
+  // The frame stops the robot of the page; this ends what is held, and the other robots.
   stopOthers() {
     this.letGo();
     this.send({ stop: true });
@@ -408,7 +407,7 @@ class WizardButtons extends WizardElement {
   }
 
   button(button) {
-    const state = make("span", { class: "state" });
+    const state = make("span", { class: "state nao-state" });
     const label = make("span", { class: "label", text: button.label }, state);
     const made = make("button", { type: "button", title: button.tooltip, "data-button": button.id }, label);
     if (button.key) {
@@ -455,7 +454,7 @@ class WizardDrive extends WizardElement {
       this.link.keysOn = keys.checked;
       this.link.letGo();
     });
-    this.told = make("p", { class: "told", role: "status", "aria-live": "off", text: "stands" });
+    this.told = make("p", { class: "told nao-state", role: "status", "aria-live": "off", text: "stands" });
     this.help = make("p", { class: "help", text: "Hold W A S D or arrows to walk, Q E to turn; let go to stop." });
     this.gamepad = make("p", { class: "help", text: "" });
     this.append(

@@ -15,10 +15,11 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.paths import config_file
+from ..base.paths import config_file, ros_home
 from .access.connections import BACKLOG, Connections, CountedListener
 from .access.controls import Controls
 from .access.guard import COOKIE, Guard
+from .access.session_file import SessionFile
 from .access.sessions import Sessions
 from .access.users import OBSERVER, OPERATOR, ROLES, read_users
 from .page_loop import PageLoop
@@ -36,6 +37,8 @@ OLDEST_GENERATION = 500
 SWITCH_INTERVAL = 0.0005
 """s for which a thread that takes the processor keeps others waiting, a stop among them."""
 STUDIES = "~/.ros/nao_studies"
+SESSIONS = "nao_console_sessions_{port}.json"
+"""In the folder of ROS: who is logged in at the console of a port."""
 WHEELS = "scripts/setup installs it, where Python is 3.10 or newer"
 
 
@@ -130,6 +133,7 @@ class Console:
             text = f"port {settings.port} of {settings.listen}: {error.strerror}; --port takes another"
             raise NaoError(text) from None
         settings = self.settings = replace(self.settings, port=listener.getsockname()[1])
+        self.sessions.keep_in(SessionFile(ros_home() / SESSIONS.format(port=settings.port)))
         pages = PageLoop(self.app)
         guard = Guard(
             pages,
@@ -137,7 +141,7 @@ class Console:
             (*LOOPBACK, settings.listen) if settings.local else (),
             secure=settings.certificate is not None,
             cookie=f"{COOKIE}_{settings.port}",
-            own={PATH: StopLine(self.robots, self.sessions)},
+            own={PATH: StopLine(self.robots, self.sessions, pages.answers)},
             connections=connections,
         )
         config: Any = uvicorn.Config(

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import threading
+import time
 from collections.abc import Awaitable, Callable
 from typing import Any
 
 NAME = "pages"
 """Of the thread."""
+LOOK_PERIOD = 0.25
+"""s between two signs of life of the loop."""
+SILENT = 1.5
+"""s without one, after which the pages do not answer."""
 
 
 class PageLoop:
@@ -20,12 +25,22 @@ class PageLoop:
     def __init__(self, app: Any) -> None:
         self.app = app
         self._loop = asyncio.new_event_loop()
+        self._lived = time.monotonic()
+        self._loop.call_soon(self._live)
         threading.Thread(target=self._loop.run_forever, name=NAME, daemon=True).start()
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Have one connection answered."""
         here = asyncio.get_running_loop()
         await _in_loop(self._loop, self.app, scope, _called_in(here, receive), _called_in(here, send))
+
+    def answers(self) -> bool:
+        """Whether the loop takes its turns. Any thread."""
+        return time.monotonic() - self._lived < SILENT
+
+    def _live(self) -> None:
+        self._lived = time.monotonic()
+        self._loop.call_later(LOOK_PERIOD, self._live)
 
     def close(self) -> None:
         """End the loop, behind the last connection."""

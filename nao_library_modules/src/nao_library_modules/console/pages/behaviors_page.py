@@ -120,7 +120,7 @@ class BehaviorsView:
         with ui.row().classes("w-full items-center gap-2"):
             self._title = ui.label("No behaviour is open").classes("text-xl font-medium")
             self._title.props("role=heading aria-level=2")
-            self._state = ui.label("").classes("text-sm opacity-80").props("role=status")
+            self._state = ui.label("").classes("text-sm opacity-80 nao-state").props("role=status")
         with ui.row().classes("w-full items-center gap-2"):
             self._run_button = ui.button("Run", icon="play_arrow", on_click=self._start).props("no-caps")
             self._stop_button = ui.button("Stop", icon="stop", on_click=self._stop).props("no-caps outline")
@@ -444,7 +444,7 @@ class BehaviorsView:
             ui.label("It runs on a simulated robot of its own, faster than real time. Nothing moves here.")
             with ui.row().classes("items-center"):
                 ui.spinner()
-                ui.button("Cancel", on_click=self._cancelled.set).props("outline")
+                ui.button("Cancel", on_click=self._cancelled.set).props("outline").classes("nao-close")
         dialog.open()
         given = self._texts()
         try:

@@ -16,6 +16,7 @@ from naoqi.errors import NaoError
 
 from ...base.paths import config_file
 from ..access.guard import LOGOUT, session_of
+from ..access.pulse import refusal_of_late
 from ..access.sessions import Session
 from ..robots.robot import RobotClient
 from ..view.background import Subscriptions, in_background
@@ -52,6 +53,8 @@ class PageContext:
         self._leave: list[Callable[[], None]] = []
         self._client = context.client
         self._client.on_delete(self._left)
+        self._handle = self._client.handle_event
+        self._client.handle_event = self._take_event  # type: ignore[method-assign]
 
     async def ask(self, task: Callable[..., Any], *arguments: Any) -> Any:
         """What a function gives that waits for ROS, the disk or a lock. It is never called in the event loop.
@@ -111,6 +114,14 @@ class PageContext:
         with self._client:
             ui.notify(text, type=kind)
 
+    def _take_event(self, event: dict[str, Any]) -> None:
+        """Pass on what the browser tells of an element, unless it is a press that comes late."""
+        refusal = refusal_of_late(event)
+        if refusal:
+            self.notify(refusal, "warning")
+        else:
+            self._handle(event)
+
     def _end_if_gone(self) -> None:
         if self.gone:
             raise asyncio.CancelledError  # nothing of the page can be shown any more
@@ -159,32 +170,45 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
     page.on_leave(following.end)
     page.on_leave(console.controls.enter(session, robot.namespace))
     dark = ui.dark_mode(session.dark)
-    with ui.header().classes("nao-header items-center").props(f'data-robot="{robot.name}"'):
-        _navigation(request.url.path, robot, request.state.robots)
-        ui.space()
-        _people(console, page)
-        if console.sessions.users is not None:
-            ui.button(icon="logout", on_click=lambda: ui.navigate.to(LOGOUT)).props(
-                'flat round color=white aria-label="Log out"'
+    with ui.header().classes("nao-header").props(f'data-robot="{robot.name}"'):
+        _navigation(request.url.path, robot)
+        with ui.row().classes("nao-who"):
+            _choice_of_robot(request.url.path, robot, request.state.robots)
+            _people(console, page)
+            if console.sessions.users is not None:
+                ui.button(icon="logout", on_click=lambda: ui.navigate.to(LOGOUT)).props(
+                    'flat round color=white aria-label="Log out"'
+                )
+            ui.button(icon="contrast", on_click=lambda: _turn(session, dark)).props(
+                'flat round color=white aria-label="Light or dark"'
             )
-        ui.button(icon="contrast", on_click=lambda: _turn(session, dark)).props(
-            'flat round color=white aria-label="Light or dark"'
-        )
+        # What static/frame.js tells of the console and of the stop; Vue leaves the content of both elements alone.
+        ui.element("div").classes("nao-told").props("id=nao-told role=alert")
         # Pressed, it is a request of its own, as the key is: see static/frame.js.
-        ui.button("Stop", icon="pan_tool").classes("nao-stop").props(
-            'color=negative aria-keyshortcuts="Escape" title="Ends everything that the robot does (Escape)"'
-        )
+        with (
+            ui.button("Stop", icon="pan_tool")
+            .classes("nao-stop")
+            .props(
+                'color=negative aria-label="Stop the robot" aria-keyshortcuts="Escape" aria-describedby=nao-told'
+                ' title="Ends everything that the robot does (Escape)"'
+            )
+        ):
+            ui.element("span").classes("nao-stop-state")
+    ui.element("div").classes("nao-notices").props("aria-hidden=true")
     AlarmBar(page)
     with ui.column().classes("nao-main w-full"):
         yield page
 
 
-def _navigation(here: str, robot: RobotClient, names: list[str]) -> None:
-    with ui.element("nav").props('aria-label="Pages"').classes("row items-center"):
+def _navigation(here: str, robot: RobotClient) -> None:
+    with ui.element("nav").props('aria-label="Pages"'):
         for path, name in PATHS.items():
             link = ui.link(name, f"{path}?robot={robot.name}").classes("nao-link")
             if path == here or (path != "/" and here.startswith(path)):
                 link.props('aria-current="page"')
+
+
+def _choice_of_robot(here: str, robot: RobotClient, names: list[str]) -> None:
     if len(names) > 1 or robot.name not in names:
         choices = sorted({*names, robot.name})
         ui.select(choices, value=robot.name, on_change=lambda e: ui.navigate.to(f"{here}?robot={e.value}")).props(

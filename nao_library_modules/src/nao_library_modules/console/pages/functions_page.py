@@ -186,7 +186,7 @@ class FunctionsView:
         self._answer.clear()
         with self._answer:
             ui.label("Answer").classes("text-lg font-medium").props("role=heading aria-level=2")
-            ui.label(f"{goal.server}: {goal.label} – {goal.state}").props("role=status")
+            ui.label(f"{goal.server}: {goal.label} – {goal.state}").classes("nao-state").props("role=status")
             for text in dict.fromkeys(filter(None, (goal.progress if not goal.done else "", goal.text))):
                 ui.label(text).classes("whitespace-pre-wrap break-words")
             if text:

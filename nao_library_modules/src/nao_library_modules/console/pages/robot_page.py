@@ -111,7 +111,7 @@ class StatusPanel:
         with ui.element("dt"):
             ui.label(name)
         with ui.element("dd"):
-            return ui.badge("", color="grey-7").classes("nao-fact")
+            return ui.badge("", color="grey-7").classes("nao-fact nao-state")
 
     def _show(self) -> None:
         body, status = self._views.body, self._views.body.status
@@ -146,7 +146,7 @@ class RunPanel:
         self._rows: dict[str, dict[str, Any]] = {}
         with _card("What it does"):
             self._list = ui.column().classes("w-full nao-runs")
-            self._idle = ui.label("").classes("text-caption")
+            self._idle = ui.label("").classes("text-caption nao-state")
         self._show()
         page.every(PERIOD, self._show)
 
@@ -167,7 +167,7 @@ class RunPanel:
             with ui.column().classes("nao-run-text"):
                 ui.label(f"{run.server}: {run.label}")
                 progress = ui.label("").classes("text-caption")
-            state = ui.badge(run.state, color="primary")
+            state = ui.badge(run.state, color="primary").classes("nao-state")
             ui.label(run.by or "another program").classes("text-caption")
             button = ui.button("Cancel", on_click=lambda: self._cancel(run)).props(
                 "dense outline no-caps color=negative"

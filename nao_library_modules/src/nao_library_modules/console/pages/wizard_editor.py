@@ -42,11 +42,11 @@ class WizardEditor:
                 self._over = ui.button("Save over it", icon="warning", on_click=self._save_over)
                 self._over.props("no-caps color=negative")
                 ui.button("Load again", icon="refresh", on_click=self._load).props("no-caps outline")
-                ui.button("Close", icon="close", on_click=self._dialog.close).props("no-caps flat")
+                ui.button("Close", icon="close", on_click=self._dialog.close).props("no-caps flat").classes("nao-close")
             self._told = ui.label().props("role=status")
             self._list = ui.column().classes("w-full gap-0 max-h-40 shrink-0 overflow-auto no-wrap")
             self._place = ui.column().classes("w-full flex-grow min-h-0")
-            ui.label("Tab indents; Escape and then Tab leave the text.").classes("text-caption")
+            ui.label("Tab indents; Escape leaves the text, and once more closes it.").classes("text-caption")
 
     async def open(self) -> None:
         """Show the text of the file as it is now."""

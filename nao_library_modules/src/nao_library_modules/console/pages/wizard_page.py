@@ -376,11 +376,11 @@ def _rights(console: Any, session: Session) -> PageRights:
     controls = console.controls
 
     def known() -> bool:
-        return session.operator and console.sessions.get(session.key) is session
+        return console.sessions.known(session)
 
     def refusal(namespace: str) -> str:
         if not known():
-            return controls.refusal(namespace, session) if not session.operator else "you are logged out: log in again"
+            return "you are logged out: log in again"
         return "" if controls.may_move(namespace, session) else controls.refusal(namespace, session)
 
     return PageRights(session.name, refusal, known)

@@ -31,6 +31,7 @@ from .commands import CommandGoal, RobotCommand, goal_of, type_of
 from .errors import NotThere, ServiceRefused, Stopped
 from .events import EventStream
 from .foreign_goals import ForeignGoals
+from .last_stop import LastStop
 from .master import MasterLook
 from .runs import ENDS, STATES, Run
 from .waits import within
@@ -69,6 +70,7 @@ class RobotClient:
         self._cancels: dict[str, rospy.Publisher] = {}
         self._own: dict[str, Run] = {}
         self._stops = 0
+        self._last_stop = LastStop()
         self._foreign = ForeignGoals(namespace, self._is_own)
         self._watchers = 0
         self.seen_servers: list[str] = []
@@ -220,6 +222,7 @@ class RobotClient:
 
     def stop(self, by: str = "") -> None:
         """End all goals of all actions of the robot, and its walk."""
+        runs = self.runs
         with self._lock:
             self._stops += 1
             ready = {topic: each for topic, each in self._cancels.items() if each.get_num_connections()}
@@ -229,8 +232,8 @@ class RobotClient:
             publisher.publish(GoalID())
         for run in own:
             run.cancel()  # a goal that is on its way may come behind the cancel of all
-        _in_thread(self._stop_walk)
-        _in_thread(self._stop_others, set(ready))
+        for step in self._last_stop.begin(runs, self._stop_walk, partial(self._stop_others, set(ready))):
+            _in_thread(step)
         self.events.add("stopped", "everything is told to stop", by)  # last: whoever listens may take a while
 
     def was_stopped(self, by: str) -> None:
@@ -239,11 +242,17 @@ class RobotClient:
             self._stops += 1
         self.events.add("stopped", f"everything was told to stop by {by}", by)
 
+    @property
+    def stop_state(self) -> str:
+        """How far the last stop is, see `LastStop`; goals of other programs count while somebody watches."""
+        return self._last_stop.state(self.runs)
+
     def walk(self, x: float, y: float, theta: float, by: str = "") -> None:
         """Walk at shares -1..1 of the top speed, ahead, to the left and turning left, for WALK_HOLD s."""
         way = tuple(max(-1.0, min(1.0, float(value))) for value in (x, y, theta))
         began = self._hold_walk(way)
         if began and any(way):
+            self._last_stop.has_begun()
             self.events.add("walked", "walks by hand", by, velocity=list(way))
 
     def _hold_walk(self, way: Any) -> bool:

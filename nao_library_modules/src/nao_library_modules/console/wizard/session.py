@@ -10,6 +10,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
+from ..access.pulse import refusal_of_late
 from .desk import WizardDesk
 from .model import WizardButton, WizardLayout
 
@@ -27,12 +28,12 @@ class PageRights:
     Attributes:
         name: Of the user, for the log.
         refusal: Why the visitor may not move a robot now, by its namespace; empty: the visitor may.
-        operator: Whether the visitor may stop it, whoever holds the controls.
+        known: Whether the visitor is logged in, who may stop it then: observers, too.
     """
 
     name: str
     refusal: Callable[[str], str]
-    operator: Callable[[], bool]
+    known: Callable[[], bool]
 
 
 class WizardSession:
@@ -47,6 +48,8 @@ class WizardSession:
     - head: {kind, camera, x, y}, as `head_pointer.HeadPointer.point` takes it;
     - stop: true; the stop of all pages ends what the robot of the page does, this one what the others do that the
       page's buttons are for.
+
+    `at` of a message is its stamp, see `pulse`: what came late moves nothing.
 
     Args:
         page: Id of the page.
@@ -145,19 +148,20 @@ class WizardSession:
         return list(found.values())
 
     def _stop(self, _value: Any, _message: Any, _stops: Any) -> None:
-        if not self._rights.operator():
-            raise ValueError("observers look on; only operators stop the robot")
+        if not self._rights.known():
+            raise ValueError("you are logged out: log in again")
         if self._walk_stops is not None:
             self._end_walk()
             self._walk_stops = -1
         for other in self._others():
             other.stop(self._rights.name)
 
-    def _walk(self, value: Any, _message: Any, stops: Mapping[str, int]) -> None:
+    def _walk(self, value: Any, message: Mapping[str, Any], stops: Mapping[str, int]) -> None:
         velocity = _velocity(value)
         if not any(velocity):
             self._end_walk()
             return
+        self._in_time(message)
         if self.must_let_go:
             raise ValueError("the robot was stopped: let go, and then walk again")
         self._require(self.robot)
@@ -186,17 +190,20 @@ class WizardSession:
         ends = getattr(button.action, "stops", False)
         if self._left and not ends:
             return
+        if not ends:
+            self._in_time(message)
         robot = self.robot_of(button)
-        if not (ends and self._rights.operator()):
+        if not (ends and self._rights.known()):
             self._require(robot)
         self._desk.take_names(layout, robot.namespace)
         via = "key" if message.get("via") == "key" else "click"
         refusal, count = lambda: self._refusal(robot), stops.get(robot.namespace)
         self._desk.press(robot, group, button, self._rights.name, self.page, via, refusal, count)
 
-    def _head(self, value: Any, _message: Any, stops: Mapping[str, int]) -> None:
+    def _head(self, value: Any, message: Mapping[str, Any], stops: Mapping[str, int]) -> None:
         if not isinstance(value, dict) or value.get("kind") not in POINTS:
             raise ValueError("a point of the picture that is none")
+        self._in_time(message)
         x, y = _share(value.get("x")), _share(value.get("y"))
         self._require(self.robot)
         if self._pointer is None:
@@ -206,6 +213,12 @@ class WizardSession:
 
     def _require(self, robot: Any) -> None:
         refusal = self._refusal(robot)
+        if refusal:
+            raise ValueError(refusal)
+
+    @staticmethod
+    def _in_time(message: Mapping[str, Any]) -> None:
+        refusal = refusal_of_late(message)
         if refusal:
             raise ValueError(refusal)
 

@@ -335,12 +335,12 @@ class _StudyPage:
                     ui.label(condition)
                 if runner.state.rehearsal:
                     ui.badge("rehearsal")
-                self._status = ui.badge().props('role="status"')
+                self._status = ui.badge().classes("nao-state").props('role="status"')
                 self._recorded = ui.row()
-            self._now = ui.label().classes("text-h5").props('role="status" aria-live="polite"')
-            self._since = ui.label().classes("text-caption")
+            self._now = ui.label().classes("text-h5 nao-state").props('role="status" aria-live="polite"')
+            self._since = ui.label().classes("text-caption nao-kept nao-state")
             self._build_trouble()
-            self._error = ui.label().classes("text-negative").props('role="alert"')
+            self._error = ui.label().classes("text-negative nao-kept").props('role="alert"')
             self._choices = ui.row().classes("min-h-[3.5rem]")
             with ui.row():
                 self._pause = ui.button("Pause", on_click=self._toggle).props("no-caps")
@@ -390,7 +390,7 @@ class _StudyPage:
 
     def _build_trouble(self) -> None:
         """What is wrong with the log of the trial, or was; it stays until somebody says that it was seen."""
-        with ui.row().classes("items-center w-full") as self._trouble_row:
+        with ui.row().classes("items-center w-full nao-kept-row") as self._trouble_row:
             self._trouble = ui.label().classes("text-negative flex-1").props('role="alert"')
             self._seen = ui.button("Seen", icon="done", on_click=self._mark_seen).props("no-caps outline")
         self._show_trouble()
