@@ -187,6 +187,11 @@ class ConsoleBrowser:
         told = self.program.log.read_text().splitlines()
         return "\n".join([self.script(STATE), self.text()[:2000], *said[-LINES:], *told[-LINES:]])
 
+    def width(self, width, height):
+        """Have a window of this size, in pixels."""
+        sizes = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", sizes)
+
     def online(self, there):
         """Take the network away, or give it back."""
         self.driver.execute_cdp_cmd("Network.enable", {})

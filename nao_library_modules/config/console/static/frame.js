@@ -4,6 +4,7 @@
 const PATH = "/console/stop";
 const AGAIN = 700; // ms until a line that broke is opened again
 const SILENT = 1400; // ms without a beat, after which the console does not answer
+const PATIENCE = 3000; // ms until a line that does not open is given up for a new one
 const LOOK = 200; // ms between two looks
 const BEATS = 60; // of which the console's clock is known
 const OPEN = ".q-dialog__inner, .q-menu"; // what Escape closes
@@ -18,6 +19,7 @@ const robotShown = () => header()?.dataset.robot ?? "";
 const waiting = new Map(); // id of a stop -> what takes its answer
 const offsets = []; // s from this page's clock to the console's, as the last beats told
 let line = null;
+let begun = 0; // ms, when the line was begun
 let beat = null; // the last one
 let heard = performance.now(); // ms, when it came
 let owed = null; // id of a stop that did not reach the console
@@ -104,35 +106,32 @@ function isValue(message) {
 function look() {
   if (window.socket && !window.socket.guarded) guardPresses(window.socket);
   show();
-  if (trouble() === "gone" && line?.readyState === WebSocket.OPEN) line.close();
+  const slow = line?.readyState === WebSocket.OPEN || performance.now() - begun > PATIENCE;
+  if (trouble() === "gone" && line && slow) connect(); // its end would be told late, as its messages are
 }
 
 function connect() {
+  const former = line;
   const query = new URLSearchParams({ robot: robotShown() });
   const made = new WebSocket(`${location.origin.replace(/^http/, "ws")}${PATH}?${query}`);
   line = made;
+  begun = performance.now();
   offsets.length = 0;
-  let over = false;
-  const again = () => {
-    if (over) return;
-    over = true;
-    setTimeout(connect, AGAIN);
-  };
+  former?.close();
   made.addEventListener("open", () => {
-    if (owed !== null) stop(owed); // late, but never lost
+    if (made === line && owed !== null) stop(owed); // late, but never lost
   });
   made.addEventListener("message", (event) => {
     const message = JSON.parse(event.data);
-    if (message.beat !== undefined) {
-      if (made === line) take(message);
-    } else {
-      waiting.get(message.id)?.(message);
-    }
+    if (message.beat === undefined) waiting.get(message.id)?.(message);
+    else if (made === line) take(message);
   });
   made.addEventListener("close", async () => {
-    again();
+    if (made !== line) return;
+    line = null;
+    setTimeout(connect, AGAIN);
     // A WebSocket does not say why it is not let in; a request does.
-    const answer = await fetch(PATH).catch(() => null);
+    const answer = await fetch(import.meta.url, { method: "HEAD", cache: "no-store" }).catch(() => null);
     loggedOut = answer?.status === 401;
     show();
   });
