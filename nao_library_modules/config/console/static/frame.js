@@ -4,17 +4,20 @@
 const PATH = "/console/stop";
 const AGAIN = 700; // ms until a line that broke is opened again
 const SILENT = 1400; // ms without a beat, after which the console does not answer
-const PATIENCE = 3000; // ms until a line that does not open is given up for a new one
 const LOOK = 200; // ms between two looks
+const PATIENCE = 5000; // ms until a line that does not open is given up for a new one
+const PAGE_PATIENCE = 10000, PAGE_AGAIN = 1000; // ms, the same for the page's own connection, and the longest pause
 const BEATS = 60; // of which the console's clock is known
 const OPEN = ".q-dialog__inner, .q-menu"; // what Escape closes
 const STATES = { stopping: "Stopping…", stopped: "Stopped" };
 const WAY_OUT = "Press the robot's chest button twice, or run “nao stop”.";
-const GONE = `The console does not answer. What this page shows may be old, and Stop does not reach it. ${WAY_OUT}`;
-const HUNG = "This page has lost its console: what it shows may be old, and only Stop works.";
-const OUT = "You are logged out, and Stop does not reach the console: open its address again.";
+const TROUBLE = {
+  gone: `The console does not answer. What this page shows may be old, and Stop does not reach it. ${WAY_OUT}`,
+  hung: "This page has lost its console: what it shows may be old, and only Stop works.",
+  out: `You are logged out, and Stop does not reach the console: log in again. ${WAY_OUT}`,
+};
 
-const header = () => document.querySelector("[data-robot]");
+const header = () => document.querySelector(".nao-header");
 const robotShown = () => header()?.dataset.robot ?? "";
 const waiting = new Map(); // id of a stop -> what takes its answer
 const offsets = []; // s from this page's clock to the console's, as the last beats told
@@ -22,6 +25,9 @@ let line = null;
 let begun = 0; // ms, when the line was begun
 let beat = null; // the last one
 let heard = performance.now(); // ms, when it came
+let looked = performance.now(); // ms, the last look
+let lost = false; // whether the page has no connection of its own, which it had
+let state = ""; // of the console: a key of TROUBLE, or empty
 let owed = null; // id of a stop that did not reach the console
 let sent = false; // whether a stop is on its way
 let loggedOut = false;
@@ -32,11 +38,9 @@ function tell(message, type) {
 
 // --- the pulse
 
-// Whether the console answers: "" all is well, "hung" its pages do not, "gone" nothing does.
+// What is wrong with the console: a key of TROUBLE, or empty.
 export function trouble() {
-  if (loggedOut) return "out";
-  if (performance.now() - heard > SILENT) return "gone";
-  return beat && (!beat.pages || !window.socket?.connected) ? "hung" : "";
+  return state;
 }
 
 // Now, by the console's clock, in s; undefined before it is known.
@@ -51,26 +55,31 @@ function take(message) {
   }
   beat = message;
   heard = performance.now();
+  loggedOut = false;
   offsets.push(message.beat - heard / 1000);
   if (offsets.length > BEATS) offsets.shift();
-  if (message.state) sent = false;
   show();
 }
 
+function troubleNow() {
+  if (loggedOut) return "out";
+  if (performance.now() - heard > (beat ? SILENT : PATIENCE)) return "gone";
+  return beat && (!beat.pages || lost) ? "hung" : "";
+}
+
 function show() {
-  const now = trouble();
-  const before = document.body.dataset.console ?? "";
-  if (now !== before) {
-    document.body.dataset.console = now;
-    window.dispatchEvent(new CustomEvent("nao-console", { detail: { answers: !now } }));
-    if (now === "gone") reconnectPage();
+  const before = state;
+  state = troubleNow();
+  document.body.dataset.console = state;
+  if (state && !before) {
+    window.dispatchEvent(new CustomEvent("nao-console-lost"));
+    if (state === "gone") reconnectPage();
   }
-  const text = { gone: GONE, hung: HUNG, out: OUT }[now] ?? "";
-  setText(".nao-told", text);
-  const state = now === "gone" || now === "out" ? "No connection" : sent ? "Sent…" : STATES[beat?.state] ?? "";
-  setText(".nao-stop-state", state);
+  setText(".nao-told", TROUBLE[state] ?? "");
+  const reaches = state !== "gone" && state !== "out";
+  setText(".nao-stop-state", !reaches ? "No connection" : sent ? "Sent…" : STATES[beat?.state] ?? "");
   const button = document.querySelector(".nao-stop");
-  if (button && button.dataset.state !== (beat?.state ?? "")) button.dataset.state = beat?.state ?? "";
+  if (button) button.dataset.state = reaches ? beat?.state ?? "" : "";
 }
 
 function setText(css, text) {
@@ -80,7 +89,15 @@ function setText(css, text) {
 
 // The page's own connection is taken anew: what waits in it would come late.
 function reconnectPage() {
-  window.socket?.io?.engine?.close();
+  if (window.socket?.connected) window.socket.io.engine.close();
+}
+
+// As NiceGUI comes back, but for a console that does not answer: it loads the page again then, and nothing is left of it.
+function keepPage(socket) {
+  socket.off("connect_error");
+  socket.on("connect_error", (error) => error.message === "Implicit handshake failed" && location.reload());
+  socket.io.timeout(PAGE_PATIENCE);
+  socket.io.reconnectionDelayMax(PAGE_AGAIN);
 }
 
 // What acts is not sent while the console does not answer, and has a stamp else. Values of fields are let through: page
@@ -89,7 +106,7 @@ function guardPresses(socket) {
   const emit = socket.emit;
   socket.emit = function (name, message, ...rest) {
     if (name !== "event" || isValue(message)) return emit.call(socket, name, message, ...rest);
-    if (trouble()) {
+    if (state) {
       tell("Not sent: the console does not answer", "negative");
       return socket;
     }
@@ -104,10 +121,25 @@ function isValue(message) {
 }
 
 function look() {
-  if (window.socket && !window.socket.guarded) guardPresses(window.socket);
+  const now = performance.now();
+  heard += Math.max(now - looked - 2 * LOOK, 0); // this page was held up itself, and what came meanwhile comes now
+  looked = now;
+  if (window.socket && !window.socket.guarded) {
+    keepPage(window.socket);
+    guardPresses(window.socket);
+  }
+  lost = Boolean(window.did_handshake && !window.socket.connected);
   show();
-  const slow = line?.readyState === WebSocket.OPEN || performance.now() - begun > PATIENCE;
-  if (trouble() === "gone" && line && slow) connect(); // its end would be told late, as its messages are
+  if (!line && !begun && header()) {
+    connect();
+    new ResizeObserver(measure).observe(header());
+  }
+  const slow = line?.readyState === WebSocket.OPEN || now - begun > PATIENCE;
+  if (state === "gone" && line && slow) connect(); // its end would be told late, as its messages are
+}
+
+function measure() {
+  document.documentElement.style.setProperty("--nao-bar", `${header().offsetHeight}px`);
 }
 
 function connect() {
@@ -116,7 +148,6 @@ function connect() {
   const made = new WebSocket(`${location.origin.replace(/^http/, "ws")}${PATH}?${query}`);
   line = made;
   begun = performance.now();
-  offsets.length = 0;
   former?.close();
   made.addEventListener("open", () => {
     if (made === line && owed !== null) stop(owed); // late, but never lost
@@ -129,7 +160,7 @@ function connect() {
   made.addEventListener("close", async () => {
     if (made !== line) return;
     line = null;
-    setTimeout(connect, AGAIN);
+    setTimeout(() => line ?? connect(), AGAIN);
     // A WebSocket does not say why it is not let in; a request does.
     const answer = await fetch(import.meta.url, { method: "HEAD", cache: "no-store" }).catch(() => null);
     loggedOut = answer?.status === 401;
@@ -186,7 +217,7 @@ function leave(dialog) {
   else button.focus();
 }
 
-connect();
+look();
 setInterval(look, LOOK);
 window.addEventListener(
   "keydown",
@@ -199,6 +230,3 @@ window.addEventListener(
   { capture: true },
 );
 window.addEventListener("click", (event) => event.target.closest?.(".nao-stop") && stop(), { capture: true });
-new ResizeObserver(() => {
-  document.documentElement.style.setProperty("--nao-bar", `${header()?.offsetHeight ?? 0}px`);
-}).observe(document.querySelector(".nao-header") ?? document.body);

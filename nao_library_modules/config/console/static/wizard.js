@@ -141,7 +141,7 @@ class WizardLink extends EventTarget {
     window.addEventListener("keydown", (event) => this.down(event), until);
     window.addEventListener("keyup", (event) => this.up(event), { ...until, capture: true });
     window.addEventListener("nao-stop", () => this.stopOthers(), until);
-    window.addEventListener("nao-console", (event) => event.detail.answers || this.socket.close(), until);
+    window.addEventListener("nao-console-lost", () => this.socket.close(), until);
     window.addEventListener("blur", () => this.letGo(), until);
     window.addEventListener("pagehide", () => this.letGo(), until);
     document.addEventListener("visibilitychange", () => document.hidden && this.letGo(), until);
