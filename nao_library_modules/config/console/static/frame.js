@@ -116,7 +116,7 @@ function guardPresses(socket) {
 }
 
 function isValue(message) {
-  const events = window.mounted_app?.elements[message.id]?.events ?? [];
+  const events = mounted_app.elements[message.id]?.events ?? []; // of nicegui.js
   return events.some((each) => each.listener_id === message.listener_id && each.type.startsWith("update:"));
 }
 
