@@ -240,6 +240,7 @@ class RobotClient:
         """Another program has ended all goals; what was wanted before is not sent any more."""
         with self._lock:
             self._stops += 1
+        self._last_stop.begin(self.runs)
         self.events.add("stopped", f"everything was told to stop by {by}", by)
 
     @property
