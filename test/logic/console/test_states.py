@@ -75,8 +75,9 @@ def test_each_fall_is_an_event_and_the_robot_has_fallen_until_it_stands():
     assert robot.texts == ["has fallen"] * 2 and body.stance.fallen
 
 
-def test_the_first_fall_since_the_start_of_the_robot_is_an_event():
-    robot = ToldRobot()
+@pytest.mark.parametrize("keys", [{}, {FALLEN: "false"}])
+def test_the_first_fall_since_the_start_of_the_robot_is_an_event(keys):
+    robot = ToldRobot(**keys)
     watched(robot)
     robot.tell(FALLEN, "true")
     assert robot.texts == ["has fallen"]

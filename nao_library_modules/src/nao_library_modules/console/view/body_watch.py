@@ -150,9 +150,9 @@ class BodyWatch:
         self.stance.take(told.data)
 
     def _on_fall(self, told: Any) -> None:
+        news = self._fall.take(told.data, told)
         if told.data.lower() not in ("true", "1", "1.0"):
             return
-        news = self._fall.take(True, told)
         self.stance.fell(news)
         if news:
             self._tell(felt("has fallen", fallen=True), told.header.stamp.to_sec())
