@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
-from played_study import PlayedRobot, Trial
+from played_study import LIMIT, PlayedRobot, Trial
 from scripted_disk import ScriptedDisk
 
 from nao_library_modules.cli.app import nao
@@ -287,3 +287,32 @@ def test_a_run_that_was_stopped_continues_where_somebody_says_so(stopped_run, mo
     told, robot, _ = stopped_run()
     assert [run.command.chain[0][1]["str_param"] for run in robot.runs] == ["One", "Two", "Two"]
     assert told.exit_code == 1
+
+
+def test_a_choice_that_comes_when_its_step_was_stopped_is_told_and_the_trial_stays(tmp_path, monkeypatch):
+    robot = PlayedRobot()
+    studies = Studies(StudyFiles(tmp_path))
+    asked = []
+
+    def answer(question, **_):
+        asked.append(question)
+        if len(asked) == 1:
+            stopping = threading.Thread(target=robot.stop, args=("/nao_stop",))
+            stopping.start()
+            stopping.join(LIMIT)
+            runner = studies.running("/")
+            while runner.state.current is not None:
+                runner.wait(0.01)
+            return "good"
+        return "a"
+
+    monkeypatch.setattr(study_commands, "_studies", lambda settings, files: (studies, robot))
+    monkeypatch.setattr(module, "settings", lambda _: {})
+    monkeypatch.setattr(study_commands, "_can_ask", lambda: True)
+    monkeypatch.setattr(study_commands.click, "prompt", answer)
+    file = tmp_path / "asks.yaml"
+    file.write_text("name: asks\nphases: [{steps: [{wizard: Well, choices: [good]}]}]\n")
+    words = ["study", "run", str(file), "--participant", "P01", "--studies", str(tmp_path)]
+    told = CliRunner().invoke(nao, words)
+    assert "there is no choice 'good' at this moment" in told.output
+    assert asked == ["Well", "the trial was stopped. c: continue, n: next, a: abort"]

@@ -6,6 +6,7 @@ import json
 import math
 import threading
 from dataclasses import dataclass, field
+from functools import partial
 from types import SimpleNamespace
 
 import pytest
@@ -19,6 +20,7 @@ from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from nao_library_modules.console.pages.wizard_page import WizardParts
 from nao_library_modules.console.robots.errors import Stopped
 from nao_library_modules.console.robots.events import EventStream
+from nao_library_modules.console.wizard.check import doubts
 from nao_library_modules.console.wizard.desk import WizardDesk
 from nao_library_modules.console.wizard.errors import EditConflict, PressRefused
 from nao_library_modules.console.wizard.head_pointer import HeadPointer
@@ -30,7 +32,9 @@ from nao_library_modules.console.wizard.reader import read_layout
 from nao_library_modules.console.wizard.session import PageRights, WizardSession, read_message
 from nao_library_modules.console.wizard.texts import filled_text, names_in
 from nao_library_modules.console.wizard.wire import layout_message
+from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_modules.nao.gaze import load_head
+from nao_library_msgs.srv import DescribeFunctionsRequest
 
 SHIPPED = config_file("console/console.yaml")
 TEXT = """\
@@ -266,6 +270,21 @@ def test_a_file_is_checked_in_a_shell_and_nothing_is_started(tmp_path, line, tol
     answer = CliRunner().invoke(nao, ["console", "--check", str(path)])
     assert answer.exit_code == 1
     assert f"{path}:4: " in answer.output and told in answer.output
+
+
+@pytest.mark.parametrize(
+    "action, told",
+    [
+        ("walk_to: [30, 0, 0]", "field values: 30 is unusual: usual is -10..10 m"),
+        ("call: nao_audio_out.say, with: {str_param: Hi, volume: 500}", "field volume: 500.0 is not allowed: 0..1"),
+    ],
+)
+def test_the_check_of_the_page_knows_limits(action, told):
+    describe = {each.name: partial(each.service.answer, DescribeFunctionsRequest()) for each in offline_servers()}
+    robot = SimpleNamespace(namespace="/", describe=lambda server: describe[server]())
+    text = f"groups: [{{group: Body, buttons: [{{label: Go, {action}}}]}}]"
+    (problem,) = doubts(read_layout(text), robot, None)
+    assert told in problem.text
 
 
 def test_a_file_that_is_right_is_told_as_such(tmp_path):

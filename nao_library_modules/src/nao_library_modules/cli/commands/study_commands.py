@@ -418,6 +418,7 @@ def _play(
 
     `troubles`: what was wrong with its log is added.
     """
+    from ...console.study.errors import StudyError
     from ...console.study.protocol import ChoiceStep, SenseStep
     from ...console.study.state import FINISHED, HELD, PAUSED
 
@@ -457,7 +458,11 @@ def _play(
                 click.echo(f"  {outcome.path} {outcome.text}: waiting", err=settings.json)
             elif isinstance(step, ChoiceStep):
                 asked = place
-                runner.choose(_chosen(step, outcome.text, choices), "nao")
+                choice = _chosen(step, outcome.text, choices)
+                try:
+                    runner.choose(choice, "nao")
+                except StudyError as error:  # its time was up, or it was stopped, while somebody was asked
+                    click.echo(f"  {error}", err=True)
     except (KeyboardInterrupt, click.Abort):
         _abort(runner)
         troubles += log_teller.end(runner)

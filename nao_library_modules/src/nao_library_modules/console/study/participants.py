@@ -164,6 +164,8 @@ def take_back(files: StudyFiles, study: str, pseudonym: str, by: str = "", robot
             left.put()
         del numbers[pseudonym]
         files.write_participants(study, numbers)
+    for trial, _ in opened:
+        write_events_table(trial.path)
     return number
 
 

@@ -50,17 +50,7 @@ class CommandCheck:
             return []
         if command.server == BEHAVIORS:
             return [text for name, fields in command.chain if name == RUN for text in self._behavior(fields)]
-        types = type_of(command.server, self._describe)
-        if not types.ours or _LATER.search(repr(command.chain)):
-            return []
-        return self._goal(command, types)
-
-    def _goal(self, command: RobotCommand, types: ServerType) -> list[str]:
-        goal = goal_of(command, types).goal
-        single = len(command.chain) == 1
-        found = [each.text if single else str(each) for each in self._tables.check_goals(types.name, [goal]).problems]
-        unusual = [] if command.unusual else self._tables.unusual(types, goal.functions)
-        return [*found, *(str(each.cause if single else each) for each in unusual)]
+        return value_problems(command, type_of(command.server, self._describe), self._tables)
 
     def _behavior(self, fields: Mapping[str, Any]) -> list[str]:
         name, given = str(fields.get("str_param", "")), list(fields.get("parameters", []))
@@ -90,6 +80,20 @@ class CommandCheck:
         raise NotThere(
             f"there is no server {server!r} in this package, and none of that name runs{of_those(server, names)}"
         )
+
+
+def value_problems(command: RobotCommand, types: ServerType, tables: FunctionTables) -> list[str]:
+    """What is wrong with the values of a command, as far as it is known without its server, and what is not usual.
+
+    `types`: of its server. `tables`: functions of the servers.
+    """
+    if not types.ours or _LATER.search(repr(command.chain)):
+        return []
+    goal = goal_of(command, types).goal
+    single = len(command.chain) == 1
+    found = [each.text if single else str(each) for each in tables.check_goals(types.name, [goal]).problems]
+    unusual = [] if command.unusual else tables.unusual(types, goal.functions)
+    return [*found, *(str(each.cause if single else each) for each in unusual)]
 
 
 @lru_cache(maxsize=None)

@@ -10,8 +10,8 @@ from naoqi.errors import NaoError
 from ...base.suggestion import of_those
 from ...behaviors.language.errors import Problem
 from ...behaviors.language.servers import FunctionTables
-from ..robots.commands import BEHAVIORS, RUN, RobotCommand, command_problems, goal_of, type_of
-from ..timeline.command_check import CommandCheck
+from ..robots.commands import BEHAVIORS, RUN, RobotCommand, command_problems, type_of
+from ..timeline.command_check import CommandCheck, value_problems
 from .model import WizardButton, WizardLayout
 
 
@@ -65,8 +65,6 @@ def _problems(button: WizardButton, robot: Any, behaviors: Collection[str] | Non
         wanted = str(fields.get("str_param", ""))
         if name == RUN and wanted and wanted not in behaviors and not button.names:
             problems.append(f"there is no behavior {wanted!r}{of_those(wanted, behaviors)}")
-    if not problems and not command.unusual:
-        types = type_of(command.server, robot.describe)
-        unusual = tables.unusual(types, goal_of(command, types).goal.functions)
-        problems += [str(each.cause if len(command.chain) == 1 else each) for each in unusual]
+    if not problems and command.server != BEHAVIORS:
+        problems += value_problems(command, type_of(command.server, robot.describe), tables)
     return problems
