@@ -121,7 +121,7 @@ class TrialState:
         """How many steps were begun, which are its rows in the table, and how they ended, for people."""
         ends = Counter(outcome.outcome or "not ended" for outcome in self.outcomes)
         told = ", ".join(f"{count} {end}" for end, count in ends.items())
-        return f"{len(self.outcomes)} steps" + (f": {told}" if told else "")
+        return f"{len(self.outcomes)} step{'' if len(self.outcomes) == 1 else 's'}" + (f": {told}" if told else "")
 
     @property
     def notes(self) -> int:

@@ -48,7 +48,7 @@ class ParticipantsCard:
     def _row(self, each: Participant, protocol: StudyProtocol) -> None:
         number = "" if protocol.blind else f"number {each.number}, "
         with ui.row().classes("items-center"):
-            ui.label(f"{each.pseudonym}: {number}{each.trials} trials")
+            ui.label(f"{each.pseudonym}: {number}{each.trials} trial{'' if each.trials == 1 else 's'}")
             field = ui.input("Right pseudonym").props(
                 f'dense maxlength=64 aria-label="Right pseudonym of {each.pseudonym}"'
             )
