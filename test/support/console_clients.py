@@ -106,6 +106,13 @@ class Page:
     def type(self, text, **props):
         self.event(self.element(**props), "update:value", text)
 
+    def write(self, text, label):
+        """Replace all of a text in an editor of code."""
+        number = self.element(**{"aria-label": label})
+        before = len(self._elements[str(number)]["props"]["value"] or "")
+        self.event(number, "update:value", {"sections": [before, len(text)], "inserted": [text.split("\n")]})
+        self._elements[str(number)]["props"]["value"] = text
+
     def click(self, label):
         self.event(self.element(label=label), "click", {})
 
@@ -152,7 +159,7 @@ def pasted_yaml(observer, characters=270_000):
         while not over.wait(0.2):
             count += 1
             with suppress(ConnectionClosed):
-                page.type(f"{text}# {count}\n", label="Protocol", autogrow=True)
+                page.write(f"{text}# {count}\n", "Protocol")
                 page.click("Check")
 
     thread = threading.Thread(target=paste, daemon=True)

@@ -47,7 +47,7 @@ OPEN_NOD = click("nod", ".q-item")
 PUT_IN = (OPEN_NOD, click("Put in"))
 OPEN_POSTURE = (("type", "input[aria-label='Search functions']", "goToPosture"), click("goToPosture", ".q-item"))
 OVERLAYS = {
-    "alarm_bar.AlarmBar.__init__.footer": None,  # stands on every page
+    "frame.framed.footer": None,  # stands on every page
     "frame._choice_of_robot.select": None,  # is there where several robots are: test_console_robots.py opens it
     "frame.sure.dialog": Overlay("/study", (click("Start trial"), click("Abort"))),
     "insert_dialog.InsertDialog.__init__.dialog": Overlay("/behaviors", PUT_IN),

@@ -44,9 +44,10 @@ class FakeGoal:
         self._machine = CommStateMachine(NaoLedActionGoal(goal_id=self._id), on_transition, None, None, self._on_cancel)
         self.handle = ClientGoalHandle(self._machine)
 
-    def tell(self, *states):
+    def tell(self, *states, text=""):
         """A status message: the goal in this state, or without it."""
-        self._machine.update_status(GoalStatusArray(status_list=[GoalStatus(self._id, state, "") for state in states]))
+        told = [GoalStatus(self._id, state, text) for state in states]
+        self._machine.update_status(GoalStatusArray(status_list=told))
 
     def end(self, state, text=""):
         """The result."""

@@ -108,7 +108,7 @@ def test_the_look_at_pages_finds_what_is_called_in_the_loop(text, right):
 
 def test_a_press_that_comes_late_is_told_and_not_passed_on():
     page, passed, told = object.__new__(PageContext), [], []
-    page._handle, page.notify = passed.append, lambda text, kind: told.append(text)
+    page._handle_event, page.failed = passed.append, lambda _, reason: told.append(reason)
     late, fresh, typed = {"id": 1, "at": console_time() - 2 * LATE}, {"id": 2, "at": console_time()}, {"id": 3}
     for event in (late, fresh, typed):
         page._take_event(event)

@@ -18,15 +18,16 @@ from nao_library_modules.cli.app import nao
 from nao_library_modules.console.access.pulse import LATE, console_time
 from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from nao_library_modules.console.pages.wizard_page import WizardParts
-from nao_library_modules.console.robots.errors import Stopped
+from nao_library_modules.console.robots.errors import NotThere, Stopped
 from nao_library_modules.console.robots.events import EventStream
+from nao_library_modules.console.robots.presses import Press, Presses
 from nao_library_modules.console.wizard.check import doubts
 from nao_library_modules.console.wizard.desk import WizardDesk
 from nao_library_modules.console.wizard.errors import EditConflict, PressRefused
 from nao_library_modules.console.wizard.head_pointer import HeadPointer
 from nao_library_modules.console.wizard.key_names import BadKey, key_of
 from nao_library_modules.console.wizard.layout_file import CurrentLayout, LayoutFile
-from nao_library_modules.console.wizard.model import hex_colour, text_colour
+from nao_library_modules.console.wizard.model import BUTTON_WORDS, hex_colour, text_colour
 from nao_library_modules.console.wizard.pointing import CameraLens, dragged, head_limits, looked_at
 from nao_library_modules.console.wizard.reader import read_layout
 from nao_library_modules.console.wizard.session import PageRights, WizardSession, read_message
@@ -55,14 +56,16 @@ groups:
 
 @dataclass
 class FakeRun:
+    id: str = "goal"
     state: str = "active"
+    text: str = ""
     listeners: list = field(default_factory=list)
 
     def on_end(self, listener):
         self.listeners.append(listener)
 
-    def end(self, state):
-        self.state = state
+    def end(self, state, text=""):
+        self.state, self.text = state, text
         for listener in self.listeners:
             listener(self)
 
@@ -75,12 +78,12 @@ class FakeRobot:
         self.stops = 0
         self.came = threading.Semaphore(0)
 
-    def send(self, command, by="", label="", stops=None):
+    def send(self, command, by="", label="", stops=None, patience=0.0):
         if stops not in (None, self.stops):
             raise Stopped(f"stopped before {label}")
         return self._sent(command)
 
-    def send_goal(self, goal, by="", label="", stops=None):
+    def send_goal(self, goal, by="", label="", stops=None, patience=0.0):
         if stops not in (None, self.stops):
             raise Stopped(f"stopped before {label}")
         return self._sent(goal)
@@ -106,7 +109,7 @@ def layout():
 
 @pytest.fixture
 def desk(layout):
-    desk = WizardDesk()
+    desk = WizardDesk(Presses())
     desk.take_names(layout, "/")
     return desk
 
@@ -118,12 +121,13 @@ def robot():
 
 def press(desk, robot, layout, label, page="page", **more):
     group, button = next(pair for pair in layout.buttons() if pair[1].label == label)
-    return desk.press(robot, group, button, "eva", page, **more)
+    by_eva = Press(label, "eva", "/wizard", robot.namespace, group.title, streams=(robot.events,))
+    return desk.press(robot, group, button, by_eva, page, **more)
 
 
 def state(desk, layout, label):
     button = next(button for _, button in layout.buttons() if button.label == label)
-    return desk.states(layout, lambda _: "/").get(button.id, "")
+    return desk.states(layout, lambda _: "/", "eva").get(button.id, "")
 
 
 def problems(text):
@@ -245,13 +249,13 @@ def test_a_file_that_is_wrong_from_the_start_is_a_page_without_buttons(tmp_path)
     path.write_text("groups: wrong")
     current = CurrentLayout(LayoutFile(path, SHIPPED))
     assert current.problems and list(current.layout.buttons()) == []
-    assert WizardDesk().values(current.layout, "/") == {}
+    assert WizardDesk(Presses()).values(current.layout, "/") == {}
 
 
 def test_the_mistakes_of_a_file_are_in_the_terminal_when_the_console_starts(tmp_path, capsys):
     path = tmp_path / "console.yaml"
     path.write_text("groups: wrong")
-    WizardParts(SimpleNamespace(settings=SimpleNamespace(buttons=path)))
+    WizardParts(SimpleNamespace(settings=SimpleNamespace(buttons=path), presses=Presses()))
     assert f"{path}: groups: a list is wanted" in capsys.readouterr().err
 
 
@@ -407,16 +411,16 @@ def test_a_repetition_ends_with_a_failure_a_stop_and_its_page(end, desk, robot, 
     elif end == "page":
         desk.leave("page")
     robot.runs[0].end("aborted" if end == "failure" else "succeeded")
-    assert state(desk, layout, "Again") == "" and len(robot.sent) == 1
+    assert state(desk, layout, "Again") == ("aborted" if end == "failure" else "") and len(robot.sent) == 1
 
 
 def ended_repetition(robot, layout, desk):
     """End the first run, and wait for the note that there are no more repetitions; its text."""
     told, notes = threading.Event(), []
-    robot.events.subscribe(lambda event: event.kind == "note" and (notes.append(event.text), told.set()))
+    robot.events.subscribe(lambda event: event.kind == "failed" and (notes.append(event.text), told.set()))
     robot.runs[0].end("succeeded")
     assert told.wait(60.0)
-    assert state(desk, layout, "Again") == "" and len(robot.sent) == 1
+    assert state(desk, layout, "Again") == "not sent" and len(robot.sent) == 1
     return notes[0]
 
 
@@ -446,6 +450,36 @@ def test_a_designator_goes_to_the_plans(desk, robot, layout):
     assert "At lab" in robot.sent[0].goal.designator
 
 
+@pytest.mark.parametrize("end, word", [("aborted", "failed"), ("rejected", "refused"), ("preempted", "stopped"),
+                                      ("recalled", "stopped before it began"), ("lost", "lost")])  # fmt: skip
+def test_a_button_says_how_its_goal_has_failed_until_its_user_has_looked(end, word, desk, robot, layout):
+    press(desk, robot, layout, "Once")
+    robot.runs[0].end(end, "no voice")
+    assert state(desk, layout, "Once") == end and BUTTON_WORDS[end] == word
+    (failed,) = desk.presses.unseen("eva")
+    assert (failed.press.label, failed.reason) == ("Once", "no voice")
+    event = robot.events.last()[-1]
+    assert (event.kind, event.data["button"], event.data["state"]) == ("failed", "Once", end)
+    desk.presses.seen("eva")
+    assert state(desk, layout, "Once") == "used"
+
+
+def test_a_button_that_failed_and_runs_again_runs(desk, robot, layout):
+    desk.set_values("/", {"participant": "Ada"})
+    for _ in range(2):
+        press(desk, robot, layout, "Hello")
+    robot.runs[0].end("aborted")
+    assert state(desk, layout, "Hello") == "runs"
+    robot.runs[1].end("succeeded")
+    assert state(desk, layout, "Hello") == "aborted"
+
+
+def test_a_repetition_that_fails_says_that_it_is_over(desk, robot, layout):
+    press(desk, robot, layout, "Again")
+    robot.runs[0].end("lost", "it died")
+    assert [each.reason for each in desk.presses.unseen("eva")] == ["it died; no more repetitions"]
+
+
 def test_free_texts_are_filled_and_kept_each_once_the_newest_first(desk, robot):
     for text in ("One.", "At {place}", "One."):
         desk.say(robot, text, False, "eva")
@@ -460,9 +494,9 @@ def test_free_texts_are_filled_and_kept_each_once_the_newest_first(desk, robot):
 
 @pytest.fixture
 def pages(desk, robot, layout):
-    made = SimpleNamespace(refusal="", known=True, points=[], other=FakeRobot("/nao2/"), closed=[])
+    made = SimpleNamespace(refusal="", known=True, operator=True, points=[], other=FakeRobot("/nao2/"), closed=[])
     pointer = SimpleNamespace(point=lambda *a: made.points.append(a), close=lambda: made.closed.append(True))
-    rights = PageRights("eva", lambda _: made.refusal, lambda: made.known)
+    rights = PageRights("eva", lambda _: made.refusal, lambda: made.known, lambda: made.operator)
     found = {}
 
     def find(name):
@@ -470,6 +504,7 @@ def pages(desk, robot, layout):
 
     made.session = WizardSession("page", robot, desk, lambda: layout, rights, find, found.get, lambda _robot: pointer)
     made.take = lambda message: made.session.take(*read_message(json.dumps(message)))
+    made.failed = lambda: [failed.reason for failed in desk.presses.unseen("eva")]
     return made
 
 
@@ -510,11 +545,60 @@ def test_a_stop_while_a_velocity_is_passed_on_ends_it(pages, robot):
     assert robot.walks == [(1.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
 
 
+def test_a_press_that_comes_late_is_not_sent_and_says_so(pages, desk, robot, layout):
+    for age in (60.0, 0.0):
+        pages.take({"press": "2", "revision": layout.revision, "at": console_time() - age})
+    assert len(robot.sent) == 1 and "late" in pages.failed()[0]
+
+
+def test_a_button_that_stops_is_not_refused_because_it_comes_late(pages, robot, layout):
+    pages.take({"press": "4", "revision": layout.revision, "at": console_time() - 60.0})
+    assert robot.stops == 1
+
+
+def test_a_press_that_cannot_be_sent_says_so_on_its_button(pages, desk, robot, layout):
+    robot.send = lambda *_, **__: (_ for _ in ()).throw(NotThere("the server nao_audio_out does not run"))
+    assert pages.take({"press": "2", "revision": layout.revision, "via": "key"}) == ""
+    assert pages.failed() == ["the server nao_audio_out does not run"]
+    assert pages.session.states() == {"2": "not sent"}
+    event = robot.events.last()[-1]
+    assert (event.kind, event.data["button"], event.data["via"]) == ("failed", "Once", "key")
+
+
+def test_a_button_of_another_robot_fails_on_the_page_where_it_was_pressed(pages, robot, layout):
+    pages.take({"press": "6", "revision": layout.revision})
+    pages.other.runs[0].end("aborted", "no voice")
+    assert pages.failed() == ["no voice"] and pages.session.states() == {"6": "aborted"}
+    for events in (robot.events, pages.other.events):
+        assert [event.kind for event in events.last()] == ["pressed", "failed"]
+        assert events.last()[-1].data["of"] == "/nao2/"
+
+
+def test_a_robot_that_is_not_there_is_told_on_the_button_that_is_for_it(pages, layout):
+    pages.session._find = lambda name: (_ for _ in ()).throw(NotThere(f"there is no robot {name!r}"))
+    pages.take({"press": "6", "revision": layout.revision})
+    assert pages.failed() == ["there is no robot 'nao2'"] and pages.session.states() == {"6": "not sent"}
+
+
+def test_an_error_that_nobody_has_thought_of_is_told_as_well(pages, robot, layout):
+    robot.send = lambda *_, **__: (_ for _ in ()).throw(OSError("no route"))
+    with pytest.raises(OSError):
+        pages.take({"press": "2", "revision": layout.revision})
+    assert "no route" in pages.failed()[0]
+
+
+def test_what_an_observer_tries_is_not_in_the_log(pages, robot, layout):
+    pages.refusal, pages.operator = "observers look on", False
+    pages.take({"press": "2", "revision": layout.revision})
+    assert pages.failed() == ["observers look on"] and robot.events.last() == []
+
+
 def test_a_press_that_has_waited_over_a_stop_is_refused(pages, robot, layout):
     arrived = pages.session.stops()
     robot.stop()
     kind, message = read_message(json.dumps({"press": "2", "revision": layout.revision}))
-    assert pages.session.take(kind, message, arrived) and not robot.sent
+    pages.session.take(kind, message, arrived)
+    assert "stopped" in pages.failed()[0] and not robot.sent
 
 
 def test_after_the_page_has_left_nothing_is_done_but_a_stop(pages, robot, layout):
@@ -538,16 +622,17 @@ def test_a_repetition_whose_page_leaves_while_it_begins_is_sent_once(pages, desk
         pages.session.leave()
         return allowed(namespace)
 
-    pages.session._rights = PageRights("eva", leaving, lambda: True)
+    pages.session._rights = PageRights("eva", leaving, lambda: True, lambda: True)
     pages.take({"press": "3", "revision": layout.revision})
     assert "page is gone" in ended_repetition(robot, layout, desk)
 
 
 def test_who_may_not_move_the_robot_does_not(pages, robot, layout):
     pages.refusal = "bob holds the controls"
-    for message in ({"walk": [1, 0, 0]}, {"press": "2", "revision": layout.revision},
-                    {"head": {"kind": "click", "camera": "top", "x": 0, "y": 0}}):  # fmt: skip
+    for message in ({"walk": [1, 0, 0]}, {"head": {"kind": "click", "camera": "top", "x": 0, "y": 0}}):
         assert pages.take(message) == "bob holds the controls"
+    pages.take({"press": "2", "revision": layout.revision})
+    assert pages.failed() == ["bob holds the controls"]
     assert not robot.walks and not robot.sent and not pages.points
 
 
@@ -558,8 +643,9 @@ def test_a_stop_button_works_without_the_controls(pages, robot, layout):
 
 
 def test_a_press_of_a_former_layout_is_refused(pages, robot):
-    assert "changed" in pages.take({"press": "2", "revision": "another"})
-    assert not robot.sent
+    pages.take({"press": "2", "revision": "another", "label": "Hello", "group": "Words"})
+    (failed,) = pages.session._desk.presses.unseen("eva")
+    assert "changed" in failed.reason and failed.press.label == "Hello" and not robot.sent
 
 
 def test_a_button_of_another_robot_goes_there_and_a_stop_too(pages, robot, layout):
@@ -574,15 +660,15 @@ def test_a_button_of_another_robot_goes_there_and_a_stop_too(pages, robot, layou
 def test_who_looks_on_may_stop_and_do_nothing_else(pages, robot, layout):
     pages.refusal = "observers look on"
     assert pages.take({"press": "4", "revision": layout.revision}) == "" and robot.stops == 1
-    assert pages.take({"press": "2", "revision": layout.revision}) == "observers look on" and not robot.sent
+    pages.take({"press": "2", "revision": layout.revision})
+    assert pages.failed() == ["observers look on"] and not robot.sent
 
 
 def test_what_waited_in_a_network_that_was_cut_moves_nothing(pages, robot, layout):
     old = console_time() - 2 * LATE
-    for message in ({"walk": [1, 0, 0]}, {"press": "2", "revision": layout.revision},
-                    {"head": {"kind": "click", "camera": "top", "x": 0, "y": 0}}):  # fmt: skip
+    for message in ({"walk": [1, 0, 0]}, {"head": {"kind": "click", "camera": "top", "x": 0, "y": 0}}):
         assert "late" in pages.take({**message, "at": old})
-    assert not robot.walks and not robot.sent and not pages.points
+    assert not robot.walks and not pages.points
 
 
 def test_a_stop_and_the_end_of_a_walk_are_never_too_late(pages, robot, layout):

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
 import rospy
+from actionlib_msgs.msg import GoalID
 from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
+from console_clients import stopped
+from ros_stack import start_program
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
@@ -15,6 +19,7 @@ from nao_library_actions.msg import (
     NaoAudioOutActionResult,
     NaoBehaviorActionGoal,
     NaoBehaviorActionResult,
+    PerformDesignatorActionGoal,
 )
 from nao_library_msgs.srv import SetMemory
 from nao_sim_bridge.testing import wait_until
@@ -198,6 +203,93 @@ def test_a_key_presses_its_button_but_not_in_a_field(browser, heard):
     assert texts(goals.wait()) == [("say", "Yes.")]
 
 
+def see_all(browser):
+    """Take away the lines of what has failed."""
+    browser.click(".nao-failed button", "All seen" if browser.all(".nao-failed button", "All seen") else "Seen")
+    browser.until(lambda: not browser.all(".nao-failed button"), "no line of what has failed")
+
+
+def ask_for_yes(browser):
+    browser.open("/wizard")
+    browser.one("nao-wizard-buttons button")
+    return "nao-wizard-buttons button", "Yes"
+
+
+def ask_for_a_word(browser):
+    browser.open("/functions")
+    browser.type("input[aria-label='Search functions']", "nao_audio_out.say")
+    browser.click(".q-item[aria-label^='nao_audio_out.say:']")
+    browser.type("input[aria-label='str_param'], textarea[aria-label='str_param']", "Yes.")
+    return "button", "Send"
+
+
+@pytest.mark.parametrize("prepare", [ask_for_yes, ask_for_a_word])
+def test_what_is_pressed_while_the_console_does_not_answer_is_said_and_never_sent(prepare, program, browser, heard):
+    goals = heard("nao_audio_out/goal", NaoAudioOutActionGoal)
+    css, text = prepare(browser)
+
+    def refused():
+        browser.click(css, text)
+        return browser.all(".nao-unsent", "not sent")
+
+    with stopped(program.process.pid):
+        browser.until(refused, "that it is not sent")
+    browser.until(
+        lambda: not browser.all(".nao-unsent p") and browser.all(".nao-failed", "not sent"), "what was pressed"
+    )
+    assert goals.messages == []
+    see_all(browser)
+    browser.click(css, text)
+    assert texts(goals.wait()) == [("say", "Yes.")] and len(goals.messages) == 1
+
+
+def test_a_goal_that_fails_says_so_on_its_button_until_somebody_has_looked(browser, heard):
+    """Cut short by another program."""
+    goals, cancels = (
+        heard("NaoBehavior/goal", NaoBehaviorActionGoal),
+        rospy.Publisher("NaoBehavior/cancel", GoalID, queue_size=1),
+    )
+    browser.open("/wizard")
+    browser.click("nao-wizard-buttons button", "Introduction")
+    goal = goals.wait()
+    wait_until(lambda: cancels.get_num_connections(), LIMIT, "who cancels it")
+    cancels.publish(GoalID(id=goal.goal_id.id))
+    failed = "nao-wizard-buttons button[data-failed]"
+    browser.until(lambda: browser.all(failed, "Introduction") and browser.all(".nao-failed", "Introduction"), "both")
+    browser.open("/functions")
+    browser.until(lambda: browser.all(".nao-failed", "Introduction"), "the line on another page")
+    see_all(browser)
+    browser.open("/wizard")
+    browser.one("nao-wizard-buttons button", "Introduction")
+    assert not browser.all(failed)
+
+
+HANGING = """
+import threading, actionlib, rospy
+from nao_library_actions.msg import PerformDesignatorAction
+rospy.init_node("hanging", anonymous=True)
+hang = lambda _: threading.Event().wait()
+actionlib.SimpleActionServer("perform_designator", PerformDesignatorAction, hang, auto_start=False).start()
+rospy.spin()
+"""
+
+
+def test_a_goal_whose_server_dies_is_lost_and_says_what_died(browser, heard):
+    server = start_program(sys.executable, "-c", HANGING)
+    try:
+        goals = heard("perform_designator/goal", PerformDesignatorActionGoal)
+        browser.open("/wizard")
+        browser.click("nao-wizard-buttons button", "Look to the left")
+        goals.wait()
+        browser.one("nao-wizard-buttons button[data-state=runs]", "Look to the left")
+    finally:
+        server.kill()
+        server.wait(LIMIT)
+    browser.one("nao-wizard-buttons button[data-failed]", "lost")
+    browser.one(".nao-failed", "the server /perform_designator died")
+    see_all(browser)
+
+
 def test_it_walks_while_a_key_is_held_and_no_longer(stack, browser):
     start = stack.robot
     browser.open("/wizard")
@@ -229,7 +321,7 @@ def test_escape_ends_everything_on_every_page(browser, heard):
 
 
 PLACES = """
-const strip = document.querySelector(".nao-alarms").getBoundingClientRect();
+const strip = document.querySelector(".nao-strip").getBoundingClientRect();
 return [...document.querySelectorAll(".nao-main button, .nao-stop")].map((each) => {
   const { x, y, bottom } = each.getBoundingClientRect();
   return [each.innerText, x, y, bottom <= strip.top || y >= innerHeight];
@@ -270,13 +362,67 @@ def test_an_observer_sees_and_moves_nothing(program, heard):
         other.enter(program.observer)
         other.open("/wizard")
         other.click("nao-wizard-buttons button", "Yes")
-        other.until(lambda: other.all("nao-wizard-buttons .notice", "observers look on"), "why nothing happens")
+        other.until(lambda: other.all(".nao-failed", "Yes: not sent: observers look on"), "why nothing happens")
         other.type("input[aria-label='Say']", "Not said")
         other.keys(Keys.ENTER)
         other.reads("observers look on")
         assert goals.messages == []
     finally:
         other.close()
+
+
+# --- what is typed ----------------------------------------------------------------------------------------------------
+
+DRAFTS = "return Object.keys(localStorage).filter((name) => name.startsWith('nao-draft')).map((n) => localStorage[n]);"
+CODE = "return [...document.querySelectorAll('.cm-content')].map((each) => each.innerText).join();"
+
+
+def kept(browser, text):
+    """Wait until the browser keeps a text that is typed."""
+    browser.until(lambda: any(text in each for each in browser.script(DRAFTS)), f"a draft with {text}")
+
+
+def test_a_protocol_that_is_not_saved_is_offered_again_and_its_mistakes_stand_beside_their_lines(browser):
+    browser.open("/study", protocol="ten_steps")
+    browser.reads("One trial of ten steps")
+    browser.click(".q-expansion-item", "Protocol as YAML")
+    browser.click(".cm-content")
+    browser.keys("nonsense: 3", Keys.ENTER)
+    kept(browser, "nonsense")
+    browser.click("button", "Check")
+    browser.until(lambda: browser.all(".nao-wrong", "nonsense"), "the mistake beside its line")
+    browser.reads("cannot be run")
+    assert "Nothing wrong" not in browser.text()
+    browser.open("/study", protocol="ten_steps")
+    browser.click(".nao-draft button", "Show the draft")
+    browser.until(lambda: "nonsense: 3" in browser.script(CODE), "the draft")
+    browser.open("/study", protocol="ten_steps")
+    browser.click(".nao-draft button", "Throw it away")
+    browser.until(lambda: not browser.all(".nao-draft p") and browser.script(DRAFTS) == [], "no draft")
+
+
+def test_buttons_that_were_edited_are_offered_when_the_editor_is_opened_again(browser):
+    browser.open("/wizard")
+    browser.click("button", "Edit")
+    browser.click(".cm-content")
+    browser.keys("# typed in vain?")
+    browser.click("button", "Close")
+    browser.click("button", "Edit")
+    browser.click(".nao-draft button", "Show the draft")
+    browser.until(lambda: "# typed in vain?" in browser.script(CODE), "the draft")
+    browser.click("button", "Close")
+    browser.script("localStorage.clear()")
+
+
+def test_a_text_that_was_not_said_is_offered_again(browser):
+    browser.open("/wizard")
+    browser.type("input[aria-label='Say']", "Half a sentence")
+    kept(browser, "Half a sentence")
+    browser.open("/wizard")
+    browser.click(".nao-draft button", "Show the draft")
+    said = "return document.querySelector(\"input[aria-label='Say']\").value"
+    browser.until(lambda: browser.script(said) == "Half a sentence", "the draft")
+    browser.script("localStorage.clear()")
 
 
 # --- behaviours and functions -----------------------------------------------------------------------------------------

@@ -1,12 +1,15 @@
 // What every page has: the stop, on a line of its own that is open already and by a request as well, what comes first
 // counts; and the console's pulse, by which a page knows whether what it shows is true. See console/stop_line.py.
 
+import { pressOf, refuse, tell as tellUnsent } from "./presses.js";
+
 const PATH = "/console/stop";
 const AGAIN = 700; // ms until a line that broke is opened again
 const SILENT = 1400; // ms without a beat, after which the console does not answer
 const LOOK = 200; // ms between two looks
 const PATIENCE = 5000; // ms until a line that does not open is given up for a new one
 const PAGE_PATIENCE = 10000, PAGE_AGAIN = 1000; // ms, the same for the page's own connection, and the longest pause
+const LATE = 3000; // ms that a press may wait for the first connection of its page
 const BEATS = 60; // of which the console's clock is known
 const OPEN = ".q-dialog__inner, .q-menu"; // what Escape closes
 const STATES = { stopping: "Stopping…", stopped: "Stopped" };
@@ -31,6 +34,7 @@ let state = ""; // of the console: a key of TROUBLE, or empty
 let owed = null; // id of a stop that did not reach the console
 let sent = false; // whether a stop is on its way
 let loggedOut = false;
+const early = []; // when something was pressed before the page was connected: NiceGUI keeps that until it is
 
 function tell(message, type) {
   window.Quasar?.Notify?.create({ message, type });
@@ -100,19 +104,26 @@ function keepPage(socket) {
   socket.io.reconnectionDelayMax(PAGE_AGAIN);
 }
 
-// What acts is not sent while the console does not answer, and has a stamp else. Values of fields are let through: page
-// and console agree on them then.
+// A press is for the moment in which it is made: it is refused while the console does not answer, and has a stamp else.
+// Values of fields are let through: page and console agree on them then.
 function guardPresses(socket) {
-  const emit = socket.emit;
+  const { emit } = socket;
   socket.emit = function (name, message, ...rest) {
     if (name !== "event" || isValue(message)) return emit.call(socket, name, message, ...rest);
-    if (state) {
-      tell("Not sent: the console does not answer", "negative");
-      return socket;
+    const press = pressOf(message);
+    const waited = press && early.length ? performance.now() - early.shift() : 0;
+    if (socket.connected && !state && waited < LATE) {
+      const at = consoleTime() - waited / 1000; // NaN, and no stamp then, before the console's clock is known
+      return emit.call(socket, name, { ...message, label: press?.label, at }, ...rest);
     }
-    return emit.call(socket, name, { ...message, at: consoleTime() }, ...rest);
+    const { silent, ...refused } = press ?? { silent: true };
+    if (!silent) refuse(refused);
+    return socket;
   };
-  socket.guarded = true;
+  socket.on("connect", () => {
+    setTimeout(() => early.splice(0), LATE); // what NiceGUI has kept is given to emit by then
+    tellUnsent();
+  });
 }
 
 function isValue(message) {
@@ -124,9 +135,9 @@ function look() {
   const now = performance.now();
   heard += Math.max(now - looked - 2 * LOOK, 0); // this page was held up itself, and what came meanwhile comes now
   looked = now;
-  if (window.socket && !window.socket.guarded) {
+  if (window.socket && !window.socket.kept) {
+    window.socket.kept = true; // NiceGUI has set its own listeners by now
     keepPage(window.socket);
-    guardPresses(window.socket);
   }
   lost = Boolean(window.did_handshake && !window.socket.connected);
   show();
@@ -217,6 +228,18 @@ function leave(dialog) {
   else button.focus();
 }
 
+// NiceGUI makes its socket behind this script.
+let made = null;
+Object.defineProperty(window, "socket", {
+  get: () => made,
+  set: (socket) => {
+    made = socket;
+    if (socket) guardPresses(socket);
+  },
+});
+for (const type of ["click", "keydown"]) {
+  window.addEventListener(type, () => window.did_handshake || early.push(performance.now()), { capture: true });
+}
 look();
 setInterval(look, LOOK);
 window.addEventListener(

@@ -2,6 +2,7 @@
 // All of it goes over one WebSocket a page, /console/drive; console/wizard/session.py tells the messages.
 
 import { consoleTime, trouble } from "./frame.js";
+import { refuse } from "./presses.js";
 
 const PERIOD = 100; // ms between two velocities while one is held
 const DEAD_ZONE = 0.15; // of a gamepad's sticks
@@ -9,7 +10,6 @@ const DEAD_MAN = [4, 5, 6, 7]; // shoulder buttons of a gamepad: one is held whi
 const FIRST_RETRY = 300, LONGEST_RETRY = 5000; // ms
 const NOTICE_PERIOD = 1500; // ms until the same notice is shown again
 const NOTICE_SHOWN = 8000; // ms
-const STATE_WORDS = { runs: "runs", repeats: "repeats", used: "done" };
 const FIELDS = "input:not([type=range]):not([type=checkbox]):not([type=radio]):not([type=button]), textarea, select, " +
   "[contenteditable]:not([contenteditable=false]), [role=combobox], [role=textbox], [role=listbox]";
 const ARROW_TAKERS = "[role=slider], [role=radio], [role=tab], [role=menu], [role=menuitem], input";
@@ -32,6 +32,9 @@ nao-wizard-buttons button:active { transform: translateY(1px); }
 nao-wizard-buttons button[data-state=runs], nao-wizard-buttons button[data-state=repeats] {
   box-shadow: 0 0 0 3px #f9a825; }
 nao-wizard-buttons button[aria-disabled=true] { cursor: not-allowed; border-style: dashed; filter: saturate(0.3); }
+nao-wizard-buttons button[data-failed] { border: 4px dashed #b3261e; outline: 2px solid #fff; }
+nao-wizard-buttons button[data-failed] .state { font-weight: 700; }
+nao-wizard-buttons button[data-failed] .state::before { content: "\\26A0\\FE0E  "; }
 nao-wizard-buttons .label { overflow-wrap: anywhere; }
 nao-wizard-buttons .state { display: block; font-size: 12px; }
 nao-wizard-buttons .state:empty { display: none; }
@@ -39,8 +42,8 @@ nao-wizard-buttons kbd, nao-wizard-drive kbd { font: 600 12px monospace; padding
   border: 1px solid currentColor; white-space: nowrap; }
 nao-wizard-buttons p { margin: 0; }
 nao-wizard-buttons .told { min-height: 1.5em; }
-nao-wizard-buttons .notice { position: fixed; inset: auto 0 0; height: var(--nao-strip); z-index: 1501; overflow-y: auto;
-  background: #fff3cd; color: #000; padding: 8px 12px; border: 2px solid #b26a00; }
+nao-wizard-buttons .notice { position: fixed; inset: auto 0 0 50%; height: var(--nao-strip); z-index: 2100;
+  overflow-y: auto; background: #fff3cd; color: #000; padding: 8px 12px; border: 2px solid #b26a00; }
 nao-wizard-buttons .notice:empty { display: none; }
 nao-wizard-drive .pads { display: flex; gap: 16px; align-items: center; flex-wrap: wrap; }
 nao-wizard-drive .pad { position: relative; touch-action: none; background: rgba(127, 127, 127, 0.18);
@@ -128,6 +131,9 @@ class WizardLink extends EventTarget {
     this.users = 0;
     this.layout = null;
     this.states = {};
+    this.words = {}; // what stands on a button in a state, told by the server, and which states have failed
+    this.failed = [];
+    this.unsent = new Set(); // ids of buttons of which the server does not know that they were pressed
     this.walking = {}; // key -> velocity, told by the server
     this.sources = { keys: [0, 0, 0], joystick: [0, 0, 0], gamepad: [0, 0, 0] };
     this.held = new Set();
@@ -171,6 +177,7 @@ class WizardLink extends EventTarget {
     const socket = new WebSocket(address);
     socket.onopen = () => {
       this.retry = FIRST_RETRY;
+      this.unsent.clear();
       this.tell("connection", { open: true });
     };
     socket.onmessage = (event) => this.receive(JSON.parse(event.data));
@@ -188,8 +195,8 @@ class WizardLink extends EventTarget {
     return this.socket.readyState === WebSocket.OPEN;
   }
 
-  send(message) {
-    const ends = message.stop || message.walk?.every((part) => part === 0);
+  // `ends`: it stops something, and is sent whatever the page knows of the console.
+  send(message, ends = message.stop || message.walk?.every((part) => part === 0)) {
     if (!this.connected || (trouble() && !ends)) return false;
     this.socket.send(JSON.stringify({ ...message, at: consoleTime() }));
     return true;
@@ -198,12 +205,16 @@ class WizardLink extends EventTarget {
   receive(message) {
     if (message.layout) {
       this.layout = message.layout;
+      this.words = message.words;
+      this.failed = message.failed;
+      this.notSent = message.not_sent;
       this.walking = message.walking;
       if (this.speed === null) this.speed = message.layout.speed;
       this.tell("layout", {});
     }
     if (message.states) {
       this.states = message.states;
+      this.unsent.clear();
       this.tell("states", {});
     }
     if (message.let_go) this.letGo(); // somebody has stopped the robot
@@ -225,8 +236,13 @@ class WizardLink extends EventTarget {
   // --- buttons and keys
 
   press(id, via) {
-    const message = { press: id, revision: this.layout.revision, via };
-    if (!this.send(message)) this.notice("no connection to the console: nothing was sent");
+    const button = this.layout.groups.flatMap((group) => group.buttons).find((each) => each.id === id);
+    const group = this.layout.groups.find((each) => each.buttons.includes(button)).title;
+    const press = { label: button.label, group, via };
+    if (this.send({ ...press, press: id, revision: this.layout.revision }, button.stops)) return;
+    refuse({ ...press, of: button.robot });
+    this.unsent.add(id);
+    this.tell("states", {});
   }
 
   // The frame stops the robot of the page; this ends what is held, and the other robots.
@@ -426,9 +442,10 @@ class WizardButtons extends WizardElement {
   mark() {
     if (!this.buttons) return;
     for (const [id, { made, state }] of this.buttons) {
-      const now = this.link.states[id] || "";
+      const now = this.link.unsent.has(id) ? this.link.notSent : this.link.states[id] || "";
       made.dataset.state = now;
-      state.textContent = STATE_WORDS[now] || "";
+      made.toggleAttribute("data-failed", this.link.failed.includes(now));
+      state.textContent = this.link.words[now] || "";
       if (now === "used") made.setAttribute("aria-disabled", "true");
       else made.removeAttribute("aria-disabled");
       if (now === "repeats") made.setAttribute("aria-pressed", "true");

@@ -23,6 +23,7 @@ from .access.session_file import SessionFile
 from .access.sessions import Sessions
 from .access.users import OBSERVER, OPERATOR, ROLES, read_users
 from .page_loop import PageLoop
+from .robots.presses import Presses
 from .robots.robots import Robots
 from .stop_line import PATH, StopLine
 from .study.alone import studies_of
@@ -84,6 +85,7 @@ class Console:
 
     Attributes:
         app: FastAPI application, for routes and WebSockets beside the pages; all of them are behind the guard.
+        presses: What users press, and what of it has failed.
         views: What pages and trials share of each robot: its senses, its body, its alarms, its pictures.
         lanes: Role -> where what takes the processor is done for pages.
         studies: Begins trials, and knows those that run.
@@ -101,6 +103,7 @@ class Console:
         self.robots = Robots()
         self.views = Views(settings.studies)
         self.controls = Controls()
+        self.presses = Presses()
         self.lanes = {role: Lane() for role in ROLES}  # observers never hold up the work of operators
         self.sessions = Sessions(None if settings.users is None else read_users(settings.users))
         self.sessions.on_end = self.controls.forget

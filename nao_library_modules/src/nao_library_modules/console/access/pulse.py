@@ -35,4 +35,4 @@ def late_by(message: Mapping[str, Any]) -> float:
 def refusal_of_late(message: Mapping[str, Any]) -> str:
     """Why a message is not carried out, for people; empty: it is in time."""
     age = late_by(message)
-    return f"not done: the press came {age:.0f} s late; look again, and press once more" if age else ""
+    return f"it came {age:.0f} s late: look again, and press once more" if age else ""

@@ -1,4 +1,4 @@
-"""The alarms of the robot on every page: a strip at the bottom, always there, that covers and moves nothing."""
+"""The alarms of the robot on every page: in the strip at the bottom."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ NONE = "No alarms"
 class AlarmBar:
     """On one page. Each alarm is one line, which is made once: a screen reader says it once.
 
-    `page`: its `PageContext`. Make it in the layout of the page itself, as `ui.footer` needs that.
+    `page`: its `PageContext`.
     """
 
     def __init__(self, page: Any) -> None:
         self._watch = page.console.views.of(page.robot).alarms
         page.on_leave(self._watch.acquire())
         self._lines: dict[tuple[str, str, float], ui.element] = {}
-        with ui.footer(elevated=False).classes("nao-alarms").props('role="region" aria-label="Alarms" tabindex="0"'):
+        with ui.element("div").classes("nao-alarms"):
             self._none = ui.label(NONE).classes("nao-no-alarm")
             self._list = ui.element("div").classes("nao-alarm-list")
             self._list.props('role="alert" aria-live="assertive" aria-atomic="false"')

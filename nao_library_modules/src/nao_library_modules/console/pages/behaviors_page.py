@@ -16,6 +16,7 @@ from naoqi.errors import NaoError
 from ...behaviors.language.expressions import text_of
 from ..robots.commands import RobotCommand, call
 from ..robots.forms import form_of_behavior
+from ..robots.runs import Run, end_of
 from ..timeline.document import BehaviorDocument
 from ..timeline.projected import NotProjected, project_behavior
 from ..timeline.run_view import RunView, StepLine
@@ -27,6 +28,7 @@ from .field_inputs import FieldInputs
 from .frame import PageContext, framed, page_at, sure
 from .insert_dialog import BEHIND, INSIDE, LAST, InsertDialog
 from .step_form import StepForm
+from .text_editor import Draft, marks_of
 from .timeline_canvas import KEYS, TimelineCanvas
 
 SERVER = "NaoBehavior"
@@ -133,6 +135,7 @@ class BehaviorsView:
         self._of_an_open_one = buttons
         for button in self._of_an_open_one:
             button.set_enabled(False)
+        offers = ui.column().classes("w-full")
         self._parameters = ui.expansion("Parameters").classes("w-full")
         with ui.tabs().props("dense align=left no-caps") as tabs:
             tracks_tab, text_tab = ui.tab("Timeline"), ui.tab("Text")
@@ -146,6 +149,8 @@ class BehaviorsView:
                 self._text = ui.codemirror("", language="YAML", on_change=self._typing, line_wrapping=True)
                 self._text.classes("w-full border rounded").style("height: 55vh")
                 self._text.props["aria-label"] = "The behaviour as YAML"
+        with offers:
+            self._draft = Draft(self._page, self._text, "behavior", self._take_draft)
         self._problem_list = ui.column().classes("w-full gap-1")
         self._facts = ui.column().classes("w-full gap-0")
         self._tree = ui.column().classes("w-full gap-0")
@@ -233,6 +238,7 @@ class BehaviorsView:
         if self._goal is None:
             self._view = RunView()
         self._parameters.clear()
+        self._draft.of(document.name, document.stored_text)
         await self._refresh(whole=True)
         await self._show_parameters()
 
@@ -317,10 +323,19 @@ class BehaviorsView:
             except (EditRefused, NaoError) as error:
                 ui.notify(str(error), type="warning", multi_line=True)
         self._problems = []
+        self._facts.clear()  # they are of the text before
         await self._refresh(text_too)
 
     def _typing(self, event: Any) -> None:
         self._typed = event.value
+
+    async def _take_draft(self, text: str, _revision: str) -> None:
+        """A draft is wanted: it becomes the text, and the text before is a step back."""
+        document = self._document
+        if document is not None:
+            self._typed = None
+            await self._edit(lambda: document.set_text(text))
+            await self._show_parameters()
 
     async def _take_typed(self) -> None:
         """Make what was typed as text the text of the behaviour."""
@@ -351,6 +366,7 @@ class BehaviorsView:
         )
         if text_too and self._text.value != document.text:
             self._text.value = document.text
+        self._draft.keep(document.text)
         self._canvas.show(self._tracks, self._selected, whole)
         self._show_step()
         self._show_problems([*document.problems, *self._problems])
@@ -405,6 +421,9 @@ class BehaviorsView:
         return not self._problems
 
     def _show_problems(self, problems: list[Any]) -> None:
+        if self._document is not None:
+            own = [each for each in problems if each.file in ("", self._document.file)]
+            self._text.decorations = marks_of(self._document.text, own[:MOST_PROBLEMS])
         self._problem_list.clear()
         with self._problem_list:
             for problem in list(dict.fromkeys(map(str, problems)))[:MOST_PROBLEMS]:
@@ -415,9 +434,10 @@ class BehaviorsView:
     def _show_facts(self, info: Any) -> None:
         with self._facts:
             unvalidated = list(info.unvalidated)
-            ui.label("Nothing wrong was found." if unvalidated else "It can be run.").classes("font-medium")
+            told = "Its text is right, but not all of its servers have checked it:" if unvalidated else "It can be run."
+            ui.label(told).classes("font-medium")
             for text in unvalidated:
-                ui.label(f"not checked by its server: {text}").classes("text-sm")
+                ui.label(text).classes("text-sm")
             about = {"servers": ", ".join(info.servers), "boxes": ", ".join(info.boxes)}
             about["waits"] = f"{info.waits:g} s, beside what its goals take" if info.waits else ""
             for name, text in about.items():
@@ -497,7 +517,7 @@ class BehaviorsView:
         if document is None:
             ui.notify("open a behaviour first")
             return
-        if not self._page.operate():
+        if not self._page.operate("Run"):
             return
         fields = {"text": document.text, "file": document.file, "parameters": self._texts()}
         command = call(SERVER, "runBehavior", **fields)
@@ -505,18 +525,18 @@ class BehaviorsView:
 
     async def _send(self, command: RobotCommand, label: str, stops: int | None = None) -> Any:
         """Send a goal; its run, None if that cannot be, which is told. `stops`: of the robot when it was asked for."""
-        robot = self._page.robot
-        stops = robot.stops if stops is None else stops
-        try:
-            return await self._page.ask(robot.send, command, self._page.visitor.name, label, stops)
-        except NaoError as error:
-            ui.notify(str(error), type="negative", multi_line=True)
-            return None
+        return await self._page.send(label, command, label, stops)
+
+    async def _done(self, goal: Run) -> bool:
+        """Whether a goal that takes no time has succeeded; what has failed is told."""
+        if not await self._page.ask(goal.wait, STORE_LIMIT):
+            self._page.failed(goal.label, f"{goal.server} does not answer within {STORE_LIMIT:g} s")
+        return goal.succeeded
 
     def _stop(self) -> None:
         """End the behaviour that runs, also one that another program has sent, whoever holds the controls."""
         if not self._page.visitor.operator:
-            ui.notify("observers look on: an operator may do this", type="warning")
+            self._page.failed("Stop", "observers look on: an operator may do this")
             return
         for goal in self._page.robot.runs:
             if goal.server == SERVER:
@@ -559,12 +579,9 @@ class BehaviorsView:
 
     def _ended(self, goal: Any) -> None:
         """Tell how the behaviour went that was run here."""
-        if goal.state == "succeeded":
+        if goal.succeeded:
             self._measured = {**self._measured, **self._view.measured()}
-            self._state.text = "it has run"
-        else:
-            self._state.text = goal.state
-            ui.notify(f"{goal.state}: {goal.text}", type="negative", multi_line=True, timeout=8000)
+        self._state.text = "it has run" if goal.succeeded else end_of(goal.state).word
 
     # --- storing ------------------------------------------------------------------------------------------------------
 
@@ -597,7 +614,7 @@ class BehaviorsView:
     async def _store(self, name: str, overwrite: bool) -> None:
         await self._take_typed()
         document = self._document
-        if document is None or not self._page.operate():
+        if document is None or not self._page.operate("Save"):
             return
         running = [goal for goal in self._page.robot.runs if goal.server == SERVER]
         if running:
@@ -607,11 +624,10 @@ class BehaviorsView:
         goal = await self._send(call(SERVER, "storeBehavior", **fields), f"store {name}")
         if goal is None:
             return
-        await self._page.ask(goal.wait, STORE_LIMIT)
-        if goal.state != "succeeded":
-            ui.notify(f"not stored: {goal.text or goal.state}", type="negative", multi_line=True, timeout=8000)
+        if not await self._done(goal):
             return
         document.stored(name)
+        self._draft.of(name, document.text)
         ui.notify(goal.text or f"stored as {name}", type="positive")
         await self._load_list()
         await self._refresh()
@@ -619,7 +635,7 @@ class BehaviorsView:
     # --- recording ----------------------------------------------------------------------------------------------------
 
     async def _record(self) -> None:
-        if not self._page.operate():
+        if not self._page.operate("Record"):
             return
         if self._recording:
             await self._end_recording()
@@ -633,9 +649,7 @@ class BehaviorsView:
         goal = await self._send(call(SERVER, "recordBehavior", str_param=name), f"record {name}")
         if goal is None:
             return
-        await self._page.ask(goal.wait, STORE_LIMIT)
-        if goal.state != "succeeded":
-            ui.notify(goal.text or goal.state, type="negative", multi_line=True)
+        if not await self._done(goal):
             return
         self._recording = name
         self._record_button.text = f"End the recording {name}"
@@ -645,12 +659,11 @@ class BehaviorsView:
         goal = await self._send(call(SERVER, "stopRecording"), f"end the recording {self._recording}")
         if goal is None:
             return
-        await self._page.ask(goal.wait, STORE_LIMIT)
+        done = await self._done(goal)
         name, self._recording = self._recording, ""
         self._record_button.text = "Record"
         self._record_button.props(remove="color=negative")
-        if goal.state != "succeeded":
-            ui.notify(goal.text or goal.state, type="negative", multi_line=True)
+        if not done:
             return
         answer = list(goal.result.get("memList") or [name, "?"])
         ui.notify("; ".join([f"{answer[0]}: {answer[1]} goals", *answer[2:]]), type="positive", multi_line=True)

@@ -18,8 +18,12 @@ from ...base.paths import config_file
 from ..access.guard import LOGOUT, session_of
 from ..access.pulse import refusal_of_late
 from ..access.sessions import Session
+from ..robots.commands import RobotCommand
+from ..robots.presses import PATIENCE, Press
 from ..robots.robot import RobotClient
+from ..robots.runs import NOT_SENT, Run
 from ..view.background import Subscriptions, in_background
+from . import failed_presses
 from .alarm_bar import AlarmBar
 
 log = logging.getLogger(__name__)
@@ -34,8 +38,9 @@ Callback = Callable[[], Union[None, Awaitable[None]]]
 
 
 def build(console: Any) -> None:
-    """Register what all pages need: static files."""
+    """Register what all pages need: static files, and where they tell what they could not send."""
     console.app.mount(STATIC, StaticFiles(directory=config_file("console/static")), name="console_static")
+    failed_presses.build(console)
 
 
 class PageContext:
@@ -49,12 +54,13 @@ class PageContext:
         self.visitor = session
         self.robot = robot
         self.gone = False
+        self._path = context.client.request.url.path
         self._working = 0
         self._leave: list[Callable[[], None]] = []
         self._client = context.client
         self._client.on_delete(self._left)
-        self._handle = self._client.handle_event
-        self._client.handle_event = self._take_event  # type: ignore[method-assign]
+        self._handle_event = self._client.handle_event
+        self._client.handle_event = self._take_event  # type: ignore[method-assign]  # NiceGUI has no hook there
 
     async def ask(self, task: Callable[..., Any], *arguments: Any) -> Any:
         """What a function gives that waits for ROS, the disk or a lock. It is never called in the event loop.
@@ -85,17 +91,48 @@ class PageContext:
         self._end_if_gone()
         return found
 
-    def operate(self) -> bool:
-        """Whether this visitor may move the robot now; says why not."""
+    def operate(self, button: str = "") -> bool:
+        """Whether this visitor may move the robot now; says why not, until the visitor has looked.
+
+        `button`: what was pressed.
+        """
         if not self.console.sessions.known(self.visitor):
-            with self._client:
-                ui.notify("you are logged out: load the page again", type="warning")
+            self.failed(button, "you are logged out: load the page again")
             return False
         if self.console.controls.may_move(self.robot.namespace, self.visitor):
             return True
-        with self._client:
-            ui.notify(self.console.controls.refusal(self.robot.namespace, self.visitor), type="warning")
+        self.failed(button, self.console.controls.refusal(self.robot.namespace, self.visitor))
         return False
+
+    async def press(self, button: str, send: Callable[..., Any], *arguments: Any) -> Run | None:
+        """The goal that `send` returns; None where it raises NaoError.
+
+        How it fails is told until the visitor has looked. `button`: what was pressed.
+        """
+        press = self._press(button)
+
+        def sent() -> Run | None:
+            try:
+                run = send(*arguments)
+            except NaoError as error:
+                self.console.presses.report(press, NOT_SENT, str(error))
+                return None
+            except Exception as error:
+                self.console.presses.report(press, NOT_SENT, f"unexpected error: {error!r}")
+                raise
+            self.console.presses.follow(press, run)
+            return run
+
+        return await self.ask(sent)
+
+    async def send(self, button: str, command: RobotCommand, label: str = "", stops: int | None = None) -> Run | None:
+        """Send a command in the name of this visitor, as `press` does. `stops`: of the robot when it was pressed."""
+        stops = self.robot.stops if stops is None else stops
+        return await self.press(button, self.robot.send, command, self.visitor.name, label, stops, PATIENCE)
+
+    def failed(self, button: str, reason: str) -> None:
+        """Tell that something pressed on this page was not done, until the visitor has looked."""
+        self.console.presses.report(self._press(button), NOT_SENT, reason)
 
     def every(self, period: float, callback: Callback) -> Any:
         """Call something every so many s while the page is open. Returns ui.timer."""
@@ -114,13 +151,17 @@ class PageContext:
         with self._client:
             ui.notify(text, type=kind)
 
-    def _take_event(self, event: dict[str, Any]) -> None:
-        """Pass on what the browser tells of an element, unless it is a press that comes late."""
-        refusal = refusal_of_late(event)
+    def _press(self, button: str) -> Press:
+        streams = (self.robot.events,) if self.visitor.operator else ()  # what observers try is theirs to see
+        return Press(button, self.visitor.name, self._path, self.robot.namespace, streams=streams)
+
+    def _take_event(self, message: dict[str, Any]) -> None:
+        """Pass on what the browser reports of an element, unless it is a press that comes late."""
+        refusal = refusal_of_late(message)
         if refusal:
-            self.notify(refusal, "warning")
+            self.failed(str(message.get("label", ""))[: failed_presses.LONGEST_LABEL], refusal)
         else:
-            self._handle(event)
+            self._handle_event(message)
 
     def _end_if_gone(self) -> None:
         if self.gone:
@@ -164,13 +205,15 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
     page = PageContext(console, session, robot)
     ui.page_title(f"{title}, {robot.name}: NAO console")
     ui.add_head_html(f'<link rel="stylesheet" href="{STATIC}/console.css">')
-    page.static("frame.js")
+    for script in ("presses.js", "drafts.js", "frame.js"):
+        page.static(script)
     following = Subscriptions(f"goals of {robot.name}")
     following.begin(lambda: console.robots.watch(robot))
     page.on_leave(following.end)
     page.on_leave(console.controls.enter(session, robot.namespace))
     dark = ui.dark_mode(session.dark)
-    with ui.header().classes("nao-header").props(f'data-robot="{robot.name}"'):
+    with ui.header().classes("nao-header").props(f'data-robot="{robot.name}"') as header:
+        header.props(f'data-not-sent="{NOT_SENT.word}"')  # for presses.js
         _navigation(request.url.path, robot)
         with ui.row().classes("nao-who"):
             _choice_of_robot(request.url.path, robot, request.state.robots)
@@ -194,8 +237,9 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
             )
         ):
             ui.element("span").classes("nao-stop-state")
-    ui.element("div").classes("nao-notices").props("aria-hidden=true")
-    AlarmBar(page)
+    with ui.footer(elevated=False).classes("nao-strip").props('role="region" aria-label="Reports" tabindex="0"'):
+        AlarmBar(page)
+        failed_presses.FailedLines(console.presses, page).build()
     with ui.column().classes("nao-main w-full"):
         yield page
 

@@ -8,8 +8,6 @@ from typing import Any
 from nicegui import ui
 from starlette.requests import Request
 
-from naoqi.errors import NaoError
-
 from ...base.suggestion import closest
 from ...behaviors.language.yaml_text import dump
 from ..robots.commands import RobotCommand
@@ -149,18 +147,17 @@ class FunctionsView:
     async def _send(self) -> None:
         robot = self._page.robot
         stops, command = robot.stops, await self._command()
-        if command is None or not self._page.operate():
+        if command is None or not self._page.operate(f"Send {command.server}.{command.label}"):
             return
-        try:
-            self._run = await self._page.ask(robot.send, command, self._page.visitor.name, "", stops)
-        except NaoError as error:
-            ui.notify(str(error), type="negative", multi_line=True)
+        run = await self._page.send(f"Send {command.server}.{command.label}", command, stops=stops)
+        if run is None:
             return
+        self._run = run
         self._cancel.set_enabled(True)
         await self._show()
 
     def _cancel_run(self) -> None:
-        if self._run is not None and self._page.operate():
+        if self._run is not None and self._page.operate("Cancel"):
             self._run.cancel()
 
     # --- the answer ---------------------------------------------------------------------------------------------------
@@ -191,7 +188,7 @@ class FunctionsView:
                 ui.label(text).classes("whitespace-pre-wrap break-words")
             if text:
                 ui.label(text).classes("whitespace-pre-wrap break-all font-mono text-sm")
-            elif goal.done and goal.state == "succeeded":
+            elif goal.succeeded:
                 ui.label("It answers nothing.").classes("opacity-80")
 
     # --- copies -------------------------------------------------------------------------------------------------------

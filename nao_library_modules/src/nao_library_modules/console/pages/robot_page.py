@@ -177,7 +177,7 @@ class RunPanel:
         return self._rows[run.id]
 
     async def _cancel(self, run: Run) -> None:
-        if self._page.operate():
+        if self._page.operate(f"Cancel {run.server}: {run.label}"):
             await in_background(run.cancel)
             self._page.robot.events.add("cancelled", f"{run.server}: {run.label}", self._page.visitor.name, goal=run.id)
 

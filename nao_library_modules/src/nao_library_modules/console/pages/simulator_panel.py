@@ -133,13 +133,13 @@ class SimulatorPanel:
 
     async def _do(self, action: Callable[[], None], note: str) -> None:
         """Carry something out for who may move the robot, and tell what went wrong."""
-        if not self._page.operate():
+        if not self._page.operate(note):
             return
         self._page.robot.events.add("simulator", note, self._page.visitor.name)
         try:
             await in_background(action)
         except NaoError as error:
-            self._page.notify(str(error), "negative")
+            self._page.failed(note, str(error))
 
 
 def _number(label: str, value: float) -> Any:

@@ -27,6 +27,7 @@ from ..wizard.model import WizardLayout
 from ..wizard.session import HEAD, STOP, WALK, PageRights, WizardSession, read_message
 from ..wizard.wire import layout_message
 from .frame import PageContext, framed, page_at
+from .text_editor import Draft
 from .trial_note import TrialNote
 from .wizard_editor import WizardEditor
 
@@ -52,7 +53,7 @@ class WizardParts:
         self.current = CurrentLayout(self.file)
         for problem in self.current.problems:
             print(f"{own}: {problem}", file=sys.stderr, flush=True)
-        self.desk = WizardDesk()
+        self.desk = WizardDesk(console.presses)
 
     def find_all(self, layout: WizardLayout) -> None:
         """In the background, have the robots of buttons known: a stop asks nobody for them."""
@@ -138,6 +139,7 @@ class _WizardPage:
                 self._text.on("keydown.down", lambda: self._recall(-1))
                 self._animated = ui.checkbox("animated", value=True)
                 ui.button("Say", icon="record_voice_over", on_click=self._say).props("no-caps")
+            Draft(self._page, self._text, "say").of(self._space)
             with ui.row().classes("w-full items-center"):
                 self._templates = ui.select(
                     list(self._parts.current.layout.templates), label="Templates", on_change=self._choose
@@ -147,14 +149,12 @@ class _WizardPage:
 
     async def _say(self) -> None:
         text = self._text.value or ""
-        if not self._page.operate():
+        if not self._page.operate("Say"):
             return
         self._desk.take_names(self._parts.current.layout, self._space)
-        try:
-            robot, by = self._page.robot, self._page.visitor.name
-            await self._page.ask(self._desk.say, robot, text, self._animated.value, by, robot.stops)
-        except NaoError as error:
-            self._page.notify(str(error), "negative")
+        robot, by = self._page.robot, self._page.visitor.name
+        run = await self._page.press("Say", self._desk.say, robot, text, self._animated.value, by, robot.stops)
+        if run is None:
             return
         self._text.value = ""
         self._place = -1
@@ -227,7 +227,7 @@ class _WizardPage:
         ui.label("Click: the robot looks there. Drag: the head turns along.").classes("text-caption")
 
     def _arm(self) -> None:
-        if self._page.operate():
+        if self._page.operate("Arm again"):
             self._desk.arm(self._space)
 
     def _changed(self) -> None:
@@ -301,7 +301,8 @@ class _DriveSocket:
         )
         loop = asyncio.get_running_loop()
         wake = lambda: loop.call_soon_threadsafe(self._wake.set)  # noqa: E731
-        ends = [self._parts.desk.subscribe(wake), self._parts.current.subscribe(wake)]
+        followed = (self._parts.desk, self._parts.desk.presses, self._parts.current)
+        ends = [each.subscribe(wake) for each in followed]
         teller = asyncio.create_task(self._tell(wizard))
         try:
             while True:
@@ -383,7 +384,7 @@ def _rights(console: Any, session: Session) -> PageRights:
             return "you are logged out: log in again"
         return "" if controls.may_move(namespace, session) else controls.refusal(namespace, session)
 
-    return PageRights(session.name, refusal, known)
+    return PageRights(session.name, refusal, known, lambda: session.operator)
 
 
 def servers_of(layout: WizardLayout) -> list[str]:

@@ -70,3 +70,8 @@ class EventStream:
     def _forget(self, key: object) -> None:
         with self._lock:
             self._listeners.pop(key, None)
+
+
+def namespace_of(name: str) -> str:
+    """Of the robot of a name, with a slash at both ends."""
+    return f"/{name.strip('/')}/" if name.strip("/") else "/"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import partial
 from typing import Any
@@ -33,7 +33,7 @@ from .events import EventStream
 from .foreign_goals import ForeignGoals
 from .last_stop import LastStop
 from .master import MasterLook
-from .runs import ENDS, STATES, Run
+from .runs import ENDS, LOST, STATES, GoalEnd, Run
 from .waits import within
 
 log = logging.getLogger(__name__)
@@ -68,7 +68,7 @@ class RobotClient:
         self._types: dict[str, ServerType] = {}
         self._described: dict[str, tuple[str, Any]] = {}
         self._cancels: dict[str, rospy.Publisher] = {}
-        self._own: dict[str, Run] = {}
+        self._own: dict[str, tuple[Run, _OwnedGoal]] = {}
         self._stops = 0
         self._last_stop = LastStop()
         self._foreign = ForeignGoals(namespace, self._is_own)
@@ -143,26 +143,41 @@ class RobotClient:
 
     # --- goals ----------------------------------------------------------------------------------------------------
 
-    def send(self, command: RobotCommand, by: str = "", label: str = "", stops: int | None = None) -> Run | None:
+    def send(
+        self,
+        command: RobotCommand,
+        by: str = "",
+        label: str = "",
+        stops: int | None = None,
+        patience: float = SERVER_LIMIT,
+    ) -> Run | None:
         """Carry out a command; None for one that stops everything.
 
-        `stops`: as it was when somebody wanted that. Raises BadGoal if it will not do, NotThere if there is no such
-        server, Stopped if everything was stopped meanwhile.
+        `stops`: as it was when somebody wanted that. `patience`: s for which a server is waited for that has gone.
+        Raises BadGoal if it will not do, NotThere if there is no such server, Stopped if everything was stopped
+        meanwhile.
         """
         stops = self._stops if stops is None else stops
         if command.stops:
             self.stop(by)
             return None
         types = self._types_of(command.server)
-        return self.send_goal(goal_of(command, types), by, label or command.label, stops)
+        return self.send_goal(goal_of(command, types), by, label or command.label, stops, patience)
 
-    def send_goal(self, goal: CommandGoal, by: str = "", label: str = "", stops: int | None = None) -> Run:
-        """Send a goal; see `send`. Raises NotThere if no server takes it within SERVER_LIMIT, Stopped."""
+    def send_goal(
+        self,
+        goal: CommandGoal,
+        by: str = "",
+        label: str = "",
+        stops: int | None = None,
+        patience: float = SERVER_LIMIT,
+    ) -> Run:
+        """Send a goal; see `send`. Raises NotThere if no server takes it, Stopped."""
         stops = self._stops if stops is None else stops
-        client = self._client(goal.server, goal.action)
+        client = self._client(goal.server, goal.action, patience)
         names = [function.function for function in getattr(goal.goal, "functions", ())]  # those of plans have none
         run = Run("", self.namespace, goal.server, names, label or ", ".join(names), by or CONSOLE, self.now())
-        tracker = _OwnedGoal(self._owner_line(goal.server))
+        tracker = _OwnedGoal(self._owner_line(goal.server), server_connection(client))
         chain = plain(goal.goal).get("functions", [plain(goal.goal)])
         if stops != self._stops:
             raise Stopped(f"everything was stopped: {run.label} is not sent")
@@ -171,13 +186,14 @@ class RobotClient:
         if stops != self._stops:
             run.cancel()
         self.events.add("sent", f"{goal.server}: {run.label}", run.by, goal=run.id, server=goal.server, chain=chain)
+        self._lose_goals(goal.server, client)  # it may have died before the goal was among those that go on
         return run
 
     @property
     def runs(self) -> list[Run]:
         """The goals that go on, those of other programs among them while somebody watches."""
         with self._lock:
-            own = list(self._own.values())
+            own = [run for run, _ in self._own.values()]
         return [*own, *self._foreign.runs()]
 
     def prepare(self, servers: Iterable[str]) -> None:
@@ -226,7 +242,7 @@ class RobotClient:
         with self._lock:
             self._stops += 1
             ready = {topic: each for topic, each in self._cancels.items() if each.get_num_connections()}
-            own = list(self._own.values())
+            own = [run for run, _ in self._own.values()]
         self._hold_walk(None)
         for publisher in ready.values():
             publisher.publish(GoalID())
@@ -333,12 +349,15 @@ class RobotClient:
         except NaoError as error:
             log.info("%s is not there yet: %s", server, error)
 
-    def _client(self, server: str, action: type) -> Any:
+    def _client(self, server: str, action: type, patience: float = SERVER_LIMIT) -> Any:
+        """The client of a server. `patience`: s for which one is waited for that ran before."""
         with self._connecting:
             if server not in self._clients:
-                self._clients[server] = actionlib.ActionClient(self.namespace + server, action)
+                client = self._clients[server] = actionlib.ActionClient(self.namespace + server, action)
+                client.pub_goal.impl.add_subscriber_listener(_Departure(partial(self._lose_goals, server, client)))
             client = self._clients[server]
-        if not within(SERVER_LIMIT, lambda: server_connection(client) is not None):
+        limit = SERVER_LIMIT if client.last_status_msg is None else patience
+        if not within(limit, lambda: server_connection(client) is not None):
             raise NotThere(f"the server {server} does not run{of_those(server, self.servers())}")
         return client
 
@@ -356,21 +375,21 @@ class RobotClient:
     def _is_own(self, goal: str) -> bool:
         return goal.startswith(rospy.get_name() + "-")
 
-    def _note(self, run: Run, tracker: GoalTracker, handle: Any) -> None:
+    def _note(self, run: Run, tracker: _OwnedGoal, handle: Any) -> None:
         """Have a goal among those that go on; done once, before anything is told of it."""
         with self._lock:
             if run.id:
                 return
             run.id = handle.comm_state_machine.action_goal.goal_id.id
             run.cancel_goal = lambda: _in_thread(tracker.cancel, handle)
-            self._own[run.id] = run
+            self._own[run.id] = run, tracker
 
-    def _moved(self, run: Run, tracker: GoalTracker, handle: Any) -> None:
+    def _moved(self, run: Run, tracker: _OwnedGoal, handle: Any) -> None:
         """A goal has changed its state: in actionlib's thread, under its lock."""
         self._note(run, tracker, handle)
-        state = STATES.get(handle.get_goal_status(), run.state)
-        if state not in ENDS.values():
-            run.state = state
+        status = handle.get_goal_status()
+        if status not in ENDS:
+            run.state = STATES.get(status, run.state)
         tracker.look(handle)
         if tracker.over.is_set():
             _in_thread(self._end, run, handle)
@@ -380,23 +399,65 @@ class RobotClient:
         run.progress = progress_text(run.feedback)
 
     def _end(self, run: Run, handle: Any) -> None:
+        end, result = ENDS[handle.get_terminal_state()], handle.get_result()
+        text = handle.get_goal_status_text() or "" if end is not LOST else _lost(run)
+        self._over(run, end, text, {} if result is None else plain(result))
+
+    def _lose_goals(self, server: str, client: Any) -> None:
+        """End the goals of a server that has gone: nothing more will be told of them."""
+        left = client.pub_goal.impl.connections
+        with self._lock:
+            own = list(self._own.values())
+        for run, tracker in own:
+            if run.server == server and tracker.connection not in left:
+                tracker.lose()
+                self._over(run, LOST, _lost(run), {})
+
+    def _over(self, run: Run, end: GoalEnd, text: str, result: Mapping[str, Any]) -> None:
         with self._lock:
             if self._own.pop(run.id, None) is None:
                 return
-        state = ENDS.get(handle.get_terminal_state(), "lost")
-        text, result = handle.get_goal_status_text() or "", handle.get_result()
-        fields = {} if result is None else plain(result)
-        told = f"{run.server}: {run.label} {state}" + (f": {text}" if text and state != "succeeded" else "")
-        self.events.add("ended", told, run.by, goal=run.id, server=run.server, state=state, reason=text, result=fields)
-        run.end(state, text, fields)
+        told = f"{run.server}: {run.label} {end.state}" + (f": {text}" if text and end.failed else "")
+        about = {"goal": run.id, "server": run.server, "state": end.state, "reason": text, "result": result}
+        self.events.add("ended", told, run.by, **about)
+        run.end(end, text, result)
 
 
 class _OwnedGoal(GoalTracker):
-    """A goal that the watch of its robot cancels if this process dies."""
+    """A goal that the watch of its robot cancels if this process dies. `connection`: what it goes through."""
 
-    def __init__(self, owners: OwnerLine | None) -> None:
+    def __init__(self, owners: OwnerLine | None, connection: Any) -> None:
         super().__init__()
         self.owners = owners  # type: ignore[misc]  # several robots, a line to each
+        self.connection = connection
+
+    def lose(self) -> None:
+        """Its server has gone."""
+        if self.owners is not None:
+            self.owners.let_go(self)
+        self.acknowledged.set()
+        self.over.set()
+
+
+class _Departure(rospy.SubscribeListener):
+    """Calls `then`, in a thread of its own, when somebody takes goals no more."""
+
+    def __init__(self, then: Callable[[], None]) -> None:
+        super().__init__()
+        self._then = then
+
+    def peer_unsubscribe(self, _topic_name: str, _num_peers: int) -> None:
+        """Called by rospy."""
+        _in_thread(self._then)
+
+
+def _lost(run: Run) -> str:
+    """What is known of a goal whose server has gone."""
+    return (
+        f"the server {run.robot}{run.server} died or was started again, or the connection to it broke, before"
+        f" {run.label!r} was over: nobody knows how much of it was done. Look at the robot, and why in the terminal of"
+        " the stack; then press again"
+    )
 
 
 def _in_thread(task: Callable[..., Any], *arguments: Any) -> None:

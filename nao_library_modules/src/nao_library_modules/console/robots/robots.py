@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from ...base.suggestion import of_those
 from .errors import NotThere
+from .events import namespace_of
 from .master import MasterLook
 from .robot import RobotClient
 
@@ -38,7 +39,7 @@ class Robots:
             return known
         names = self.names()
         wanted = name.strip("/") or ("/" if name or "/" in names or not names else names[0])
-        namespace = _namespace(wanted)
+        namespace = namespace_of(wanted)
         with self._lock:
             if namespace in self._robots:
                 return self._robots[namespace]
@@ -49,7 +50,7 @@ class Robots:
     def known(self, name: str) -> RobotClient | None:
         """A robot that was asked for before; the master is not asked, as a stop must not wait for it."""
         with self._lock:
-            return self._robots.get(_namespace(name))
+            return self._robots.get(namespace_of(name))
 
     def watch(self, robot: RobotClient) -> Callable[[], None]:
         """Follow what a robot does and which servers it has, until what comes back is called."""
@@ -80,7 +81,3 @@ class Robots:
                     refresh()
                 except Exception:  # looks again in a while
                     log.exception("a look at the master failed")
-
-
-def _namespace(name: str) -> str:
-    return f"/{name.strip('/')}/" if name.strip("/") else "/"

@@ -7,9 +7,44 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-ENDS = {2: "preempted", 3: "succeeded", 4: "aborted", 5: "rejected", 8: "recalled", 9: "lost"}
-"""States of actionlib_msgs/GoalStatus in which a goal is over."""
-STATES = {0: "pending", 1: "active", 6: "active", 7: "pending", **ENDS}
+
+@dataclass(frozen=True)
+class GoalEnd:
+    """A way in which a goal ends.
+
+    Attributes:
+        state: Its name in logs.
+        status: Of actionlib_msgs/GoalStatus; None: the goal was never sent.
+        word: What a button and a line say of it; empty: nothing.
+    """
+
+    state: str
+    status: int | None
+    word: str = ""
+
+    @property
+    def failed(self) -> bool:
+        """Whether it is told until somebody has looked."""
+        return bool(self.word)
+
+
+SUCCEEDED = GoalEnd("succeeded", 3)
+PREEMPTED = GoalEnd("preempted", 2, "stopped")
+ABORTED = GoalEnd("aborted", 4, "failed")
+REJECTED = GoalEnd("rejected", 5, "refused")
+RECALLED = GoalEnd("recalled", 8, "stopped before it began")
+LOST = GoalEnd("lost", 9, "lost")
+NOT_SENT = GoalEnd("not sent", None, "not sent")
+GOAL_ENDS = (SUCCEEDED, PREEMPTED, ABORTED, REJECTED, RECALLED, LOST, NOT_SENT)
+"""All ways in which a goal ends, for logs and pages alike."""
+ENDS = {end.status: end for end in GOAL_ENDS if end.status is not None}
+STATES = {0: "pending", 1: "active", 6: "active", 7: "pending", **{status: end.state for status, end in ENDS.items()}}
+"""States of actionlib_msgs/GoalStatus by their names in logs."""
+
+
+def end_of(state: str) -> GoalEnd:
+    """The end of a name. Raises KeyError where it is none."""
+    return {end.state: end for end in GOAL_ENDS}[state]
 
 
 @dataclass(eq=False)
@@ -20,7 +55,7 @@ class Run:
         progress: The newest feedback, for people.
         result: Its fields as plain values; empty before the end, and for goals of others.
         sent: s of ROS time.
-        state: pending, active, succeeded, aborted, preempted, rejected, recalled, lost.
+        state: pending, active, or the state of one of GOAL_ENDS.
     """
 
     id: str
@@ -44,6 +79,10 @@ class Run:
     def done(self) -> bool:
         return self._over.is_set()
 
+    @property
+    def succeeded(self) -> bool:
+        return self.state == SUCCEEDED.state
+
     def cancel(self) -> None:
         """Have it ended, unless it is over."""
         if not self.done:
@@ -61,12 +100,12 @@ class Run:
         """Wait for its end, s of this computer; whether it is over. Not for the event loop of pages."""
         return self._over.wait(timeout)
 
-    def end(self, state: str, text: str = "", result: Mapping[str, Any] | None = None) -> None:
+    def end(self, end: GoalEnd, text: str = "", result: Mapping[str, Any] | None = None) -> None:
         """It is over; the first end counts."""
         with self._lock:
             if self.done:
                 return
-            self.state, self.text, self.result = state, text, result or {}
+            self.state, self.text, self.result = end.state, text, result or {}
             self._over.set()
             listeners, self._listeners = self._listeners, []
         for listener in listeners:

@@ -29,6 +29,7 @@ help: {help}
 do:
   - wait: 1.0
 """
+HELP = "What it does."
 SHORTEST = 0.05
 """s that a step has at least which is stretched by hand."""
 
@@ -58,7 +59,7 @@ class BehaviorDocument:
         self._take(text)
 
     @classmethod
-    def new(cls, help_: str = "What it does.") -> BehaviorDocument:
+    def new(cls, help_: str = HELP) -> BehaviorDocument:
         """One that is not stored yet."""
         document = cls("", TEMPLATE.format(help=help_))
         document._stored = ""
@@ -68,6 +69,11 @@ class BehaviorDocument:
     def changed(self) -> bool:
         """Whether it differs from what is stored."""
         return self.text != self._stored
+
+    @property
+    def stored_text(self) -> str:
+        """As it is stored; of one that is not, as it was begun."""
+        return self._stored or TEMPLATE.format(help=HELP)
 
     @property
     def file(self) -> str:

@@ -9,8 +9,10 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, Tuple
 
 from ..robots.commands import CommandGoal, RobotCommand, say
+from ..robots.presses import PATIENCE, Press, Presses
+from ..robots.runs import NOT_SENT, end_of
 from .errors import PressRefused
-from .model import ButtonAction, ButtonGroup, PlanDesignator, WizardButton, WizardLayout
+from .model import REPEATS, RUNS, USED, ButtonAction, ButtonGroup, PlanDesignator, WizardButton, WizardLayout
 from .texts import filled_text, names_in
 
 PLANS = "perform_designator"
@@ -18,6 +20,7 @@ PLANS = "perform_designator"
 LONGEST_HISTORY = 100
 LONGEST_TEXT = 2000
 LONGEST_VALUE = 100
+NO_MORE = "no more repetitions"
 STOPPED = "stopped"
 """Kind of the event that everything of a robot was stopped."""
 Place = Tuple[str, str, str]
@@ -33,9 +36,13 @@ class DeskRobot(Protocol):
     @property
     def stops(self) -> int: ...
 
-    def send(self, command: RobotCommand, by: str = "", label: str = "", stops: int | None = None) -> Any: ...
+    def send(
+        self, command: RobotCommand, by: str = "", label: str = "", stops: int | None = None, patience: float = PATIENCE
+    ) -> Any: ...
 
-    def send_goal(self, goal: CommandGoal, by: str = "", label: str = "", stops: int | None = None) -> Any: ...
+    def send_goal(
+        self, goal: CommandGoal, by: str = "", label: str = "", stops: int | None = None, patience: float = PATIENCE
+    ) -> Any: ...
 
     def stop(self, by: str = "") -> None: ...
 
@@ -53,18 +60,18 @@ class _Pressed:
     @property
     def state(self) -> str:
         if self.repetition is not None:
-            return "repeats"
-        return "runs" if self.runs else "used" if self.used else ""
+            return REPEATS
+        return RUNS if self.runs else USED if self.used else ""
 
 
 @dataclass(frozen=True)
-class _Press:
+class _Sending:
     """What is sent by one press, and again by its repetitions."""
 
     robot: DeskRobot
     button: WizardButton
     action: ButtonAction
-    by: str
+    press: Press
     pressed: _Pressed
     repetition: object  # None: it is sent once
     refusal: Callable[[], str]
@@ -85,10 +92,11 @@ class WizardDesk:
 
     A button that is for once is so for all pages. A repetition ends when its button is pressed again, when one of its
     runs does not succeed, when the robot is stopped, when the page that it began on leaves, and when the user who began
-    it may not move the robot any more.
+    it may not move the robot any more. How goals fail is reported to `presses`.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, presses: Presses) -> None:
+        self.presses = presses
         self._lock = threading.RLock()
         self._pressed: dict[Place, _Pressed] = {}
         self._robots: dict[str, _RobotDesk] = {}
@@ -99,9 +107,8 @@ class WizardDesk:
         robot: DeskRobot,
         group: ButtonGroup,
         button: WizardButton,
-        by: str,
+        press: Press,
         page: str = "",
-        via: str = "click",
         refusal: Callable[[], str] = lambda: "",
         stops: int | None = None,
     ) -> Any:
@@ -111,9 +118,8 @@ class WizardDesk:
             robot: The robot that the button is for.
             group: Its group.
             button: The button.
-            by: User who pressed it.
+            press: By whom it was pressed, and how.
             page: Id of the page that it was pressed on.
-            via: click or key, for the log.
             refusal: Why the user may not move the robot any more, asked before each repetition; empty: the user may.
             stops: Stops of the robot when it was pressed; None: as many as now.
 
@@ -125,7 +131,7 @@ class WizardDesk:
             Stopped: The robot was stopped since.
             NaoError: The robot cannot be sent a goal.
         """
-        place = (robot.namespace, group.title, button.label)
+        place = press.place
         if stops is None:
             stops = robot.stops
         with self._lock:
@@ -140,21 +146,20 @@ class WizardDesk:
                 ended = False
                 pressed.used = button.once
         if ended:
-            robot.events.add("pressed", f"{button.label}: no more repetitions", by, group=group.title, via=via)
+            press.log("pressed", f"{button.label}: no more repetitions")
             self._tell()
             return None
-        robot.events.add("pressed", button.label, by, group=group.title, button=button.label, key=button.key, via=via)
+        press.log("pressed", button.label, key=button.key)
         repetition = object() if button.repeat else None
         if repetition is not None:
             with self._lock:
                 pressed.repetition, pressed.page = repetition, page
             self._watch_stops(robot)
         try:
-            return self._run(_Press(robot, button, action, by, pressed, repetition, refusal, stops))
-        except Exception as error:
+            return self._run(_Sending(robot, button, action, press, pressed, repetition, refusal, stops))
+        except Exception:
             with self._lock:
                 pressed.used = False
-            robot.events.add("note", f"{button.label} was not sent: {error}", by)
             raise
         finally:
             self._tell()
@@ -178,7 +183,7 @@ class WizardDesk:
         spoken = filled_text(text, values)
         robot.events.add("pressed", f"says: {spoken}", by, button="free text")
         self._tell()
-        return robot.send(say(spoken, animated), by, stops=stops)
+        return robot.send(say(spoken, animated), by, stops=stops, patience=PATIENCE)
 
     def history(self, namespace: str) -> list[str]:
         """Free texts that were said by a robot, the newest first, each once."""
@@ -213,18 +218,25 @@ class WizardDesk:
                     pressed.used = False
         self._tell()
 
-    def states(self, layout: WizardLayout, namespace_of: Callable[[WizardButton], str]) -> dict[str, str]:
-        """Ids of buttons -> runs, repeats or used; the others are left out.
+    def states(
+        self, layout: WizardLayout, namespace_of: Callable[[WizardButton], str], user: str = ""
+    ) -> dict[str, str]:
+        """Ids of buttons -> one of `model.BUTTON_WORDS`; the others are left out.
 
-        `namespace_of`: tells the namespace of the robot that a button is for.
+        `namespace_of`: tells the namespace of the robot that a button is for. `user`: who has not looked at what has
+        failed.
         """
+        failed = self.presses.ends(user)
+        found = {}
         with self._lock:
-            found = {}
             for group, button in layout.buttons():
-                pressed = self._pressed.get((namespace_of(button), group.title, button.label))
-                if pressed is not None and pressed.state:
-                    found[button.id] = pressed.state
-            return found
+                place = (namespace_of(button), group.title, button.label)
+                now = self._pressed.get(place, _Pressed()).state
+                if place in failed and now in ("", USED):
+                    now = failed[place].state
+                if now:
+                    found[button.id] = now
+        return found
 
     def subscribe(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Have changes told, in the thread that makes them; what comes back ends that."""
@@ -253,15 +265,15 @@ class WizardDesk:
             raise PressRefused(f"{what} needs {' and '.join(empty)}: fill that in under Names")
         return kept
 
-    def _run(self, press: _Press) -> Any:
-        pressed, repetition = press.pressed, press.repetition
-        if isinstance(press.action, RobotCommand) and press.action.stops:
-            press.robot.stop(press.by)
+    def _run(self, sending: _Sending) -> Any:
+        pressed, repetition = sending.pressed, sending.repetition
+        if isinstance(sending.action, RobotCommand) and sending.action.stops:
+            sending.robot.stop(sending.press.by)
             return None
         with self._lock:
             pressed.runs += 1
         try:
-            run = _send(press)
+            run = _send(sending)
         except Exception:
             with self._lock:
                 pressed.runs -= 1
@@ -270,35 +282,38 @@ class WizardDesk:
             raise
 
         def ended(run: Any) -> None:
+            end, no_more = end_of(run.state), ""
             with self._lock:
                 pressed.runs -= 1
                 if repetition is not None and pressed.repetition is repetition:
-                    if run.state == "succeeded":
-                        again = threading.Timer(press.button.repeat, self._again, (press,))
+                    if end.failed:
+                        no_more = NO_MORE
+                        self._end_repetition(pressed)
+                    else:
+                        again = threading.Timer(sending.button.repeat, self._again, (sending,))
                         again.daemon = True
                         pressed.timer = again
                         again.start()
-                    else:
-                        self._end_repetition(pressed)
+            self.presses.report(sending.press, end, "; ".join(filter(None, (run.text, no_more))), goal=run.id)
             self._tell()
 
         run.on_end(ended)
         return None if repetition is not None else run
 
-    def _again(self, press: _Press) -> None:
+    def _again(self, sending: _Sending) -> None:
         with self._lock:
-            if press.pressed.repetition is not press.repetition:
+            if sending.pressed.repetition is not sending.repetition:
                 return
         try:
-            refusal = press.refusal()
+            refusal = sending.refusal()
             if refusal:
                 raise PressRefused(refusal)
-            self._run(press)
+            self._run(sending)
         except Exception as error:  # also: the robot is gone, or its server
             with self._lock:
-                if press.pressed.repetition is press.repetition:
-                    self._end_repetition(press.pressed)
-            press.robot.events.add("note", f"{press.button.label}: no more repetitions: {error}")
+                if sending.pressed.repetition is sending.repetition:
+                    self._end_repetition(sending.pressed)
+            self.presses.report(sending.press, NOT_SENT, f"{error}; {NO_MORE}")
         self._tell()
 
     def _watch_stops(self, robot: DeskRobot) -> None:
@@ -341,11 +356,11 @@ class WizardDesk:
             self._listeners.pop(key, None)
 
 
-def _send(press: _Press) -> Any:
-    robot, label = press.robot, press.button.label
-    if isinstance(press.action, RobotCommand):
-        return robot.send(press.action, press.by, label, stops=press.stops)
+def _send(sending: _Sending) -> Any:
+    robot, by, label, action = sending.robot, sending.press.by, sending.button.label, sending.action
+    if isinstance(action, RobotCommand):
+        return robot.send(action, by, label, stops=sending.stops, patience=PATIENCE)
     from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorGoal
 
-    goal = PerformDesignatorGoal(designator=press.action.text)
-    return robot.send_goal(CommandGoal(PLANS, PerformDesignatorAction, goal), press.by, label, press.stops)
+    goal = CommandGoal(PLANS, PerformDesignatorAction, PerformDesignatorGoal(designator=action.text))
+    return robot.send_goal(goal, by, label, stops=sending.stops, patience=PATIENCE)

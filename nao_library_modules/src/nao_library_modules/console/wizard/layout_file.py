@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 from ...base.whole_file import write_whole
 from ...behaviors.language.errors import Problem
-from ..files.yaml_file import ConsoleFileError
+from ..files.yaml_file import ConsoleFileError, revision_of
 from .errors import EditConflict
 from .model import WizardLayout
-from .reader import read_layout, revision_of
+from .reader import read_layout
 
 
 class SavedText(NamedTuple):

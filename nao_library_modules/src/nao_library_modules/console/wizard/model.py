@@ -9,7 +9,17 @@ from typing import Any, Union
 
 from ...base.colours import parse_colour, to_integer
 from ..robots.commands import RobotCommand
+from ..robots.runs import GOAL_ENDS
 
+RUNS, REPEATS, USED = "runs", "repeats", "used"
+BUTTON_WORDS = {
+    RUNS: "runs",
+    REPEATS: "repeats",
+    USED: "done",
+    **{end.state: end.word for end in GOAL_ENDS if end.failed},
+}
+"""State of a button -> what stands on it."""
+FAILED_STATES = tuple(end.state for end in GOAL_ENDS if end.failed)
 DARK, LIGHT = "#000000", "#ffffff"
 
 

@@ -22,7 +22,6 @@ What a button does is one of the forms of `robots.commands`, or `perform`: a des
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from typing import Any
 
@@ -30,7 +29,7 @@ from ...base.colours import is_colour
 from ...base.errors import BadGoal
 from ...base.suggestion import did_you_mean
 from ...behaviors.language.yaml_text import dump_line, line_in, line_of
-from ..files.yaml_file import FileReader
+from ..files.yaml_file import FileReader, revision_of
 from ..robots.commands import FORMS, KEYS, place_of_field, read_command
 from .key_names import BadKey, key_of
 from .model import ButtonAction, ButtonGroup, PlanDesignator, WizardButton, WizardLayout, hex_colour
@@ -46,11 +45,6 @@ LONGEST_REPEAT = 3600.0
 LONGEST_LABEL = 60
 LONGEST_TEXT = 2000
 MOST_BUTTONS = 400
-
-
-def revision_of(text: str) -> str:
-    """What tells one text of a file from another."""
-    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
 def read_layout(text: str, name: str = "console.yaml") -> WizardLayout:

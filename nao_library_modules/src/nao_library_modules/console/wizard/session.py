@@ -5,20 +5,26 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from naoqi.errors import NaoError
 
 from ..access.pulse import refusal_of_late
+from ..robots.events import namespace_of
+from ..robots.presses import Press
+from ..robots.runs import NOT_SENT
 from .desk import WizardDesk
+from .errors import PressRefused
 from .model import WizardButton, WizardLayout
 
 LONGEST_MESSAGE = 4096
 """Characters."""
+LONGEST_LABEL = 100
 POINTS = ("click", "start", "drag", "end")
 WALK, PRESS, HEAD, STOP = "walk", "press", "head", "stop"
 KINDS = (WALK, PRESS, HEAD, STOP)
+PAGE = "/wizard"
 
 
 @dataclass(frozen=True)
@@ -29,11 +35,13 @@ class PageRights:
         name: Of the user, for the log.
         refusal: Why the visitor may not move a robot now, by its namespace; empty: the visitor may.
         known: Whether the visitor is logged in, who may stop it then: observers, too.
+        operator: Whether the visitor is an operator, whose failed presses the robot's events show.
     """
 
     name: str
     refusal: Callable[[str], str]
     known: Callable[[], bool]
+    operator: Callable[[], bool]
 
 
 class WizardSession:
@@ -44,7 +52,8 @@ class WizardSession:
     Messages are JSON objects, each with one of these keys:
 
     - walk: [ahead, left, turn left], shares -1..1 of the top speed; holds 0.4 s;
-    - press: id of a button, with `revision` of the layout that it is from, and `via`, click or key;
+    - press: id of a button, with `revision` of the layout that it is from, its `label` and `group` there, and `via`,
+      click or key;
     - head: {kind, camera, x, y}, as `head_pointer.HeadPointer.point` takes it;
     - stop: true; the stop of all pages ends what the robot of the page does, this one what the others do that the
       page's buttons are for.
@@ -100,7 +109,7 @@ class WizardSession:
             stops: What `stops` gave when it arrived; None: it arrives now. A press from before a stop is refused.
 
         Returns:
-            What to tell the visitor; empty: all is well.
+            What to tell the visitor; empty: all is well, or a press has failed, which is kept in `WizardDesk.presses`.
         """
         if self._left and kind != PRESS:
             return ""
@@ -127,13 +136,12 @@ class WizardSession:
         return self._find(button.robot) if button.robot else self.robot
 
     def states(self) -> Mapping[str, str]:
-        """Ids of buttons that run, repeat or were used -> which of it."""
+        """Ids of buttons that run, repeat, were used or have failed -> which of it."""
+        return self._desk.states(self._layout(), self._namespace, self._rights.name)
 
-        def namespace(button: WizardButton) -> str:
-            name = button.robot.strip("/")
-            return f"/{name}/" if name else "/" if button.robot else self.robot.namespace
-
-        return self._desk.states(self._layout(), namespace)
+    def _namespace(self, button: WizardButton) -> str:
+        """Of the robot that a button is for, whether it is there or not."""
+        return namespace_of(button.robot) if button.robot else self.robot.namespace
 
     @property
     def must_let_go(self) -> bool:
@@ -181,24 +189,35 @@ class WizardSession:
 
     def _press(self, value: Any, message: Mapping[str, Any], stops: Mapping[str, int]) -> None:
         layout = self._layout()
-        if message.get("revision") != layout.revision:
-            raise ValueError("the buttons have changed meanwhile: look again, and press once more")
-        found = [pair for pair in layout.buttons() if pair[1].id == value]
-        if not found:
-            raise ValueError("there is no such button any more: load the page again")
-        ((group, button),) = found
-        ends = getattr(button.action, "stops", False)
+        found = [
+            pair for pair in layout.buttons() if pair[1].id == value and message.get("revision") == layout.revision
+        ]
+        ends = bool(found) and getattr(found[0][1].action, "stops", False)
         if self._left and not ends:
             return
-        if not ends:
-            self._in_time(message)
-        robot = self.robot_of(button)
-        if not (ends and self._rights.known()):
-            self._require(robot)
-        self._desk.take_names(layout, robot.namespace)
-        via = "key" if message.get("via") == "key" else "click"
-        refusal, count = lambda: self._refusal(robot), stops.get(robot.namespace)
-        self._desk.press(robot, group, button, self._rights.name, self.page, via, refusal, count)
+        logged = self._rights.operator()  # what observers try is theirs to see
+        label, group = (str(message.get(name, ""))[:LONGEST_LABEL] for name in ("label", "group"))
+        via, streams = ("key" if message.get("via") == "key" else "click"), ((self.robot.events,) if logged else ())
+        press = Press(label, self._rights.name, PAGE, self.robot.namespace, group, via, streams)
+        try:
+            if not found:
+                raise PressRefused("the buttons have changed meanwhile: look again, and press once more")
+            ((in_group, button),) = found
+            press = replace(press, label=button.label, group=in_group.title, robot=self._namespace(button))
+            if not ends:
+                self._in_time(message)
+            robot = self.robot_of(button)
+            press = replace(press, streams=(*streams, robot.events) if logged else ())
+            if not (ends and self._rights.known()):
+                self._require(robot)
+            self._desk.take_names(layout, robot.namespace)
+            refusal, count = lambda: self._refusal(robot), stops.get(robot.namespace)
+            self._desk.press(robot, in_group, button, press, self.page, refusal, count)
+        except (ValueError, NaoError) as error:
+            self._desk.presses.report(press, NOT_SENT, str(error))
+        except Exception as error:
+            self._desk.presses.report(press, NOT_SENT, f"unexpected error: {error!r}")
+            raise
 
     def _head(self, value: Any, message: Mapping[str, Any], stops: Mapping[str, int]) -> None:
         if not isinstance(value, dict) or value.get("kind") not in POINTS:

@@ -17,7 +17,7 @@ from starlette.requests import Request
 from naoqi.errors import NaoError
 
 from ....behaviors.language.expressions import text_of
-from ...files.yaml_file import ConsoleFileError
+from ...files.yaml_file import revision_of
 from ...study.checking import checked_for
 from ...study.conditions import filled
 from ...study.course import all_steps, any_round
@@ -30,6 +30,7 @@ from ...study.runner import TrialRunner
 from ...study.state import CUT, DONE, FAILED, HELD, PAUSED, REPEATED, RUNNING, SKIPPED, STOPPED, TIMEOUT, TrialState
 from ...study.studies import Studies
 from ..frame import framed, page_at, sure
+from ..text_editor import Draft, YamlEditor, mistakes, problems_of
 from .links import study_links
 from .participants_card import ParticipantsCard
 
@@ -81,6 +82,7 @@ class _StudyPage:
         self.runner: TrialRunner | None = None
         self.protocol: StudyProtocol | None = None
         self._chosen = wanted.get("protocol", "")
+        self._revision = ""  # of the protocol that is edited, as it was when it was opened
         self._fields: dict[str, Any] = {}
         self._dirty = True
         self._leave: Any = None
@@ -184,14 +186,14 @@ class _StudyPage:
             self._begin_button = ui.button("Start trial", icon="play_arrow", on_click=self._begin).props("no-caps")
             self._problems = ui.column().classes("text-negative gap-0").props('role="alert"')
         self._participants = ParticipantsCard(self.page, self.studies, self._tell_order)
-        with ui.expansion("Protocol as YAML", icon="edit").classes("w-full"):
+        offers = ui.column().classes("w-full")
+        with ui.expansion("Protocol as YAML", icon="edit").classes("w-full") as self._expansion:
             self._name = ui.input("Name", value=NEW).props("maxlength=64")
-            self._text = (
-                ui.textarea("Protocol", value=EXAMPLE).classes("w-full font-mono").props("autogrow spellcheck=false")
-            )
             with ui.row():
                 ui.button("Check", on_click=self._check).props("no-caps outline")
                 ui.button("Save", on_click=self._save).props("no-caps")
+            self._editor = YamlEditor(self.page, "Protocol", "protocol", self._take_draft, offers=offers)
+            self._editor.open(NEW, EXAMPLE)
         self._person.value = self._wanted.get("participant", "")
         if names:
             chosen = self._chosen or await self.page.work(self.studies.files.newest_protocol)
@@ -207,11 +209,14 @@ class _StudyPage:
         ui.navigate.history.replace(f"/study?robot={quote(self.robot.name)}&protocol={quote(name)}{person}")
         try:
             text = await self.page.ask(self.studies.files.protocol_text, name)
-            self._name.value, self._text.value = name, text
+            self._name.value, self._revision = name, revision_of(text)
+            self._editor.open(name, text)
             self.protocol = await self.page.work(read_protocol, text, name)
         except (NaoError, OSError) as error:
             self.protocol = None
-            self._tell_problems(error.problems if isinstance(error, ConsoleFileError) else [error])
+            problems = problems_of(error)
+            self._editor.mark(problems)
+            self._tell_problems([f"{name}, as it is saved, cannot be run: {mistakes(len(problems))}", *problems])
         else:
             record = self.protocol.record
             self._bag.value, self._video.value, self._sound.value = bool(record.bag), bool(record.video), record.sound
@@ -287,31 +292,47 @@ class _StudyPage:
 
     async def _check(self) -> bool:
         """Whether the text can be run, also by the robot of the page."""
+        editor = self._editor
         try:
-            protocol = await self.page.work(read_protocol, self._text.value or "", self._name.value or "")
+            protocol = await self.page.work(read_protocol, editor.text, self._name.value or "")
             problems = await self.page.work(checked_for, self.robot, protocol)
         except NaoError as error:
-            problems = [*error.problems] if isinstance(error, ConsoleFileError) else [error]
-        self._tell_problems(problems)
-        if problems:
-            ui.notify("The protocol cannot be run", type="negative")
-            return False
-        ui.notify("Nothing wrong was found", type="positive")
-        return True
+            problems = problems_of(error)
+        if editor.code.is_deleted:
+            return False  # a trial has begun meanwhile, which the page shows; the text is kept as a draft
+        editor.mark(problems)
+        found = f"The protocol cannot be run: {mistakes(len(problems))}" if problems else "Nothing wrong was found"
+        editor.tell(found)
+        return not problems
 
     async def _save(self) -> None:
-        if not self.page.operate() or not await self._check():
+        if not self.page.operate("Save") or not await self._check():
             return
+        files, name, text = self.studies.files, self._name.value, self._editor.text
         try:
-            name = self._name.value
-            await self.page.work(self.studies.files.store_protocol, name, self._text.value)
-            names = list(await self.page.ask(self.studies.files.protocols))
+            if await self._would_undo(name) and not await sure(
+                f"There is another {name}, or it has changed since. Save over it?", "Save over it", "Do not save"
+            ):
+                return
+            await self.page.work(files.store_protocol, name, text)
+            names = list(await self.page.ask(files.protocols))
         except (NaoError, OSError) as error:
-            ui.notify(str(error), type="negative")
+            self._editor.tell(f"It is not saved: {error}")
             return
         self._choice.set_options(names)
         self._choice.value = name
         await self._read()
+
+    async def _would_undo(self, name: str) -> bool:
+        """Whether to save a protocol would replace another one, or what somebody else has saved meanwhile."""
+        if name not in await self.page.ask(self.studies.files.protocols):
+            return False
+        return revision_of(await self.page.ask(self.studies.files.protocol_text, name)) != self._revision
+
+    def _take_draft(self, _text: str, revision: str) -> None:
+        """A draft is shown; it is of the protocol as it was then."""
+        self._revision = revision
+        self._expansion.open()
 
     def _tell_problems(self, problems: Iterable[Any]) -> None:
         if self._problems.is_deleted:
@@ -353,6 +374,7 @@ class _StudyPage:
                 ui.button("Deviation", on_click=lambda: self._write("deviation")).props(
                     "no-caps outline color=negative"
                 )
+            Draft(self.page, self._note, "note").of(runner.id)
         with ui.row().classes("w-full items-start no-wrap max-md:flex-wrap"):
             with ui.card().classes("flex-1 min-w-[18rem]"):
                 self._build_steps(runner)
