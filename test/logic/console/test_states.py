@@ -125,6 +125,20 @@ def test_what_was_said_before_anybody_listened_or_while_the_robot_was_lost_is_no
     assert [(event.kind, event.text) for event in robot.events.last()] == [("said", "Hello")] * 2
 
 
+def test_a_hand_that_is_told_again_by_a_driver_that_is_back_is_no_new_touch():
+    robot = ToldRobot()
+    Senses(robot, robot).acquire()
+    wait_for(robot, SENTENCE)
+    press, release = (SimpleNamespace(button=1, state=state) for state in (1, 0))
+    robot.callbacks["head_touch"](press)
+    robot.connect("connecting")
+    robot.callbacks["head_touch"](press)
+    robot.connect("connected")
+    for told in (release, press):
+        robot.callbacks["head_touch"](told)
+    assert robot.texts == ["front head pressed", "front head released", "front head pressed"]
+
+
 # --- how old ----------------------------------------------------------------------------------------------------------
 
 

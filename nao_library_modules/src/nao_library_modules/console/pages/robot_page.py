@@ -34,6 +34,7 @@ KINDS = {
     "heard": "what it hears",
     "seen": "what it sees",
     "said": "what it says",
+    "alarm": "alarms",
 }
 LEVEL_COLOURS = {OK: "positive", ERROR: "negative"}
 STATE_COLOURS = {

@@ -134,7 +134,7 @@ class BodyWatch:
 
     def _on_connection(self, told: Any) -> None:
         self.connection, self.address, self.problem = told.state, told.address, told.last_error
-        self._fall.connection_is(told.state)
+        self._fall.recovery.connection_is(told.state)
         if told.state not in REACHED:
             self.stance.forget_family()
 

@@ -18,6 +18,32 @@ SETTLED = 10.0
 """s of this computer after a connection is back, within which topics tell how it stands."""
 
 
+class Recovery:
+    """Whether the robot is lost, or came back a moment ago: what is told then is how it stands. Any thread.
+
+    `clock`: s of this computer.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._until = -math.inf
+
+    @property
+    def lasts(self) -> bool:
+        return self._clock() < self._until
+
+    def end(self) -> None:
+        """What was waited for has been told."""
+        self._until = -math.inf
+
+    def connection_is(self, state: str) -> None:
+        """The connection to the robot changes. `state`: of nao_library_msgs/ConnectionState."""
+        if state not in REACHED:
+            self._until = math.inf
+        elif self._until == math.inf:
+            self._until = self._clock() + SETTLED
+
+
 class Latched:
     """The state that one topic holds. Any thread.
 
@@ -29,10 +55,12 @@ class Latched:
     Attributes:
         value: The state; None until it is told.
         held: Whether the topic had a value when it was subscribed; only `repeats` needs to know.
+        recovery: Is told how the connection is; behind one that was lost the next message tells how it stands.
     """
 
     def __init__(self, repeats: bool = False, clock: Callable[[], float] = time.monotonic) -> None:
-        self._repeats, self._clock = repeats, clock
+        self._repeats = repeats
+        self.recovery = Recovery(clock)
         self._lock = threading.Lock()
         self.clear()
 
@@ -43,7 +71,7 @@ class Latched:
             self.held = False
             self._link: Any = None
             self._heard = False
-            self._state_until = -math.inf
+            self.recovery.end()
 
     def take(self, value: Any, message: Any = None) -> bool:
         """Take a value that was told; whether that is news. `message`: of rospy, which knows its own connection."""
@@ -55,14 +83,6 @@ class Latched:
             self._link, heard, self._heard = link, self._heard, True
             if not self._repeats:
                 return heard and value != before
-            state = (first_of_link and known) or self._clock() < self._state_until
-            self._state_until = -math.inf
+            state = (first_of_link and known) or self.recovery.lasts
+            self.recovery.end()
             return not state
-
-    def connection_is(self, state: str) -> None:
-        """The connection to the robot changes: behind one that was lost the next message tells how it stands."""
-        with self._lock:
-            if state not in REACHED:
-                self._state_until = math.inf
-            elif self._state_until == math.inf:
-                self._state_until = self._clock() + SETTLED

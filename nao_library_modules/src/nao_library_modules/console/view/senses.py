@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from .background import Subscriptions, Takers
-from .latched import Latched
+from .latched import Latched, Recovery
 from .memory_topics import MemoryTopics
 from .sense_texts import BUMPER, CHEST, HAND, HEAD, Perception, Sightings, clicked, heard, said, touched
 
@@ -36,12 +36,14 @@ class Senses:
         self._subscriptions = Subscriptions(f"senses of {robot.name}")
         self._sightings = Sightings()
         self._spoken = Latched(repeats=True)  # the newest sentence
+        self._touch_recovery = Recovery()
         self.pressed: frozenset[str] = frozenset()
 
     def _end(self) -> None:
         with self._lock:
             self.pressed = frozenset()
         self._spoken.clear()
+        self._touch_recovery.end()
         self._subscriptions.end()
 
     def _starts(self) -> list[Callable[[], Callable[[], None]]]:
@@ -54,7 +56,7 @@ class Senses:
             ("hand_touch", msg.HandTouch, lambda told: self._touch(HAND.get(told.hand), told.state)),
             ("bumper", msg.Bumper, lambda told: self._touch(BUMPER.get(told.bumper), told.state)),
             ("chest_button", msg.ChestButton, self._on_chest),
-            ("connection", msg.ConnectionState, lambda told: self._spoken.connection_is(told.state)),
+            ("connection", msg.ConnectionState, self._on_connection),
             ("nao_vision/faces_detected", msg.FaceDetected, self._on_face),
             ("nao_vision/landmark_detected", msg.LandmarkDetected, self._on_landmarks),
             ("nao_vision/movement_detected", msg.MovementDetected, partial(self._see, "movement", "")),
@@ -76,8 +78,10 @@ class Senses:
         perception = touched(sensor, bool(state))
         devices = frozenset(perception.values["devices"])
         with self._lock:
+            again = state and devices <= self.pressed
             self.pressed = self.pressed | devices if state else self.pressed - devices
-        self._tell(perception)
+        if not (again and self._touch_recovery.lasts):  # a driver that is back tells what is touched
+            self._tell(perception)
 
     def _on_chest(self, told: Any) -> None:
         if told.clicks:
@@ -96,6 +100,10 @@ class Senses:
         # By arrival: stamps of a robot's pictures may be of its own clock.
         stamp = told.header.stamp.to_sec() or None
         self._tell(self._sightings.seen(what, name, self._robot.now()), stamp)
+
+    def _on_connection(self, told: Any) -> None:
+        for each in (self._spoken.recovery, self._touch_recovery):
+            each.connection_is(told.state)
 
     def _on_sentence(self, told: Any) -> None:
         if self._spoken.take(told.data, told):
