@@ -201,7 +201,7 @@ def test_a_joint_is_hot_by_the_limit_of_the_driver(tmp_path):
     watch = watch_of(robot, tmp_path)
     robot.report(*reported(temperature=68.0))
     watch.look()
-    assert [alarm.what for alarm in watch.alarms] == ["Too warm: HeadYaw"]
+    assert [alarm.what for alarm in watch.alarms] == ["Hot joints: HeadYaw"]
 
 
 def test_the_speed_of_a_simulator_that_is_gone_is_no_alarm(tmp_path):

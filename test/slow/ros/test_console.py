@@ -340,7 +340,7 @@ def test_an_alarm_is_shown_on_every_page_and_covers_and_moves_nothing(browser):
     before = browser.script(PLACES)
 
     def falls():
-        set_event("robotHasFallen", "true")  # again, until the console listens
+        set_event("robotHasFallen", "true")  # again, until the console has subscribed
         return browser.all("[data-alarm=fallen]")
 
     try:

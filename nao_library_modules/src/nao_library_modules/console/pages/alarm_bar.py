@@ -10,12 +10,12 @@ from nicegui import ui
 from ..view.alarms import Alarm
 
 PERIOD = 1.0
-"""s between two looks whether an alarm has begun or ended."""
+"""s between two updates."""
 NONE = "No alarms"
 
 
 class AlarmBar:
-    """On one page. Each alarm is one line, which is made once: a screen reader says it once.
+    """The strip of one page. The line of an alarm is created once, so that a screen reader reads it once.
 
     `page`: its `PageContext`.
     """
@@ -43,7 +43,7 @@ class AlarmBar:
 
 
 def since_text(alarm: Alarm) -> str:
-    """Since when there is an alarm, for people."""
+    """Begin of an alarm as text."""
     clock = time.strftime("%H:%M:%S", time.localtime(alarm.since))
     return f"since {clock} or before" if alarm.found else f"since {clock}"
 

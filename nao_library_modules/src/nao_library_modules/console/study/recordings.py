@@ -22,7 +22,7 @@ from .protocol import WantedRecordings
 BAG, VIDEO, SOUND = "bag", "video", "sound"
 SERVERS = {VIDEO: "NaoVision", SOUND: "nao_audio_in"}
 GONE_AFTER = 5.0
-"""s of this computer without a word from a server, which tells once a second what it records."""
+"""s of this computer without a report of a server, which reports its recordings once a second."""
 BEGUN_AFTER = 3.0
 """s of this computer from the begin of a recording until its server's reports count."""
 LIMIT = 30.0
@@ -71,11 +71,14 @@ class TrialRecordings:
                 runner.deviation(f"the {kind} could not be ended: {error}")
 
     def stopped(
-        self, running: Mapping[str, Mapping[str, Any]], told: Mapping[str, ServerRecordings], now: float
+        self, running: Mapping[str, Mapping[str, Any]], reports: Mapping[str, ServerRecordings], now: float
     ) -> dict[str, str]:
-        """Recordings that have stopped though nobody has ended them, and why.
+        """Recordings that have ended unasked -> reason.
 
-        `running`: those of the trial, by the log. `told`: what servers record, at times by the clock of `now`.
+        Args:
+            running: Those of the trial, from its log.
+            reports: Those of the servers, by name.
+            now: Time by the clock of the reports, s.
         """
         if self._ending:
             return {}
@@ -84,15 +87,15 @@ class TrialRecordings:
         if bag is not None and not is_bag(self._folder / str(bag["file"]), bag):
             found[BAG] = "its process has ended"
         for kind, server in SERVERS.items():
-            report = told.get(server)
-            if kind not in running or report is None:  # an older server does not tell
+            report = reports.get(server)
+            if kind not in running or report is None:  # an older server does not report them
                 self._seen.pop(kind, None)
                 continue
             since = self._seen.setdefault(kind, now)
             if now - report.heard > GONE_AFTER:
-                found[kind] = f"{server} is gone"
+                found[kind] = f"{server} does not report any more"
             elif report.heard > since + BEGUN_AFTER and not report.names:
-                found[kind] = f"{server} gets nothing to record, or was told to stop"
+                found[kind] = f"{server} does not record"
         return found
 
     def _begin_bag(self, runner: Any) -> None:

@@ -1,4 +1,4 @@
-"""State and alarms of the robot in the log of a trial."""
+"""The state of the robot at the begin of a trial, in its log."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from ..view.diagnosis import ServerRecordings
 from .runner import TrialRunner
 
 PATIENCE = 5.0
-"""s of this computer for which the log waits for the whole state: what is not known then is empty in it."""
+"""s of this computer for which the entry waits for the whole state; what is still unknown then is empty."""
 
 
 class TrialWatch:
-    """Writes how the robot is when a trial begins, or is resumed: one event. The alarms are events of the robot.
+    """Adds one event with the state of the robot and the active alarms when a trial begins or is resumed.
 
-    What was so before the trial is in that event and has not happened in the trial.
+    Later begins and ends of alarms are events of the robot, and so in the log by themselves.
 
     Args:
         runner: Not started yet.
         watch: Of its robot.
-        recordings: `TrialRecordings`, which tells what of them has stopped.
+        recordings: Its `TrialRecordings`.
         clock: s of this computer.
     """
 
@@ -34,13 +34,13 @@ class TrialWatch:
     ) -> None:
         self._runner, self._watch, self._recordings, self._clock = runner, watch, recordings, clock
         self._lock = threading.Lock()
-        self._until: float | None = None  # the trial has begun, and its state is to be written by then
+        self._until: float | None = None  # deadline of the entry; None: the trial has not begun
         self._written = False
-        self._told: set[str] = set()  # codes of alarms that are in the log
+        self._logged: set[str] = set()  # codes of the alarms in these entries
         self._ends: list[Callable[[], None]] = []
 
     def begin(self) -> None:
-        """Look from now on; the state is written behind the first event of the trial."""
+        """Watch from now on; the entry follows the first event of the trial."""
         self._ends = [
             self._runner.on_change(self._trial_changed),
             self._watch.follow(self._facts, self._looked),
@@ -57,14 +57,14 @@ class TrialWatch:
             self._looked()
 
     def _looked(self) -> None:
-        """Write the state once it is known, and later each alarm that was so at the begin and is known only then."""
+        """Add the entry as soon as the state is known, and later a further one for alarms that were found late."""
         with self._lock:
             if self._until is None or not (self._written or self._watch.complete or self._clock() > self._until):
                 return
             first, self._written = not self._written, True
             found = [alarm for alarm in self._watch.alarms if first or alarm.found]
-            late = [alarm for alarm in found if alarm.code not in self._told]
-            self._told.update(alarm.code for alarm in found)
+            late = [alarm for alarm in found if alarm.code not in self._logged]
+            self._logged.update(alarm.code for alarm in found)
         state = state_of(self._watch.body)
         if first:
             codes = [alarm.code for alarm in found]
@@ -74,9 +74,9 @@ class TrialWatch:
             text = "; ".join(alarm.what for alarm in late)
             self._runner.robot.events.add(STATE, text, trial=self._runner.id, alarms=[alarm.code for alarm in late])
 
-    def _facts(self, recorded: Mapping[str, ServerRecordings], now: float) -> TrialFacts:
+    def _facts(self, recordings: Mapping[str, ServerRecordings], now: float) -> TrialFacts:
         runner = self._runner
         if runner.state.over:
             return TrialFacts()
-        stopped = self._recordings.stopped(dict(runner.state.recordings), recorded, now)
+        stopped = self._recordings.stopped(dict(runner.state.recordings), recordings, now)
         return TrialFacts(stopped, runner.log.trouble)

@@ -1,4 +1,4 @@
-"""The alarms of one robot, looked at once a second while a page or a trial wants them."""
+"""The alarms of one robot, evaluated once a second while a page is open or a trial runs."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ from .diagnosis import ServerRecordings
 log = logging.getLogger(__name__)
 
 PERIOD = 1.0
-"""s of this computer between two looks."""
+"""s of this computer between two evaluations."""
 BEGAN, ENDED = "began", "ended"
 """What events of an alarm have as `what`."""
 
 
 @dataclass(frozen=True)
 class TrialFacts:
-    """What a trial knows for the alarms of its robot."""
+    """What a trial adds to the facts of its robot."""
 
-    stopped: Mapping[str, str] = field(default_factory=dict)  # recording -> why it has stopped by itself
-    log: str = ""  # why its log cannot be written
+    stopped: Mapping[str, str] = field(default_factory=dict)  # recording that has ended unasked -> reason
+    log: str = ""  # why its log cannot be written; empty: it can
 
 
 TrialSource = Callable[[Mapping[str, ServerRecordings], float], TrialFacts]
-"""Gets what servers record, and the time by the clock of the watch."""
+"""Gets the recordings of the servers, and the time by the clock of the watch."""
 
 
 class AlarmWatch:
@@ -46,7 +46,7 @@ class AlarmWatch:
         folder: Of the studies.
 
     Attributes:
-        acquire: Looks until what it returns is called.
+        acquire: Watches until the returned function is called.
     """
 
     def __init__(self, robot: Any, body: BodyWatch, folder: Path, clock: Callable[[], float] = time.monotonic) -> None:
@@ -61,7 +61,7 @@ class AlarmWatch:
 
     @property
     def alarms(self) -> tuple[Alarm, ...]:
-        """Those that go on."""
+        """The active ones."""
         return self._book.alarms
 
     @property
@@ -70,7 +70,7 @@ class AlarmWatch:
         return self._book.looked and self.body.complete
 
     def follow(self, source: TrialSource, listener: Callable[[], None]) -> Callable[[], None]:
-        """Take a trial into account; `listener`: called behind each look. What comes back ends that."""
+        """Watch a trial as well, until the returned function is called. `listener`: called after each look."""
         key = object()
         with self._lock:
             self._trials[key] = (source, listener)
@@ -82,18 +82,18 @@ class AlarmWatch:
         return end
 
     def look(self) -> None:
-        """Look once: at most so often as `PERIOD` says, but at once where somebody wants it."""
+        """Evaluate the alarms once, in the thread of the watch."""
         with self._lock:
             trials = list(self._trials.values())
         begun, ended = self._book.look(self._facts([source for source, _ in trials]), time.time())
         for alarm in begun:
-            self._tell(alarm, BEGAN, alarm.what)
+            self._add_event(alarm, BEGAN, alarm.what)
         for alarm in ended:
-            self._tell(alarm, ENDED, f"over: {alarm.what}")
+            self._add_event(alarm, ENDED, f"ended: {alarm.what}")
         for _, listener in trials:
             listener()
 
-    def _tell(self, alarm: Alarm, what: str, text: str) -> None:
+    def _add_event(self, alarm: Alarm, what: str, text: str) -> None:
         self.robot.events.add(ALARM, text, what=what, code=alarm.code, since=round(alarm.since, 3))
 
     def _facts(self, sources: list[TrialSource]) -> Facts:
@@ -135,12 +135,12 @@ class AlarmWatch:
         while not over.wait(PERIOD):
             try:
                 self.look()
-            except Exception:  # looks again in a while
-                log.exception("the alarms of %s are not looked at", self.robot.name)
+            except Exception:  # the next look may succeed
+                log.exception("the alarms of %s could not be evaluated", self.robot.name)
 
 
 def free_bytes(folder: Path) -> int | None:
-    """Room on the disk of a folder, which need not be there yet; None if that is not known."""
+    """Free bytes on the disk of a folder that may not exist yet; None if not known."""
     while not folder.exists() and folder != folder.parent:
         folder = folder.parent
     try:

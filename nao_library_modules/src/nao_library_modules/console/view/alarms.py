@@ -1,7 +1,6 @@
-"""Alarms: what must not happen unseen while a study runs, and what to do then. Pure.
+"""Alarms: what the operator of a study has to notice, since when, and what to do. Pure.
 
-Each alarm is one `Rule` of `RULES`, with its limit and the reason for it. Nothing here knows ROS or a clock: who looks
-gives the times.
+Each alarm is a `Rule` in `RULES`; the limits and their reasons stand above it. Times are arguments.
 """
 
 from __future__ import annotations
@@ -14,11 +13,11 @@ LOWEST_BATTERY, BATTERY_MARGIN = 20.0, 2.0
 """Percent: of the 60 to 90 minutes of a full battery 12 to 18 are left, enough to end a trial. The driver warns from 30
 on, while nothing has to be done yet. So much more ends the alarm, for charges flicker."""
 SILENCE = 2.0
-"""s without an answer: servers tell of the robot once a second, and their clients see its end within 2."""
+"""s without an answer: servers report the connection once a second."""
 PATIENCE = 10.0
-"""s that a driver has to tell of itself for the first time."""
+"""s for the first report of a driver."""
 LATE = 1.5
-"""Periods of a report, after which what it told is old: one may come late."""
+"""Periods after which the values of a report are old: one report may be late."""
 LOST = 3.0
 """Periods after which the reports count as ended."""
 SLOWEST, SPEED_MARGIN, SLOW_FOR = 0.95, 0.02, 3.0
@@ -30,20 +29,20 @@ LEAST_DISK, DISK_MARGIN = 10**9, 10**8
 
 @dataclass(frozen=True)
 class Facts:
-    """What is known of a robot at one time. None, or not a number: not known.
+    """The inputs of the rules at one time. None, or not a number: not known.
 
     Attributes:
         now: s of this computer, monotonic.
-        watched: s since somebody began to look.
-        connection: State, of nao_library_msgs/ConnectionState; empty until it is told.
+        watched: s since the watch began.
+        connection: State, of nao_library_msgs/ConnectionState; empty before the first message.
         silence: s since the robot's last answer.
         report_age, report_period: Of the reports of the body, s.
-        charge: Percent; `charging`: whether it rises.
+        charge: Of the battery, percent; `charging`: whether it is being charged.
         hot: Joints that the driver calls hot, or too hot.
-        limp: Whether no motor holds; `should_stand`: it stood, and has not been laid, seated or crouched since.
+        limp: Whether all joints are limp; `should_stand`: its last posture but for lying and unknown ones was standing.
         speed: Simulated seconds per second: asked (infinite: as fast as possible), reached.
-        stopped: Recording of the trial that has stopped by itself -> why.
-        log: Why the log of the trial cannot be written.
+        stopped: Recording of the trial that has ended unasked -> reason.
+        log: Why the log of the trial cannot be written; empty: it can.
         free: Bytes on the disk of the studies.
     """
 
@@ -67,13 +66,13 @@ class Facts:
 
 @dataclass(frozen=True)
 class Rule:
-    """When there is an alarm.
+    """The condition and the texts of one alarm.
 
     Attributes:
-        holds: Whether it is so, by the facts and whether the alarm goes on; None: nobody knows.
-        what: For people; the same words as long as it is the same alarm.
+        holds: Whether the condition holds, from the facts and whether the alarm is active; None: not known.
+        what: What is wrong; the same text while the alarm lasts, so that a screen reader reads it once.
         action: What to do.
-        lasting: s for which it has to hold.
+        lasting: s for which the condition has to hold.
     """
 
     code: str
@@ -85,11 +84,11 @@ class Rule:
 
 @dataclass(frozen=True)
 class Alarm:
-    """One that goes on.
+    """An active alarm.
 
     Attributes:
         since: Time of this computer, s since 1970.
-        found: It was so when somebody began to look: it may have begun before.
+        found: The condition held at the first look: the alarm may be older.
     """
 
     code: str
@@ -107,7 +106,7 @@ def _connection(facts: Facts, active: bool) -> bool | None:
 
 def _connection_text(facts: Facts) -> str:
     if not facts.connection:
-        return "No driver tells of the robot"
+        return "No driver reports the robot"
     if facts.connection in ("connected", "silent"):
         return f"The robot has not answered for more than {SILENCE:g} s"
     return f"The connection to the robot is {facts.connection}"
@@ -150,41 +149,41 @@ RULES: Sequence[Rule] = (
         "connection",
         _connection,
         _connection_text,
-        "Pause the trial. Look at the robot's cable or Wi-Fi, and at its driver, which connects again by itself.",
+        "Pause the trial. Check the robot's cable or Wi-Fi and its driver, which reconnects by itself.",
     ),
     Rule(
         "old_reports",
         lambda facts, _: None if facts.report_age is None else facts.report_age > LOST * facts.report_period,
-        lambda _: "The driver tells nothing of battery, heat and motors any more",
-        "Do not rely on what the pages show of the robot. Look whether the driver runs, and start it again.",
+        lambda _: "The driver no longer reports battery, heat and motors",
+        "Do not rely on the values of the robot. Check that the driver runs, or start it again.",
     ),
     Rule(
         "battery",
         _low,
         lambda _: f"The battery is below {LOWEST_BATTERY:g} %",
-        "Plug in the charger, at the latest behind this trial.",
+        "Plug in the charger, after this trial at the latest.",
     ),
     Rule(
         "hot_joint",
         lambda facts, _: None if facts.hot is None else bool(facts.hot),
-        lambda facts: f"Too warm: {', '.join(facts.hot or ())}",
-        "Have the robot rest behind this step, until the joint is cooler: a motor that gets too hot goes limp.",
+        lambda facts: f"Hot joints: {', '.join(facts.hot or ())}",
+        "Have the robot rest after this step until they are cooler: a motor that gets too hot goes limp.",
     ),
     *(
-        _recorder(kind, f"Write down when. From now on the {kind} has nothing: abort the trial if it needs that.")
+        _recorder(kind, f"Note the time. The {kind} lacks what comes from now on: abort the trial if you need it.")
         for kind in ("bag", "video", "sound")
     ),
     Rule(
         "log",
         lambda facts, _: bool(facts.log),
         lambda _: "The log of the trial cannot be written",
-        "Make room on the disk. The trial waits before its next step, and goes on by itself.",
+        "Free disk space. The trial waits before its next step, and continues by itself.",
     ),
     Rule(
         "disk",
         lambda facts, active: None if facts.free is None else facts.free < LEAST_DISK + DISK_MARGIN * active,
         lambda _: f"The disk of the studies has less than {LEAST_DISK / 1e9:g} GB left",
-        "Make room on the disk before the next trial, and record no video until then.",
+        "Free disk space before the next trial, and record no video until then.",
     ),
     Rule(
         "slow_simulation",
@@ -198,7 +197,7 @@ CODES = tuple(rule.code for rule in RULES)
 
 
 class AlarmBook:
-    """The alarms that go on. One thread looks; any thread may read `alarms`, which is replaced as a whole."""
+    """The active alarms. One thread calls `look`; any thread may read `alarms`, which is replaced as a whole."""
 
     def __init__(self) -> None:
         self.alarms: tuple[Alarm, ...] = ()
@@ -207,30 +206,30 @@ class AlarmBook:
         self._was_well: set[str] = set()
 
     def look(self, facts: Facts, wall: float) -> tuple[list[Alarm], list[Alarm]]:
-        """Alarms that have begun and that have ended by now. `wall`: s since 1970.
+        """Evaluate the rules; alarms that begin and alarms that end. `wall`: s since 1970.
 
-        One that was so at the first look has not begun; what is not known changes nothing.
+        What holds at the first look is active and has not begun. An unknown condition changes nothing.
         """
         self.looked = True
-        going = {alarm.code: alarm for alarm in self.alarms}
+        active = {alarm.code: alarm for alarm in self.alarms}
         begun, ended = [], []
         for rule in RULES:
-            holds = rule.holds(facts, rule.code in going)
+            holds = rule.holds(facts, rule.code in active)
             if holds is None:
                 continue
             if not holds:
                 self._since.pop(rule.code, None)
                 self._was_well.add(rule.code)
-                if rule.code in going:
-                    ended.append(going.pop(rule.code))
+                if rule.code in active:
+                    ended.append(active.pop(rule.code))
                 continue
             began, since = self._since.setdefault(rule.code, (facts.now, wall))
-            before = going.get(rule.code)
+            before = active.get(rule.code)
             if before is None and facts.now - began < rule.lasting:
                 continue
             found = before.found if before else rule.code not in self._was_well and not rule.lasting
-            alarm = going[rule.code] = Alarm(rule.code, rule.what(facts), rule.action, since, found)
+            alarm = active[rule.code] = Alarm(rule.code, rule.what(facts), rule.action, since, found)
             if before is None and not found:
                 begun.append(alarm)
-        self.alarms = tuple(going[code] for code in CODES if code in going)
+        self.alarms = tuple(active[code] for code in CODES if code in active)
         return begun, ended

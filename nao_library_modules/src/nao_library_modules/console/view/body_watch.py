@@ -1,4 +1,4 @@
-"""The state of a robot, as its driver and its memory tell it, while somebody wants it: not what happens to it."""
+"""The state of a robot, from its driver and its memory. Events are in `senses`."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ LONGEST_PERIOD = 30.0
 
 
 class BodyWatch:
-    """Of one robot. Any thread. All topics here are states: only a change of one is an event of the robot.
+    """The state of one robot. Any thread. All topics here hold states: only a change is an event of the robot.
 
     ROS API (relative names):
-        Subscribes, while somebody wants it, `/diagnostics` (diagnostic_msgs/DiagnosticArray), `connection`
-        (nao_library_msgs/ConnectionState), `foot_contact` (std_msgs/Bool), and of the robot's memory
-        (`nao_memory/watch`) its posture, the family of that, and whether it has fallen.
+        Subscribes, while acquired, `/diagnostics` (diagnostic_msgs/DiagnosticArray), `connection`
+        (nao_library_msgs/ConnectionState), `foot_contact` (std_msgs/Bool), and keys of the robot's memory
+        (`nao_memory/watch`): posture, posture family, last fall.
 
     Attributes:
-        acquire: Follows the body until what it returns is called.
+        acquire: Subscribes until the returned function is called.
         status: The body; replaced at each report.
-        connection: connecting, connected, silent, lost or closed; empty until it is told.
+        connection: connecting, connected, silent, lost or closed; empty before the first message.
         address: Of the robot.
-        problem: What went wrong last with its connection.
-        diagnosis: What the reports tell beside the body.
+        problem: The last error of its connection.
+        diagnosis: The reports that are not about the body.
         stance: How it stands or lies.
         report_period: s between the last two reports of the body.
     """
@@ -52,23 +52,23 @@ class BodyWatch:
 
     @property
     def posture(self) -> str:
-        """As the robot calls it; empty until it is told."""
+        """As the robot calls it; empty while it is not known."""
         return self._posture.value or ""
 
     @property
     def silence(self) -> float | None:
-        """S since the robot's last answer; None until somebody tells of it."""
+        """Seconds since the robot's last answer; None before the first report of it."""
         answered = self.diagnosis.answered
         return None if answered is None else max(0.0, self._clock() - answered)
 
     @property
     def report_age(self) -> float | None:
-        """S since the last report of the body; None before the first."""
+        """Seconds since the last report of the body; None before the first."""
         return None if self._reported is None else max(0.0, self._clock() - self._reported)
 
     @property
     def old(self) -> float | None:
-        """S since the robot was there for a report of its body, where the next one is late or lacks it; else None."""
+        """Age of the values of the body, s, if newer ones are late or the robot was lost; else None."""
         if self._well_reported is None or self._reported is None:
             return None
         age = self._clock() - self._well_reported
@@ -76,13 +76,13 @@ class BodyWatch:
 
     @property
     def unheard(self) -> float | None:
-        """S since the robot's last answer where that is too long ago; else None."""
+        """Seconds since the robot's last answer if they are more than `SILENCE`; else None."""
         silence = self.silence
         return silence if silence is not None and silence > SILENCE else None
 
     @property
     def complete(self) -> bool:
-        """Whether each state has been told."""
+        """Whether each state is known."""
         return bool(self.connection and self.posture and self.stance.family) and self._reported is not None
 
     def _begin(self) -> None:
@@ -112,18 +112,18 @@ class BodyWatch:
         self.connection = self.address = self.problem = ""
         self.report_period = REPORT_PERIOD
         self._reported: float | None = None
-        self._well_reported: float | None = None  # by a driver that reached the robot
+        self._well_reported: float | None = None  # while the driver reached the robot
 
-    def _tell(self, perception: Perception, stamp: float | None = None) -> None:
+    def _add_event(self, perception: Perception, stamp: float | None = None) -> None:
         self._robot.events.add(perception.kind, perception.text, stamp=stamp, **perception.values)
 
     # --- messages, in threads of ROS ------------------------------------------------------------------------------
 
-    def take_diagnostics(self, told: Any) -> None:
+    def take_diagnostics(self, message: Any) -> None:
         """A message of /diagnostics, of this robot or not."""
         now = self._clock()
-        self.diagnosis.take(told.status, self.address, now)
-        status = read_status(told.status, self._robot.namespace, self.status)
+        self.diagnosis.take(message.status, self.address, now)
+        status = read_status(message.status, self._robot.namespace, self.status)
         if status is self.status:
             return
         if self._reported is not None:
@@ -132,34 +132,36 @@ class BodyWatch:
         if not status.stale:
             self._well_reported = now
 
-    def _on_connection(self, told: Any) -> None:
-        self.connection, self.address, self.problem = told.state, told.address, told.last_error
-        self._fall.recovery.connection_is(told.state)
-        if told.state not in REACHED:
+    def _on_connection(self, message: Any) -> None:
+        self.connection, self.address, self.problem = message.state, message.address, message.last_error
+        self._fall.recovery.connection_is(message.state)
+        if message.state not in REACHED:
             self.stance.forget_family()
 
-    def _on_contact(self, told: Any) -> None:
-        if self._contact.take(told.data):
-            self._tell(felt("stands on the ground" if told.data else "has lost the ground", ground=told.data))
+    def _on_contact(self, message: Any) -> None:
+        if self._contact.take(message.data):
+            self._add_event(
+                felt("stands on the ground" if message.data else "has lost the ground", ground=message.data)
+            )
 
-    def _on_posture(self, told: Any) -> None:
-        if self._posture.take(told.data):
-            self._tell(felt(f"posture {told.data}", posture=told.data), told.header.stamp.to_sec())
+    def _on_posture(self, message: Any) -> None:
+        if self._posture.take(message.data):
+            self._add_event(felt(f"posture {message.data}", posture=message.data), message.header.stamp.to_sec())
 
-    def _on_family(self, told: Any) -> None:
-        self.stance.take(told.data)
+    def _on_family(self, message: Any) -> None:
+        self.stance.take(message.data)
 
-    def _on_fall(self, told: Any) -> None:
-        news = self._fall.take(told.data, told)
-        if told.data.lower() not in ("true", "1", "1.0"):
+    def _on_fall(self, message: Any) -> None:
+        news = self._fall.take(message.data, message)
+        if message.data.lower() not in ("true", "1", "1.0"):
             return
         self.stance.fell(news)
         if news:
-            self._tell(felt("has fallen", fallen=True), told.header.stamp.to_sec())
+            self._add_event(felt("has fallen", fallen=True), message.header.stamp.to_sec())
 
 
 def state_of(body: BodyWatch) -> dict[str, Any]:
-    """How a robot is, as a log has it; None: not known."""
+    """The state of a robot, as JSON values; None: not known."""
     status, stance = body.status, body.stance
     return {
         "connection": body.connection or None,
@@ -176,7 +178,7 @@ def state_of(body: BodyWatch) -> dict[str, Any]:
 
 
 def state_text(state: dict[str, Any]) -> str:
-    """A state of `state_of`, for people."""
+    """A state of `state_of` as text."""
     stiffness = "" if state["stiffness"] is None else f"stiffness {100 * state['stiffness']:.0f} %"
     parts = [
         state["connection"] or "connection unknown",

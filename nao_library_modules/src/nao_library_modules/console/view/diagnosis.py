@@ -1,6 +1,6 @@
-"""What /diagnostics tells beside the body: whether the robot answers, how fast time passes, what is recorded. Pure.
+"""/diagnostics, apart from the body: last answer of the robot, speed of the simulation, recordings. Pure.
 
-Times are given by who asks, s of this computer.
+Times are arguments, s of this computer.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ class SimulatedSpeed:
 
     asked: float  # infinite: as fast as possible
     reached: float
-    heard: float  # when that was told
+    heard: float  # time of the report
 
 
 @dataclass(frozen=True)
 class ServerRecordings:
-    """What one server records."""
+    """The recordings of one server."""
 
     names: frozenset[str]
-    heard: float  # when that was told
+    heard: float  # time of the report
 
 
 class Diagnosis:
-    """What was told last.
+    """The newest reports.
 
     Attributes:
-        answered: When the robot answered last; None until somebody tells.
-        speed: None where no simulator tells, and while its time stands still.
-        recordings: Name of a server -> what it records.
+        answered: Time of the robot's last answer; None before the first report.
+        speed: None without a simulator, and while its time stands still.
+        recordings: Name of a server -> its recordings.
     """
 
     def __init__(self) -> None:
@@ -63,8 +63,8 @@ class Diagnosis:
                 self.answered = max(self.answered or -math.inf, now - silent)
             if RECORDINGS in values:
                 server = status.name.rpartition(": ")[2].rpartition(" ")[0]
-                told = ServerRecordings(frozenset(json.loads(values[RECORDINGS])), now)
-                self.recordings = {**self.recordings, server: told}
+                running = ServerRecordings(frozenset(json.loads(values[RECORDINGS])), now)
+                self.recordings = {**self.recordings, server: running}
 
 
 def _number(text: Any) -> float:

@@ -1,7 +1,7 @@
-"""Topics that hold a state, and the change that is news. Pure.
+"""Latched topics: which messages are news, and which only repeat the state. Pure.
 
-Who begins to listen to a latched topic, or to a key of the robot's memory, is told the present value first. So is
-everybody when the robot or the node behind the topic is back. None of that has happened just now.
+A latched topic, or a key of the robot's memory, first sends its present value to a new subscriber. It sends the value
+again when the robot has been reconnected or the node behind the topic has restarted. Neither is an event.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from typing import Any
 REACHED = frozenset({"connected", "silent"})
 """States of nao_library_msgs/ConnectionState in which the robot is known to be the one of before."""
 SETTLED = 10.0
-"""s of this computer after a connection is back, within which topics tell how it stands."""
+"""s of this computer after a connection is back, within which topics send their present state."""
 
 
 class Recovery:
-    """Whether the robot is lost, or came back a moment ago: what is told then is how it stands. Any thread.
+    """Whether the robot is lost or has just been reconnected: the next message is a state then. Any thread.
 
     `clock`: s of this computer.
     """
@@ -33,7 +33,7 @@ class Recovery:
         return self._clock() < self._until
 
     def end(self) -> None:
-        """What was waited for has been told."""
+        """The state has arrived."""
         self._until = -math.inf
 
     def connection_is(self, state: str) -> None:
@@ -45,17 +45,17 @@ class Recovery:
 
 
 class Latched:
-    """The state that one topic holds. Any thread.
+    """The state of one latched topic. Any thread.
 
     Args:
-        repeats: The topic holds what happened last, as a sentence or a fall: each message is news, whatever its value,
-            but those that tell the present value. Otherwise only another value is news.
+        repeats: The topic holds the last event, as a sentence or a fall: each message is news, whatever its value,
+            unless it only repeats the present one. Otherwise only a changed value is news.
         clock: s of this computer.
 
     Attributes:
-        value: The state; None until it is told.
+        value: The state; None before the first message.
         held: Whether the topic had a value when it was subscribed; only `repeats` needs to know.
-        recovery: Is told how the connection is; behind one that was lost the next message tells how it stands.
+        recovery: Takes the state of the connection; after a lost one the next message is a state.
     """
 
     def __init__(self, repeats: bool = False, clock: Callable[[], float] = time.monotonic) -> None:
@@ -65,7 +65,7 @@ class Latched:
         self.clear()
 
     def clear(self) -> None:
-        """Forget the state: nobody listens any more."""
+        """Forget the state, at the end of the subscription."""
         with self._lock:
             self.value: Any = None
             self.held = False
@@ -74,7 +74,7 @@ class Latched:
             self.recovery.end()
 
     def take(self, value: Any, message: Any = None) -> bool:
-        """Take a value that was told; whether that is news. `message`: of rospy, which knows its own connection."""
+        """Take the value of a message; whether it is news. `message`: of rospy, with the header of its connection."""
         link = getattr(message, "_connection_header", None)
         with self._lock:
             first_of_link = not self._heard or link is not self._link

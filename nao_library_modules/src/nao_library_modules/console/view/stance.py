@@ -10,7 +10,7 @@ class Stance:
     """How a robot stands or lies.
 
     Attributes:
-        family: Of its posture; empty until it is told.
+        family: Of its posture; empty while it is not known.
         fallen: It has fallen and has not stood or sat since.
         stood: The last family that was neither lying nor unknown was `STANDING`.
     """
@@ -25,7 +25,7 @@ class Stance:
         return self.family.startswith(LYING)
 
     def fell(self, news: bool) -> None:
-        """The robot's memory tells of a fall. `news`: it has just happened, and is not what is left of an older one."""
+        """The robot's memory reports a fall. `news`: a new one; otherwise the value that an older one has left."""
         if news:
             self.fallen = True
         elif self.family in ("", UNKNOWN):
@@ -34,7 +34,7 @@ class Stance:
             self.fallen = self.fallen or self.lies
 
     def forget_family(self) -> None:
-        """The robot is not reached: when it is again, its posture and its last fall are told in any order."""
+        """The robot is lost; posture and last fall arrive in any order when it is reconnected."""
         self.family, self._had_fallen = "", False
 
     def take(self, family: str) -> None:
