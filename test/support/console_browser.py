@@ -31,6 +31,8 @@ const [css, text] = arguments, seen = { opacityProperty: true, visibilityPropert
 return [...document.querySelectorAll(css)].filter((each) => each.checkVisibility(seen) && each.getClientRects().length
   && each.innerText.toLowerCase().includes(text.toLowerCase()))"""
 CONNECTED = "return Boolean(document.querySelector('.nao-stop')?.checkVisibility() && window.socket?.connected);"
+CLEAR = "arguments[0].scrollIntoView({ block: 'nearest' });"
+"""Scrolls an element clear of the bar and of the strip for notices."""
 TEXT = "return document.body?.innerText ?? '';"
 STATE = "return `${location.href}, connected: ${window.socket?.connected}`;"
 
@@ -127,6 +129,7 @@ class ConsoleBrowser:
             if not elements:
                 return False
             try:
+                self.script(CLEAR, elements[0])
                 elements[0].click()
             except WebDriverException:
                 return False
@@ -143,6 +146,7 @@ class ConsoleBrowser:
                 return False
             keys = ActionChains(self.driver).click(field)  # which is in vain where it was drawn anew meanwhile
             try:
+                self.script(CLEAR, field)
                 keys.key_down(Keys.CONTROL).send_keys("a").key_up(Keys.CONTROL).send_keys(text).perform()
             except WebDriverException:
                 return False

@@ -43,13 +43,12 @@ def click(text: str, css: str = "button") -> tuple[str, str, str]:
     return "click", css, text
 
 
-OPEN_NOD = click("nod", ".q-item")
-PUT_IN = (OPEN_NOD, click("Put in"))
+OPEN_NOD = (click("nod", ".q-item"), ("one", "[role=heading]", "nod"))
+PUT_IN = (*OPEN_NOD, click("Put in"))
 OPEN_POSTURE = (("type", "input[aria-label='Search functions']", "goToPosture"), click("goToPosture", ".q-item"))
 OVERLAYS = {
     "frame.framed.footer": None,  # stands on every page
     "frame._choice_of_robot.select": None,  # is there where several robots are: test_console_robots.py opens it
-    "frame.sure.dialog": Overlay("/study", (click("Start trial"), click("Abort"))),
     "insert_dialog.InsertDialog.__init__.dialog": Overlay("/behaviors", PUT_IN),
     "insert_dialog.InsertDialog.__init__.select": drop_down("/behaviors", "What", *PUT_IN),
     "insert_dialog.InsertDialog._ask.select": drop_down("/behaviors", "Function (type to search)", *PUT_IN),
@@ -62,12 +61,14 @@ OVERLAYS = {
     "simulator_panel.SimulatorPanel._build_things.select": drop_down(
         "/", "Kind", click("Place a thing", ".q-expansion-item .q-item")
     ),
-    "behaviors_page.BehaviorsView._project.dialog": Overlay("/behaviors", (OPEN_NOD, click("Project")), escapes=2),
+    "behaviors_page.BehaviorsView._project.dialog": Overlay("/behaviors", (*OPEN_NOD, click("Project")), escapes=2),
     "behaviors_page._ask_name.dialog": Overlay("/behaviors", (click("Record"),)),
     "functions_page.FunctionsView.build.select": drop_down("/functions", "Server"),
     "functions_page.show_copy.dialog": Overlay("/functions", (*OPEN_POSTURE, click("Command"))),
     "results_page.build.show.select": drop_down("/study/results", "Study"),
     "trial_page._StudyPage._build_begin.select": drop_down("/study", "Protocol"),
+    # Behind the other of its page: a trial runs from then on.
+    "frame.sure.dialog": Overlay("/study", (click("Start trial"), click("Abort"))),
 }
 """Module, function and element -> how it is opened."""
 
