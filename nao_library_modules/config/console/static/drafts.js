@@ -44,7 +44,8 @@ class Draft extends HTMLElement {
     this.offer();
   }
 
-  text() {
+  // not `text`: Vue sets attributes as properties where an element has one of the name
+  current() {
     const id = this.getAttribute("editor");
     this.view = getElement(id)?.editor ?? this.view;
     if (this.view) {
@@ -57,7 +58,7 @@ class Draft extends HTMLElement {
   }
 
   look() {
-    const text = this.text();
+    const text = this.current();
     if (text === this.last || !this.getAttribute("draft")) return;
     this.last = text;
     if (text === plain(this.getAttribute("saved"))) {
