@@ -176,7 +176,6 @@ def test_what_those_do_not_have_is_refused(step, told, library):
         ("NaoMotion.angleInterpolation: {names: [HeadYaw], angles: [0.1], times: [9000]}", "field times: 9000"),
         ("wait: 7200", "field wait: 7200 is unusual"),
         ("wait: 1, for: 7200", "field for: 7200 is unusual"),
-        ("repeat: 5000, do: [{wait: 1}]", "field repeat: 5000 is unusual: usual is 0..1000"),
     ],
 )
 def test_a_number_that_is_not_usual_is_refused_unless_the_step_says_that_it_is_meant(step, told, library, tables):

@@ -186,18 +186,14 @@ class _Binder:
         return SequenceNode(**common, nodes=self._all(step.parts, scope, home))
 
     def _seconds(self, key: str, value: Any, step: Step, scope: _Scope) -> float:
-        """A time of a step, s; noted where it is not usual."""
+        """A time of a step, s; noted where it is not usual, unless the step says that it is meant."""
         found = _seconds(key, value, scope.values)
-        self._look_whether_usual(key, found, "wait", step, scope)
-        return found
-
-    def _look_whether_usual(self, key: str, value: float, kind: str, step: Step, scope: _Scope) -> None:
-        """Note a number of a step that is not usual, unless the step says that it is meant."""
         if self._checks and not step.unusual:
             try:
-                require_usual(key, value, usual(kind))
+                require_usual(key, found, usual("wait"))
             except BadGoal as error:
                 self._note(step, scope, str(error))
+        return found
 
     def _goal(self, step: Functions, scope: _Scope, common: dict[str, Any]) -> Node | None:
         server = self._tables.server(step.server)
@@ -259,7 +255,6 @@ class _Binder:
         whole = isinstance(count, int) or (isinstance(count, float) and count.is_integer())
         if isinstance(count, bool) or not whole or not 0 <= count <= MOST_ROUNDS:
             raise BadGoal("repeat", count, f"a whole number 0..{MOST_ROUNDS}")
-        self._look_whether_usual("repeat", count, "rounds", step, scope)
         path: PathParts = common["path"]
 
         def one(number: int, binder: _Binder) -> SequenceNode:
