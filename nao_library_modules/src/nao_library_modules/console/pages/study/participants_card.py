@@ -19,15 +19,17 @@ MOST_SHOWN = 100
 
 
 class ParticipantsCard:
-    """A list that can be opened. `changed`: called when a pseudonym is another one."""
+    """The list of them. `changed`: called when a pseudonym is another one."""
 
     def __init__(self, page: Any, studies: Studies, changed: Callable[[], Awaitable[None]]) -> None:
         self._page, self._studies, self._changed = page, studies, changed
         self._protocol: StudyProtocol | None = None
-        self._box = ui.expansion("Participants", icon="badge").classes("w-full")
-        with self._box:
+        self._shown: tuple[StudyProtocol, list[Participant]] | None = None
+        with ui.card().classes("w-full max-h-[40vh] overflow-auto") as self._box:
+            ui.label("Participants").classes("text-h6")
             ui.label("A mistyped pseudonym can be corrected; while nothing was played, it can be taken back.")
             self._rows = ui.column().classes("w-full gap-1")
+        self._box.set_visibility(False)
 
     async def show(self, protocol: StudyProtocol) -> None:
         """Show those of a study."""
@@ -37,8 +39,9 @@ class ParticipantsCard:
         except (NaoError, OSError) as error:
             ui.notify(str(error), type="negative")
             return
-        if self._rows.is_deleted or protocol is not self._protocol:
-            return
+        if self._rows.is_deleted or protocol is not self._protocol or self._shown == (protocol, found):
+            return  # what somebody types beside a name stays
+        self._shown = (protocol, found)
         self._rows.clear()
         self._box.set_visibility(bool(found))
         with self._rows:
