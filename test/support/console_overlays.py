@@ -26,12 +26,14 @@ class Overlay:
         steps: What is done until it is open: (verb, selector, text), with the verbs of `ConsoleBrowser`.
         shown: Selector of it.
         escapes: Times that Escape is pressed until it is closed.
+        closes: Whether it is gone soon then; what it shows may take a while to end.
     """
 
     page: str
     steps: tuple[tuple[str, str, str], ...]
     shown: str = DIALOG
     escapes: int = 1
+    closes: bool = True
 
 
 def drop_down(page: str, label: str, *before: tuple[str, str, str]) -> Overlay:
@@ -61,7 +63,9 @@ OVERLAYS = {
     "simulator_panel.SimulatorPanel._build_things.select": drop_down(
         "/", "Kind", click("Place a thing", ".q-expansion-item .q-item")
     ),
-    "behaviors_page.BehaviorsView._project.dialog": Overlay("/behaviors", (*OPEN_NOD, click("Project")), escapes=2),
+    "behaviors_page.BehaviorsView._project.dialog": Overlay(
+        "/behaviors", (*OPEN_NOD, click("Project")), escapes=2, closes=False
+    ),
     "behaviors_page._ask_name.dialog": Overlay("/behaviors", (click("Record"),)),
     "functions_page.FunctionsView.build.select": drop_down("/functions", "Server"),
     "functions_page.show_copy.dialog": Overlay("/functions", (*OPEN_POSTURE, click("Command"))),

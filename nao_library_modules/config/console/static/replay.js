@@ -8,7 +8,8 @@ const LANES = [
   ["Felt", ["touched", "felt"]],
   ["Heard", ["heard"]],
   ["Seen", ["seen"]],
-  ["Wizard", ["pressed", "walked"]],
+  ["Wizard", ["pressed", "walked", "failed"]],
+  ["Alarms", ["state", "alarm"]],
   ["Notes", ["note", "deviation"]],
 ];
 const COLOURS = {

@@ -25,7 +25,7 @@ from ..timeline.tracks import Tracks, tracks_of
 from ..timeline.yaml_places import EditRefused
 from ..view.background import Subscriptions
 from .field_inputs import FieldInputs
-from .frame import PageContext, framed, page_at, sure
+from .frame import PageContext, framed, page_at, remove_dialog, sure
 from .insert_dialog import BEHIND, INSIDE, LAST, InsertDialog
 from .step_form import StepForm
 from .text_editor import Draft, marks_of
@@ -473,8 +473,7 @@ class BehaviorsView:
             ui.notify(f"No projection: {error}", type="negative", multi_line=True)
             return
         finally:
-            dialog.close()
-            dialog.delete()
+            remove_dialog(dialog)
         self._measured = {**self._measured, **done.lengths}
         await self._refresh()
         kind = "positive" if done.state == "succeeded" else "negative"
@@ -700,5 +699,5 @@ async def _ask_name(title: str, suggested: str, hint: str) -> str:
             ui.button("OK", on_click=lambda: dialog.submit(name.value))
             ui.button("Cancel", on_click=lambda: dialog.submit("")).props("flat")
     answer = await dialog
-    dialog.delete()
+    remove_dialog(dialog)
     return str(answer or "").strip()

@@ -301,5 +301,15 @@ async def sure(question: str, yes: str = "Yes", no: str = "No") -> bool:
             ui.button(yes, on_click=lambda: dialog.submit(True)).props("no-caps")
             ui.button(no, on_click=lambda: dialog.submit(False)).props("no-caps outline")
     answer = await dialog
-    dialog.delete()
+    remove_dialog(dialog)
     return bool(answer)
+
+
+def remove_dialog(dialog: ui.dialog) -> None:
+    """Close a dialog for good.
+
+    Its page may be gone: NiceGUI would warn with the stack, whose lines it reads from files in the event loop.
+    """
+    if not dialog.client.is_deleted:
+        dialog.close()
+        dialog.delete()
