@@ -17,10 +17,8 @@ from nao_library_modules.console.access.pulse import LATE
 from nao_sim_bridge.testing import wait_until
 
 READY = {
-    "/wizard": "nao-wizard-buttons button",
-    "/behaviors": ".q-item",
-    "/functions": ".q-item",
-    "/study/replay": "svg",
+    **{"/wizard": "nao-wizard-buttons button", "/behaviors": ".q-item", "/functions": ".q-item"},
+    "/study/replay": "canvas",
 }
 """Pages that ask for what they show -> what is there then."""
 WIDTHS = (1440, 1024, 390)
