@@ -9,18 +9,16 @@ import time
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, Callable, Optional, Tuple
 
-import qi
-
 from . import wire
 from .errors import CallTimeout
 from .limits import wait_while_answering
+from .session import RUNNING
 
 if TYPE_CHECKING:
     from .remote import RemoteMethod
 
 logger = logging.getLogger("naoqi")
 
-RUNNING = qi.FutureState.Running
 NOT_YET = "Future timeout."
 FIRST_SLICE_MS = 100
 INTERRUPTIBLE_MS = 200

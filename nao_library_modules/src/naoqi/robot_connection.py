@@ -14,11 +14,10 @@ import time
 from typing import Any, Callable, List, Optional, Tuple
 
 from . import directory
-from .calls import RUNNING
 from .errors import RobotUnreachable
 from .limits import BOOT_LIMIT, EXIT_LIMIT, FLUSH_LIMIT, Timing
 from .presence import Presence
-from .session import Live, open_live, watch_starts
+from .session import RUNNING, Live, open_live, watch_starts
 from .state import Listener, Listeners, State
 from .subscriptions import EventSubscriptions
 from .tasks import TaskTable

@@ -11,12 +11,12 @@ from typing import Any, Callable, DefaultDict, Dict, Optional
 
 import qi
 
-from .calls import RUNNING
 from .errors import RobotUnreachable
 from .translate import connect_reason
 
 logger = logging.getLogger("naoqi")
 
+RUNNING = qi.FutureState.Running
 MEMORY, READY = "ALMemory", "NAOqiReady"
 QUIET_LIBQI = "qi.path.sdklayout=silent:qi.eventloop=warning"
 """libqi warns that it found no SDK around it; a program that only talks to a robot needs none. On a busy computer it
