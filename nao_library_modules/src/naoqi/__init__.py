@@ -28,14 +28,12 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from .behavior import ALBehavior
     from .broker import ALBroker
     from .calls import Call
     from .limits import Timing
-    from .module import ALDocable, ALModule, createModule
+    from .module import ALBehavior, ALDocable, ALModule, createModule
     from .proxy import ALProxy
-    from .registry import close_all, connection
-    from .robot_connection import Connection
+    from .robot_connection import Connection, close_all, connection
     from .state import State
 
 __all__ = [
@@ -65,7 +63,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "ALBehavior": "behavior",
+    "ALBehavior": "module",
     "ALBroker": "broker",
     "ALDocable": "module",
     "ALModule": "module",
@@ -74,8 +72,8 @@ _HOMES = {
     "Connection": "robot_connection",
     "State": "state",
     "Timing": "limits",
-    "close_all": "registry",
-    "connection": "registry",
+    "close_all": "robot_connection",
+    "connection": "robot_connection",
     "createModule": "module",
 }
 """What is loaded when it is first asked for: programs that know the errors alone need no libqi."""

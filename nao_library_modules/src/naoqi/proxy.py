@@ -2,16 +2,61 @@
 
 from __future__ import annotations
 
-from typing import Any, List, Optional
+from typing import Any, Dict, List, Optional
 
-from . import introspection
 from .broker import current_broker
-from .calls import Call
+from .calls import ANSWERED_BY_ALL, Call, RemoteMethod, RemoteModule
 from .errors import BadArguments
 from .limits import Timing
-from .registry import connection
-from .remote import ANSWERED_BY_ALL, RemoteMethod, RemoteModule
-from .robot_connection import Connection
+from .robot_connection import Connection, connection
+from .translate import readable_call, readable_parameters, readable_type
+
+
+def method_help(module: RemoteModule, method: str) -> List[Any]:
+    """Help on a method: `[name, [[parameter, description], ...], return type, return description]`.
+
+    The overload with the most parameters counts. A parameter without a name is named after its type. Raises
+    UnknownMethod if the module has no such method.
+    """
+    description = max(_overloads(module, method), key=lambda each: len(each["parametersSignature"]))
+    parameters = [[name, text] for name, text in map(_pair, description["parameters"])]
+    if not parameters:
+        parameters = [[words, ""] for words in readable_parameters(description["parametersSignature"])]
+    returned = readable_type(description["returnSignature"])
+    return [method, parameters, returned, description["returnDescription"]]
+
+
+def module_help(module: RemoteModule) -> List[Any]:
+    """Help on a module: `[description, [[language, example], ...]]`."""
+    return [module.service().metaObject()["description"], []]
+
+
+def usage(module: RemoteModule, method: str) -> str:
+    """Signature and description of a method, one line for each overload.
+
+    Raises UnknownMethod if the module has no such method.
+    """
+    lines = []
+    for each in _overloads(module, method):
+        returned = readable_type(each["returnSignature"])
+        line = f"{readable_call(method, each['parametersSignature'])} -> {returned}"
+        description = each["description"]
+        lines.append(line if description in ("", "None") else f"{line}: {description}")
+    return "\n".join(lines)
+
+
+def _overloads(module: RemoteModule, method: str) -> List[Dict[str, Any]]:
+    found = module.overloads(method)
+    if not found:
+        module.find(method)  # raises UnknownMethod with the closest names
+    return found
+
+
+def _pair(parameter: Any) -> List[str]:
+    """Name and description; the version of libqi decides whether they come as a structure or a dictionary."""
+    if isinstance(parameter, dict):
+        return [parameter["name"], parameter["description"]]
+    return [parameter[0], parameter[1]]
 
 
 class ALProxy:
@@ -156,18 +201,18 @@ class ALProxy:
         """`[name, [[parameter, description], ...], return name, return description]` of a method."""
         if self._remote.offers("getMethodHelp"):
             return self._remote.method("getMethodHelp")(method)
-        return introspection.method_help(self._remote, method)
+        return method_help(self._remote, method)
 
     def getModuleHelp(self) -> List[Any]:
         """`[description, [[language, example], ...]]` of the module."""
         if self._remote.offers("getModuleHelp"):
             return self._remote.method("getModuleHelp")()
-        return introspection.module_help(self._remote)
+        return module_help(self._remote)
 
     def getUsage(self, method: str) -> str:
         if self._remote.offers("getUsage"):
             return self._remote.method("getUsage")(method)
-        return introspection.usage(self._remote, method)
+        return usage(self._remote, method)
 
     def _method(self, name: str) -> RemoteMethod:
         """A remote method, even where this class has one of the same name."""

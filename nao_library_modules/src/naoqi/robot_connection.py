@@ -2,26 +2,81 @@
 
 Threads: a watching thread opens the session, measures its heartbeat and closes it when the robot is silent for too
 long. A second one calls the listeners, so that a slow listener cannot delay the heartbeat. `live` is the one thing
-that calls read, a single reference that changes in one step; everything else is guarded by one condition.
+that calls read, a single reference that changes in one step; everything else is guarded by one condition. The
+connections of a process are shared: one for each address.
 """
 
 from __future__ import annotations
 
+import atexit
+import gc
 import logging
 import math
+import sys
 import threading
 import time
-from typing import Any, Callable, List, Optional, Tuple
+from types import FunctionType
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from . import directory
-from .errors import RobotUnreachable
-from .limits import BOOT_LIMIT, EXIT_LIMIT, FLUSH_LIMIT, Timing
-from .presence import Presence
-from .session import RUNNING, Live, open_live, watch_starts
-from .state import Listener, Listeners, State
-from .subscriptions import EventSubscriptions
-from .tasks import TaskTable
-from .translate import connect_reason
+from .calls import TaskTable
+from .errors import BadArguments, NaoError, RobotUnreachable
+from .limits import (
+    ANSWER_LIMIT,
+    BOOT_LIMIT,
+    DEFAULT_TIMING,
+    EXIT_LIMIT,
+    FIRST_MODULE_LIMIT,
+    FLUSH_LIMIT,
+    IDLE_LIMIT,
+    READY_LIMIT,
+    START_LIMIT,
+    Timing,
+)
+from .session import RUNNING, Live, Presence, open_live, wait_until_idle, watch_starts
+from .state import EventSubscriptions, Listener, Listeners, State
+from .translate import connect_reason, is_unknown_service, unknown_module
+
+
+def module_names(connection: Connection, live: Live) -> List[str]:
+    """Names of all modules of the robot. Raises RobotUnreachable if it does not answer."""
+    future = live.session.services(_async=True)
+    if not connection.answered(future, ANSWER_LIMIT) or future.hasError():
+        raise connection.unreachable()
+    return [each["name"] for each in future.value()]
+
+
+def find_module(connection: Connection, live: Live, name: str) -> Any:
+    """The remote object of a module.
+
+    Raises RobotUnreachable if the connection does not answer, UnknownModule if the robot has no module of that name,
+    NaoError if the module exists but cannot be called.
+    """
+    end, delay = connection.answering_time() + READY_LIMIT, 0.005
+    while True:
+        future = live.session.service(name, _async=True)
+        if not connection.answered(future, ANSWER_LIMIT):
+            if live is not connection.live:
+                raise connection.unreachable()
+            reason = f"no answer to the question where module {name} is"
+            raise RobotUnreachable(connection.host, connection.port, reason)
+        if not future.hasError():
+            return future.value()
+        text = future.error().strip()
+        if is_unknown_service(text):
+            names = module_names(connection, live)
+            # It may also have appeared between the two questions.
+            starting = name in names or not any(each.startswith("AL") for each in names)
+            limit = FIRST_MODULE_LIMIT if starting else START_LIMIT
+            if connection.answering_time() < live.connected_at + limit and not live.broken.wait(delay):
+                continue
+            raise unknown_module(name, connection.host, connection.port, names)
+        if live is not connection.live or not live.session.isConnected():
+            raise connection.unreachable()
+        # The module has just been registered, or is being unregistered.
+        if connection.answering_time() >= end or live.broken.wait(delay):
+            raise NaoError(f"NAOqi at {connection.address} gave no access to module {name}: {text}")
+        delay *= 2.0
+
 
 logger = logging.getLogger("naoqi")
 
@@ -181,7 +236,7 @@ class Connection:
             with live.lookups[name]:  # of two threads that ask at once, libqi leaves one without an answer now and then
                 found = live.services.get(name)
                 if found is None:
-                    found = live.services[name] = directory.find_module(self, live, name)
+                    found = live.services[name] = find_module(self, live, name)
         return found
 
     def forget_service(self, name: str) -> None:
@@ -206,7 +261,7 @@ class Connection:
         live = self.live
         if live is None:
             raise self.unreachable()
-        return directory.module_names(self, live)
+        return module_names(self, live)
 
     def close(self) -> None:
         """End the connection for good. What was posted has reached the robot; calls under way fail."""
@@ -361,3 +416,115 @@ class Connection:
             self.generation += live is not None
             self._condition.notify_all()
             self._listeners.tell(state)  # with the lock: who sees a state hears only of those that follow
+
+
+DEFAULT_PORT = 9559
+
+
+class Registry:
+    """Connections by address."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()  # guards both tables
+        self._connections: Dict[Tuple[str, int], Connection] = {}
+        self._wanted: Dict[Connection, int] = {}
+        # From the import on: what a program registers afterwards is called before, and reaches the robot.
+        atexit.register(self._end)
+
+    def get(self, host: str, port: int, wait: bool, limit: Optional[float], timing: Optional[Timing]) -> Connection:
+        """The connection to an address; see `connection`."""
+        with self._lock:
+            found: Optional[Connection] = self._connections.get((host, port))
+            if found is None or found.state is State.CLOSED:
+                self._wanted.pop(found, None)
+                found = self._connections[host, port] = Connection(host, port, timing or DEFAULT_TIMING)
+            elif timing is not None:
+                found.timing = timing
+            self._wanted[found] = self._wanted.get(found, 0) + 1
+        if wait:
+            try:
+                found.connect(found.timing.patience if limit is None else limit)
+            except RobotUnreachable:
+                self._give_up(found)
+                raise
+        return found
+
+    def close_all(self) -> None:
+        """Close every connection."""
+        with self._lock:
+            connections = list(self._connections.values())
+            self._connections.clear()
+            self._wanted.clear()
+        for each in connections:
+            each.close()
+
+    def _end(self) -> None:
+        """Close every connection at the end of the program: libqi's threads must not meet one that is taken down."""
+        if self._connections:
+            _end_objects_of_the_program()
+        self.close_all()
+        wait_until_idle(IDLE_LIMIT)
+
+    def _give_up(self, connection: Connection) -> None:
+        """Close a connection that was never made and that nobody else waits for."""
+        with self._lock:
+            self._wanted[connection] = self._wanted.get(connection, 1) - 1
+            unwanted = self._wanted[connection] <= 0 and connection.generation == 0
+            if unwanted:
+                del self._wanted[connection]
+                self._connections.pop((connection.host, connection.port), None)
+        if unwanted:
+            connection.close()
+
+
+def _end_objects_of_the_program() -> None:
+    """Let go of the objects that the program keeps in its own module, as Python is about to do.
+
+    What their `__del__` sends reaches the robot: Python calls it when the connections have closed.
+    """
+    main = vars(sys.modules["__main__"])
+    for name in [name for name, value in main.items() if _is_of_the_program(type(value))]:
+        main[name] = None
+    gc.collect()
+
+
+def _is_of_the_program(kind: type) -> bool:
+    return kind.__module__ == "__main__" or isinstance(getattr(kind, "__del__", None), FunctionType)
+
+
+_registry = Registry()
+
+
+def connection(
+    ip: str,
+    port: int = DEFAULT_PORT,
+    *,
+    wait: bool = True,
+    connect_timeout: Optional[float] = None,
+    timing: Optional[Timing] = None,
+) -> Connection:
+    """The connection to the NAOqi at an address, opened by the first who asks.
+
+    Raises BadArguments if this is no address, RobotUnreachable if the robot is not there (only with `wait`).
+
+    Args:
+        ip: Name or IPv4 address of the robot.
+        port: TCP port of NAOqi.
+        wait: Whether to wait until it stands. Without, it is opened in the background, again and again until
+            the robot is there; calls made before then fail at once.
+        connect_timeout: Limit of the wait, in s; None: the patience of the connection.
+        timing: How patient the connection is, for all who share it; the last that was given counts.
+    """
+    reason = ""
+    if not isinstance(ip, str) or not ip.strip():
+        reason = "the first must be the name or IPv4 address of the robot"
+    elif isinstance(port, bool) or not isinstance(port, int) or not 0 < port < 65536:
+        reason = "the port must be a number from 1 to 65535"
+    if reason:
+        raise BadArguments("naoqi", "connection", (ip, port), reason=reason)
+    return _registry.get(ip.strip(), port, wait, connect_timeout, timing)
+
+
+def close_all() -> None:
+    """Close every connection of this process, as happens by itself at its end."""
+    _registry.close_all()

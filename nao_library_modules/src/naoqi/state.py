@@ -1,15 +1,78 @@
-"""Where a connection stands, and who wants to hear of it."""
+"""The state of a connection, its listeners, and the event subscriptions to renew after a loss.
+
+Callbacks run in a `Worker`, not in libqi's own threads: there are only a few of them, and they also carry the answers
+that a callback may be waiting for.
+"""
 
 from __future__ import annotations
 
 import enum
 import logging
+import queue
 import threading
-from typing import Callable, Dict, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Collection, Dict, Optional, Sequence, Set, Tuple
 
-from .worker import Worker
+from .calls import RemoteMethod, RemoteModule
+from .errors import NaoError, RobotUnreachable, UnknownModule
+from .limits import ANSWER_LIMIT
+
+if TYPE_CHECKING:
+    from .robot_connection import Connection, State
+
 
 logger = logging.getLogger("naoqi")
+
+
+class Worker:
+    """A queue of jobs and the thread that works it off; the thread starts with the first job."""
+
+    def __init__(self, name: str) -> None:
+        """Make an idle worker. `name`: of its thread, for logs and debuggers."""
+        self.name = name
+        self._jobs: queue.SimpleQueue[Optional[Callable[[], None]]] = queue.SimpleQueue()
+        self._lock = threading.Lock()  # guards the two below
+        self._thread: Optional[threading.Thread] = None
+        self._closed = False
+
+    def submit(self, job: Callable[[], None]) -> bool:
+        """Have a job done after those that wait already.
+
+        `job`: called without arguments in the thread of the worker; what it raises is logged. Returns whether it was
+        taken; False after `close`.
+        """
+        with self._lock:
+            if self._closed:
+                return False
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, name=self.name, daemon=True)
+                self._thread.start()
+            self._jobs.put(job)
+        return True
+
+    def close(self, timeout: float = 0.0) -> None:
+        """Take no more jobs, and end the thread after those it has.
+
+        `timeout`: how long to wait for its end, in s. A job may close its own worker; then nobody waits.
+        """
+        with self._lock:
+            self._closed = True
+            thread = self._thread
+        self._jobs.put(None)
+        if thread is not None and thread is not threading.current_thread():
+            thread.join(timeout)
+
+    def _work(self) -> None:
+        while True:
+            job = self._jobs.get()
+            if job is None:
+                return
+            try:
+                job()
+            except BaseException:  # a callback may call sys.exit(): the thread serves others too
+                logger.exception("a callback in %s failed", self.name)
+            # While this thread waits, it must hold nothing of libqi's: the end of the program would delete it
+            # with the frame of this thread, too late for libqi.
+            job = None
 
 
 class State(str, enum.Enum):
@@ -72,3 +135,101 @@ class Listeners:
                     listener(state)
             except Exception:
                 logger.exception("listener %r of a connection failed at state %s", listener, state)
+
+
+MEMORY = "ALMemory"
+ENDED_BY = {"unsubscribeToEvent": "subscribeToEvent", "unsubscribeToMicroEvent": "subscribeToMicroEvent"}
+OBSERVED_METHODS = frozenset(ENDED_BY) | frozenset(ENDED_BY.values())
+
+Key = Tuple[str, str, str]
+"""Subscribing method, event, module."""
+
+
+class EventSubscriptions:
+    """What this process has subscribed to over one connection: a robot that comes back has forgotten it.
+
+    Those of the modules of this process are renewed by the broker that serves the module, after it has
+    registered it; all others as soon as the robot is back.
+    """
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._memory = RemoteModule(MEMORY, connection, ANSWER_LIMIT)
+        self._lock = threading.Lock()  # guards the table
+        self._arguments: Dict[Key, Tuple[Any, ...]] = {}
+        self._owned: Set[str] = set()
+        self._worker = Worker(f"naoqi subscriptions {connection.address}")
+        connection.add_listener(self._on_state)
+
+    def __len__(self) -> int:
+        return len(self._arguments)
+
+    def concerns(self, module: str, method: str) -> bool:
+        """Whether calls of this method are to be taken down."""
+        return module == MEMORY and method in OBSERVED_METHODS
+
+    def note(self, method: str, arguments: Tuple[Any, ...]) -> None:
+        """Take down a call that succeeded.
+
+        `method`: one of `OBSERVED_METHODS`. `arguments`: event, module, and for a subscription what else it had.
+        """
+        event, module = arguments[:2]
+        with self._lock:
+            if method in ENDED_BY:
+                self._arguments.pop((ENDED_BY[method], event, module), None)
+                return
+            self._arguments[method, event, module] = arguments
+
+    def own(self, module: str) -> None:
+        """Leave the subscriptions of this module to the broker that serves it."""
+        with self._lock:
+            self._owned.add(module)
+
+    def forget_module(self, module: str) -> None:
+        """Drop the subscriptions of a module that is served no more."""
+        with self._lock:
+            self._arguments = {key: value for key, value in self._arguments.items() if key[2] != module}
+            self._owned.discard(module)
+
+    def renew(self, modules: Collection[str]) -> None:
+        """Subscribe these modules again; what fails is logged, and tried again after the next loss."""
+        with self._lock:
+            entries = [item for item in self._arguments.items() if item[0][2] in modules]
+        if not entries or not self._memory_is_there():
+            return
+        done = 0
+        for (method, event, module), arguments in entries:
+            try:
+                RemoteMethod(self._memory, method)(*arguments)
+                done += 1
+            except NaoError as error:
+                logger.error("event %s is not subscribed again for module %s: %s", event, module, error)
+        if done:
+            logger.warning("NAOqi at %s: %d event subscriptions made again", self._connection.address, done)
+
+    def _on_state(self, state: State) -> None:
+        if state == "closed":
+            self._worker.close()
+        elif state == "connected" and self._connection.generation > 1:
+            with self._lock:
+                foreign = {key[2] for key in self._arguments} - self._owned
+            if foreign:
+                self._worker.submit(lambda: self.renew(foreign))
+
+    def _memory_is_there(self) -> bool:
+        """Wait for ALMemory: a robot that boots can be reached long before it has all its modules.
+
+        Returns False if the connection is lost before that; then the next one brings a new attempt.
+        """
+        delay = 0.1
+        while True:
+            live = self._connection.live
+            try:
+                self._memory.service()
+                return True
+            except UnknownModule:
+                if live is None or live.broken.wait(delay):
+                    return False
+                delay = min(2.0 * delay, 2.0)
+            except RobotUnreachable:
+                return False

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from naoqi.broker import listening_address
 from naoqi.errors import RobotUnreachable
-from naoqi.serving_session import listening_address
 
 HERE, ALL, NOBODYS = "127.0.0.1", "0.0.0.0", "192.0.2.255"
 

@@ -7,9 +7,8 @@ import enum
 import numpy as np
 import pytest
 
-from naoqi import errors, wire
-from naoqi.signatures import mentions_raw, readable_call, readable_type
-from naoqi.translate import CallSite, call_error, connect_reason
+from naoqi import errors, translate
+from naoqi.translate import CallSite, call_error, connect_reason, mentions_raw, readable_call, readable_type
 
 METHODS = ["setIntensity", "getIntensity", "fade"]
 FADE = "Arguments types did not match for fade (resolved to '(s)'):\n  Candidates:\n  fade::(sff) (1)\n"
@@ -25,7 +24,7 @@ class Degrees(float):
 
 
 def sent(value, raw=False):
-    (found,) = wire.to_wire((value,), lambda: raw)
+    (found,) = translate.to_wire((value,), lambda: raw)
     return found
 
 
@@ -56,12 +55,12 @@ def test_raw_bytes_go_where_raw_is_declared_and_what_cannot_go_is_named():
     for fault, send in (
         ("2 raw bytes", lambda: sent(b"\xff\x00")),
         ("type object", lambda: sent([object()], raw=True)),
-        ("64 bits", lambda: wire.check_sendable([1, 2**63])),
-        ("Unicode", lambda: wire.check_sendable({"a": "\udcff"})),
+        ("64 bits", lambda: translate.check_sendable([1, 2**63])),
+        ("Unicode", lambda: translate.check_sendable({"a": "\udcff"})),
     ):
-        with pytest.raises(wire.UnsendableError, match=fault):
+        with pytest.raises(translate.UnsendableError, match=fault):
             send()
-    wire.check_sendable([2**63 - 1, -(2**63)])
+    translate.check_sendable([2**63 - 1, -(2**63)])
 
 
 @pytest.mark.parametrize(
@@ -73,7 +72,7 @@ def test_raw_bytes_go_where_raw_is_declared_and_what_cannot_go_is_named():
     ],
 )
 def test_raw_data_become_bytes_at_every_depth(came, expected):
-    found = wire.from_wire(came)
+    found = translate.from_wire(came)
     assert found == expected
     assert "bytearray" not in repr(found)
 

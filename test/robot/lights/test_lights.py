@@ -7,7 +7,7 @@ import traceback
 import pytest
 from goal_functions import led as f
 
-from naoqi.remote import RemoteMethod
+from naoqi.calls import RemoteMethod
 
 EYES = [f"Face/Led/{{}}/{side}/{angle}Deg" for side in ("Left", "Right") for angle in range(0, 360, 45)]
 PARTS = ("Red", "Green", "Blue")

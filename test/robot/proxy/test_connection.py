@@ -17,9 +17,9 @@ import qi
 from waits import hold
 
 import naoqi
-from naoqi import directory, errors
+from naoqi import errors, robot_connection
 from naoqi.limits import SERVER_PATIENCE, Timing
-from naoqi.native_threads import wait_until_idle
+from naoqi.session import wait_until_idle
 
 SILENT, SPEAKING = ("connected", True), ("connected", False)
 HASTY = Timing(heartbeat_period=0.1, silence=0.2, patience=0.6)
@@ -117,9 +117,9 @@ def test_a_module_may_appear_a_moment_after_the_robot(robot, states, pool):
 
 
 def test_a_robot_without_any_module_is_still_starting(pool, monkeypatch):
-    monkeypatch.setattr(directory, "START_LIMIT", 0.0)
-    find_names, asked = directory.module_names, threading.Event()
-    monkeypatch.setattr(directory, "module_names", lambda *where: (asked.set(), find_names(*where))[1])
+    monkeypatch.setattr(robot_connection, "START_LIMIT", 0.0)
+    find_names, asked = robot_connection.module_names, threading.Event()
+    monkeypatch.setattr(robot_connection, "module_names", lambda *where: (asked.set(), find_names(*where))[1])
     session = qi.Session()
     session.listenStandalone("tcp://127.0.0.1:0")
     port = int(session.endpoints()[0].rpartition(":")[2])
@@ -134,7 +134,7 @@ def test_a_robot_without_any_module_is_still_starting(pool, monkeypatch):
 
 
 def test_threads_that_want_the_same_module_look_it_up_once(robot, pool, monkeypatch):
-    connection, find, asked = naoqi.connection(*robot.address), directory.find_module, []
+    connection, find, asked = naoqi.connection(*robot.address), robot_connection.find_module, []
     both = threading.Event()
 
     def found(*arguments):
@@ -144,7 +144,7 @@ def test_threads_that_want_the_same_module_look_it_up_once(robot, pool, monkeypa
         both.wait(0.1)  # for the other one, which must not come
         return find(*arguments)
 
-    monkeypatch.setattr(directory, "find_module", found)
+    monkeypatch.setattr(robot_connection, "find_module", found)
     first, second = pool.map(connection.service, ("ALTest", "ALTest"))
     assert first is second and len(asked) == 1
 

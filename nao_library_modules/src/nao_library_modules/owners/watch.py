@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from naoqi.worker import Worker
+from naoqi.state import Worker
 
 from .line import WatchConnector, peer_of, place
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from naoqi.signatures import readable_call, readable_type
+from naoqi.translate import readable_call, readable_type
 
 from ...base.answers import value_of_json
 from ...base.limits import limit
