@@ -5,18 +5,14 @@ from __future__ import annotations
 import logging
 import socket
 import threading
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional
 
 from .calls import ANSWERED_BY_ALL, RemoteModule
 from .errors import BrokerError, NaoError, RobotUnreachable
 from .limits import ANSWER_LIMIT
-from .robot_connection import connection
+from .robot_connection import Connection, connection
 from .session import Live, connect_session
 from .state import State, Worker
-
-if TYPE_CHECKING:
-    from .robot_connection import Connection
-
 
 logger = logging.getLogger("naoqi")
 

@@ -8,25 +8,54 @@ import threading
 import time
 from collections import OrderedDict
 from threading import get_ident
-from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Optional, Protocol, Tuple
 
 from . import translate
 from .errors import BadArguments, CallCanceled, CallTimeout, NaoError, RobotUnreachable
 from .limits import wait_while_answering
-from .session import RUNNING, Live
+from .session import MEMORY, RUNNING, Live, Presence
 from .translate import NOT_SENT, CallSite, call_error, mentions_raw, readable_call, unknown_method
 
-if TYPE_CHECKING:
-    from .robot_connection import Connection
-
-
 logger = logging.getLogger("naoqi")
+
+ENDED_BY = {"unsubscribeToEvent": "subscribeToEvent", "unsubscribeToMicroEvent": "subscribeToMicroEvent"}
+"""Methods of ALMemory that end an event subscription, and those that begin it."""
+SUBSCRIBING = frozenset(ENDED_BY) | frozenset(ENDED_BY.values())
 
 NOT_YET = "Future timeout."
 FIRST_SLICE_MS = 100
 INTERRUPTIBLE_MS = 200
 """A wait inside libqi blocks Ctrl-C, so the main thread waits in slices of this length, in ms."""
 LONGEST_WAIT_MS = 2**31 - 2  # libqi takes a 32-bit integer, and its largest value as "for ever"
+
+Witness = Callable[[str, str, Tuple[Any, ...]], Optional[Callable[[Any], None]]]
+
+
+class Transport(Protocol):
+    """What calls need of the connection to their robot; `naoqi.Connection` has it, and describes it."""
+
+    host: str
+    port: int
+    live: Optional[Live]
+    generation: int
+    last_error: str
+    tasks: TaskTable
+    presence: Presence
+    witness: Optional[Witness]
+
+    @property
+    def address(self) -> str: ...
+
+    @property
+    def state(self) -> str: ...
+
+    def answering_time(self) -> float: ...
+
+    def service(self, name: str) -> Any: ...
+
+    def forget_service(self, name: str) -> None: ...
+
+    def note_subscription(self, method: str, arguments: Tuple[Any, ...]) -> None: ...
 
 
 class Call:
@@ -156,7 +185,7 @@ class RemoteModule:
         timeout: Limit of each waiting call, in s; None for none.
     """
 
-    def __init__(self, name: str, connection: Connection, timeout: Optional[float] = None) -> None:
+    def __init__(self, name: str, connection: Transport, timeout: Optional[float] = None) -> None:
         self.name = name
         self.connection = connection
         self.timeout = timeout
@@ -170,7 +199,7 @@ class RemoteModule:
 
     def method(self, name: str) -> RemoteMethod:
         """A method of the module; whether it is there shows when it is called."""
-        kind = SubscribingMethod if self.connection.subscriptions.concerns(self.name, name) else RemoteMethod
+        kind = SubscribingMethod if self.name == MEMORY and name in SUBSCRIBING else RemoteMethod
         return kind(self, name)
 
     def attribute(self, name: str) -> Any:
@@ -340,7 +369,7 @@ class SubscribingMethod(RemoteMethod):
     def __call__(self, *arguments: Any, **options: Any) -> Any:
         """Call it and wait; it is taken down before anybody can go on to the next."""
         value = super().__call__(*arguments, **options)
-        self.module.connection.subscriptions.note(self.name, arguments)
+        self.module.connection.note_subscription(self.name, arguments)
         return value
 
     def start(self, *arguments: Any) -> Call:
@@ -351,7 +380,7 @@ class SubscribingMethod(RemoteMethod):
                 call.result()
             except NaoError:
                 return  # whoever made the call hears of it
-            self.module.connection.subscriptions.note(self.name, arguments)
+            self.module.connection.note_subscription(self.name, arguments)
 
         call = super().start(*arguments)
         call.add_done_callback(note)

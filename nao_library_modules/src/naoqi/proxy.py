@@ -107,6 +107,7 @@ class ALProxy:
         else:
             address = (ip,) if port is None else (ip, port)
             robot = connection(*address, wait=not lazy, connect_timeout=connect_timeout, timing=timing)
+        self.connection: Connection = robot
         self._remote = RemoteModule(name, robot, timeout)
         self.post = Post(self._remote)
         if not lazy:
@@ -120,21 +121,17 @@ class ALProxy:
         if name.startswith("__") or name == "_remote":
             raise AttributeError(name)  # a lookup of Python's own protocols, or before __init__ is done
         found = self._remote.attribute(name)
-        if isinstance(found, RemoteMethod) and self._remote.connection.live is not None:
+        if isinstance(found, RemoteMethod) and self.connection.live is not None:
             self.__dict__[name] = found
         return found
 
     def __dir__(self) -> List[str]:
-        remote = self._remote.method_names() if self._remote.connection.live is not None else []
+        remote = self._remote.method_names() if self.connection.live is not None else []
         return sorted({*super().__dir__(), *remote})
 
     def __repr__(self) -> str:
-        robot = self._remote.connection
+        robot = self.connection
         return f"<ALProxy {self._remote.name} at {robot.address} ({robot.state})>"
-
-    @property
-    def connection(self) -> Connection:
-        return self._remote.connection
 
     def call(self, method: str, *arguments: Any) -> Any:
         """Call a method by its name, and wait for its result."""
@@ -160,7 +157,7 @@ class ALProxy:
         `task`: the number that `post.method()` returned. `timeout_ms`: limit in ms; 0 waits for ever. Returns True if
         the limit was reached first. Raises NaoError: the error of the call, if it failed.
         """
-        tasks = self._remote.connection.tasks
+        tasks = self.connection.tasks
         if self._is_the_robots(task, "wait"):
             return self._remote.method("wait")(task, timeout_ms)
         return tasks.wait(task, timeout_ms / 1000.0 if timeout_ms > 0 else None)
@@ -173,7 +170,7 @@ class ALProxy:
         task = arguments[0] if len(arguments) == 1 else None
         if self._is_the_robots(task, "stop"):
             return self._remote.method("stop")(*arguments)
-        return self._remote.connection.tasks.stop(task)
+        return self.connection.tasks.stop(task)
 
     def isRunning(self, *arguments: Any) -> bool:
         """Whether a posted call is still in progress, by its number.
@@ -183,7 +180,7 @@ class ALProxy:
         task = arguments[0] if len(arguments) == 1 else None
         if self._is_the_robots(task, "isRunning"):
             return self._remote.method("isRunning")(*arguments)
-        return self._remote.connection.tasks.is_running(task)
+        return self.connection.tasks.is_running(task)
 
     def ping(self) -> bool:
         """True if the module answers. Raises RobotUnreachable if there is no connection."""
@@ -228,7 +225,7 @@ class ALProxy:
 
         Raises BadArguments if the module has no such method either.
         """
-        if self._remote.connection.tasks.knows(task):
+        if self.connection.tasks.knows(task):
             return False
         if self._remote.offers(method):
             return True

@@ -18,7 +18,7 @@ import time
 from types import FunctionType
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from .calls import TaskTable
+from .calls import TaskTable, Witness
 from .errors import BadArguments, NaoError, RobotUnreachable
 from .limits import (
     ANSWER_LIMIT,
@@ -80,8 +80,6 @@ def find_module(connection: Connection, live: Live, name: str) -> Any:
 
 logger = logging.getLogger("naoqi")
 
-Witness = Callable[[str, str, Tuple[Any, ...]], Optional[Callable[[Any], None]]]
-
 SLICE_MS = 100
 """Wait for an answer, in ms, until it is seen whether the session still stands."""
 
@@ -128,6 +126,7 @@ class Connection:
         self._closing = threading.Event()
         self._listeners = Listeners(f"naoqi listeners {self.address}")
         self.subscriptions = EventSubscriptions(self)
+        self.add_listener(self.subscriptions.on_state)
         self.witness: Optional[Witness] = None
         self._watcher = threading.Thread(target=self._run, name=f"naoqi {self.address}", daemon=True)
         self._watcher.start()
@@ -244,6 +243,10 @@ class Connection:
         live = self.live
         if live is not None:
             live.services.pop(name, None)
+
+    def note_subscription(self, method: str, arguments: Tuple[Any, ...]) -> None:
+        """Remember a call of ALMemory that has begun or ended an event subscription."""
+        self.subscriptions.note(method, arguments)
 
     def answered(self, future: Any, limit: float) -> bool:
         """Wait for a future of libqi while there is a session.

@@ -10,15 +10,12 @@ import enum
 import logging
 import queue
 import threading
-from typing import TYPE_CHECKING, Any, Callable, Collection, Dict, Optional, Sequence, Set, Tuple
+from typing import Any, Callable, Collection, Dict, Optional, Sequence, Set, Tuple
 
-from .calls import RemoteMethod, RemoteModule
+from .calls import ENDED_BY, RemoteMethod, RemoteModule, Transport
 from .errors import NaoError, RobotUnreachable, UnknownModule
 from .limits import ANSWER_LIMIT
-
-if TYPE_CHECKING:
-    from .robot_connection import Connection, State
-
+from .session import MEMORY
 
 logger = logging.getLogger("naoqi")
 
@@ -137,10 +134,6 @@ class Listeners:
                 logger.exception("listener %r of a connection failed at state %s", listener, state)
 
 
-MEMORY = "ALMemory"
-ENDED_BY = {"unsubscribeToEvent": "subscribeToEvent", "unsubscribeToMicroEvent": "subscribeToMicroEvent"}
-OBSERVED_METHODS = frozenset(ENDED_BY) | frozenset(ENDED_BY.values())
-
 Key = Tuple[str, str, str]
 """Subscribing method, event, module."""
 
@@ -152,26 +145,21 @@ class EventSubscriptions:
     registered it; all others as soon as the robot is back.
     """
 
-    def __init__(self, connection: Connection) -> None:
+    def __init__(self, connection: Transport) -> None:
         self._connection = connection
         self._memory = RemoteModule(MEMORY, connection, ANSWER_LIMIT)
         self._lock = threading.Lock()  # guards the table
         self._arguments: Dict[Key, Tuple[Any, ...]] = {}
         self._owned: Set[str] = set()
         self._worker = Worker(f"naoqi subscriptions {connection.address}")
-        connection.add_listener(self._on_state)
 
     def __len__(self) -> int:
         return len(self._arguments)
 
-    def concerns(self, module: str, method: str) -> bool:
-        """Whether calls of this method are to be taken down."""
-        return module == MEMORY and method in OBSERVED_METHODS
-
     def note(self, method: str, arguments: Tuple[Any, ...]) -> None:
         """Take down a call that succeeded.
 
-        `method`: one of `OBSERVED_METHODS`. `arguments`: event, module, and for a subscription what else it had.
+        `method`: one of `SUBSCRIBING`. `arguments`: event, module, and for a subscription what else it had.
         """
         event, module = arguments[:2]
         with self._lock:
@@ -207,7 +195,8 @@ class EventSubscriptions:
         if done:
             logger.warning("NAOqi at %s: %d event subscriptions made again", self._connection.address, done)
 
-    def _on_state(self, state: State) -> None:
+    def on_state(self, state: State) -> None:
+        """Renew them when the robot is back; a listener of the connection."""
         if state == "closed":
             self._worker.close()
         elif state == "connected" and self._connection.generation > 1:
