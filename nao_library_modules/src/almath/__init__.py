@@ -11,36 +11,19 @@ instead of printing a warning and going on with another value. Plain lists do wh
 
 import types
 
-from almath.axes import (
-    axisRotationProjection,
-    axisRotationProjectionInPlace,
-    orthogonalSpace,
-    transformFromRotVec,
-    transformFromRotVecInPlace,
-)
-from almath.constants import (
-    AXIS_MASK_ALL,
-    AXIS_MASK_NONE,
-    AXIS_MASK_PLANEZ,
-    AXIS_MASK_ROT,
-    AXIS_MASK_VEL,
-    AXIS_MASK_WX,
-    AXIS_MASK_WY,
-    AXIS_MASK_WYWZ,
-    AXIS_MASK_WZ,
-    AXIS_MASK_X,
-    AXIS_MASK_XY,
-    AXIS_MASK_Y,
-    AXIS_MASK_Z,
-    PI,
-    PI_2,
-    PI_4,
-    TO_DEG,
-    TO_RAD,
-    isAxisMask,
-)
+from almath._components import AlmathError
 from almath.conversions import (
+    crossProduct,
+    determinant,
     displacementFromTransform,
+    distance,
+    distanceSquared,
+    dotProduct,
+    isOrthogonal,
+    isUnitVector,
+    norm,
+    normalize,
+    pinv,
     pose2DFromPosition2D,
     pose2DFromPosition2DInPlace,
     pose2DFromPosition6D,
@@ -81,20 +64,20 @@ from almath.conversions import (
     transformFromRotation3D,
     transformFromRotationInPlace,
     transformFromRotationPosition3D,
+    transpose,
 )
-from almath.displacement import Displacement, TransformAndVelocity6D
-from almath.dsp import DigitalFilter, PIDController
-from almath.dubins import getDubinsSolutions
-from almath.errors import AlmathError
 from almath.footsteps import (
     areTwoBoxesInCollision,
     avoidFootCollision,
     clipFootWithEllipse,
     computeBox,
     dichotomie,
+    getDubinsSolutions,
     intersectionSegment2D,
 )
 from almath.frames import (
+    axisRotationProjection,
+    axisRotationProjectionInPlace,
     changeReferencePose2D,
     changeReferencePose2DInPlace,
     changeReferencePosition3D,
@@ -107,33 +90,47 @@ from almath.frames import (
     changeReferenceTransposeTransform,
     changeReferenceTransposeVelocity6D,
     changeReferenceVelocity6D,
+    orthogonalSpace,
+    position6DFromTransformDiff,
+    position6DFromTransformDiffInPlace,
+    transformFromRotVec,
+    transformFromRotVecInPlace,
+    transformLogarithm,
+    transformLogarithmInPlace,
+    transformMean,
+    transformMeanInPlace,
+    velocityExponential,
+    velocityExponentialInPlace,
 )
-from almath.functions import (
-    crossProduct,
-    determinant,
-    distance,
-    distanceSquared,
-    dotProduct,
-    isOrthogonal,
-    isUnitVector,
-    norm,
-    normalize,
-    pinv,
-    transpose,
-)
-from almath.pose2d import Pose2D, pose2dDiff, pose2DInverse, pose2dInvertInPlace
-from almath.positions import Position2D, Position3D, Position6D, PositionAndVelocity, Velocity3D, Velocity6D
-from almath.quaternion import (
-    Quaternion,
-    angleAndAxisRotationFromQuaternion,
-    quaternionFromAngleAndAxisRotation,
-    quaternionInverse,
+from almath.positions import (
+    Pose2D,
+    Position2D,
+    Position3D,
+    Position6D,
+    PositionAndVelocity,
+    Velocity3D,
+    Velocity6D,
+    pose2dDiff,
+    pose2DInverse,
+    pose2dInvertInPlace,
+    vectorFloat,
+    vectorPose2D,
+    vectorPosition2D,
+    vectorPosition6D,
 )
 from almath.rotations import (
+    Displacement,
+    Quaternion,
     Rotation,
     Rotation3D,
+    Transform,
+    TransformAndVelocity6D,
+    angleAndAxisRotationFromQuaternion,
     applyRotation,
     normalizeRotation,
+    normalizeTransform,
+    quaternionFromAngleAndAxisRotation,
+    quaternionInverse,
     rotationFrom3DRotation,
     rotationFromAngleDirection,
     rotationFromAxesXY,
@@ -143,28 +140,6 @@ from almath.rotations import (
     rotationFromRotX,
     rotationFromRotY,
     rotationFromRotZ,
-)
-from almath.screws import (
-    position6DFromTransformDiff,
-    position6DFromTransformDiffInPlace,
-    transformLogarithm,
-    transformLogarithmInPlace,
-    transformMean,
-    transformMeanInPlace,
-    velocityExponential,
-    velocityExponentialInPlace,
-)
-from almath.tools import (
-    clipData,
-    meanAngle,
-    modulo2PI,
-    modulo2PIInPlace,
-    pointMassRotationalInertia,
-    weightedMeanAngle,
-)
-from almath.transform import (
-    Transform,
-    normalizeTransform,
     transformDiff,
     transformDistance,
     transformDistanceSquared,
@@ -178,7 +153,35 @@ from almath.transform import (
     transformPreMultiply,
     transformToFloatVector,
 )
-from almath.vectors import vectorFloat, vectorPose2D, vectorPosition2D, vectorPosition6D
+from almath.tools import (
+    AXIS_MASK_ALL,
+    AXIS_MASK_NONE,
+    AXIS_MASK_PLANEZ,
+    AXIS_MASK_ROT,
+    AXIS_MASK_VEL,
+    AXIS_MASK_WX,
+    AXIS_MASK_WY,
+    AXIS_MASK_WYWZ,
+    AXIS_MASK_WZ,
+    AXIS_MASK_X,
+    AXIS_MASK_XY,
+    AXIS_MASK_Y,
+    AXIS_MASK_Z,
+    PI,
+    PI_2,
+    PI_4,
+    TO_DEG,
+    TO_RAD,
+    DigitalFilter,
+    PIDController,
+    clipData,
+    isAxisMask,
+    meanAngle,
+    modulo2PI,
+    modulo2PIInPlace,
+    pointMassRotationalInertia,
+    weightedMeanAngle,
+)
 
 # The SDK has each static method as a function too; scripts use both spellings.
 Pose2D_fromPolarCoordinates = Pose2D.fromPolarCoordinates

@@ -1,4 +1,4 @@
-"""What all values of this package share: named numbers that are read, compared, listed and printed alike."""
+"""The base of all values of this package: named numbers that are read, compared, listed and printed alike."""
 
 from __future__ import annotations
 
@@ -8,7 +8,15 @@ from numbers import Real
 from typing import Any, ClassVar, TypeVar
 
 from almath import _matrix
-from almath.errors import AlmathError
+
+
+class AlmathError(ValueError):
+    """A value that no position, rotation or function of this package can be made from.
+
+    It stands apart from the errors of the `naoqi` package because `almath` must be importable on a machine
+    without libqi; every message names the class or function, the value it was given and what it takes.
+    """
+
 
 _Value = TypeVar("_Value", bound="Components")
 _Vector = TypeVar("_Vector", bound="Scalable")

@@ -1,4 +1,4 @@
-"""From one kind of position or rotation to another.
+"""From one kind of position or rotation to another, and functions that take values of many classes.
 
 Where the SDK has a second form that fills an object, it is here under its name too: a function with `InPlace`
 at the end, or an optional last argument.
@@ -6,15 +6,12 @@ at the end, or an optional last argument.
 
 from __future__ import annotations
 
+from typing import Union
+
 from almath import _matrix
-from almath._components import answer, as_number, fill, in_place, require
-from almath.displacement import Displacement
-from almath.errors import AlmathError
-from almath.pose2d import Pose2D
-from almath.positions import Position2D, Position3D, Position6D, Velocity6D
-from almath.quaternion import Quaternion
-from almath.rotations import Rotation, Rotation3D
-from almath.transform import Transform
+from almath._components import AlmathError, Placed, answer, as_number, asking, fill, in_place, require
+from almath.positions import Pose2D, Position2D, Position3D, Position6D, Velocity3D, Velocity6D
+from almath.rotations import Displacement, Quaternion, Rotation, Rotation3D, Transform
 
 # --- to points and poses
 
@@ -248,3 +245,43 @@ def transformFromDisplacement(displacement: Displacement) -> Transform:
 def displacementFromTransform(transform: Transform) -> Displacement:
     """Point and quaternion of a transform."""
     return Displacement(position3DFromTransform(transform), quaternionFromTransform(transform))
+
+
+Vector = Union[Position2D, Position3D]
+
+_VECTORS = (Position2D, Position3D)
+_PLACED = (Pose2D, Position2D, Position3D, Position6D)
+_DIRECTED = (*_PLACED, Quaternion, Velocity3D, Velocity6D)
+_NORMED = (*_DIRECTED, Rotation3D, Transform)
+
+
+norm = asking("norm", _NORMED, "Length of a vector; of a pose or a transform, that of its translation.")
+normalize = asking("normalize", _DIRECTED, "Divide a vector by its length; a pose keeps its heading.")
+distance = asking("distance", _PLACED, Placed.distance.__doc__)
+distanceSquared = asking("distanceSquared", _PLACED, Placed.distanceSquared.__doc__)
+dotProduct = asking("dotProduct", _VECTORS, "Inner product of two vectors of one class.")
+_cross_product = asking("crossProduct", _VECTORS, "Vector product of two vectors of one class.")
+isUnitVector = asking("isUnitVector", (Position3D,), Position3D.isUnitVector.__doc__)
+isOrthogonal = asking("isOrthogonal", (Position3D,), Position3D.isOrthogonal.__doc__)
+transpose = asking("transpose", (Rotation,), Rotation.transpose.__doc__)
+pinv = asking("inverse", (Pose2D, Transform), "Inverse of a pose or a transform.", "pinv")
+
+
+def crossProduct(a: Vector, b: Vector, out: Position3D | None = None) -> float | Position3D | None:
+    """Vector product of two vectors of one class; in space it is written to `out` if that is given.
+
+    In the plane it is a number, positive if `b` lies to the left of `a`.
+    """
+    result = _cross_product(a, b)
+    if isinstance(result, Position3D):
+        return answer(result, out, "crossProduct")
+    if out is not None:
+        raise AlmathError(f"crossProduct in the plane returns a number and cannot fill {out!r}")
+    return result
+
+
+def determinant(matrix: Rotation | Transform | list[float]) -> float:
+    """Determinant of a rotation, of a transform's rotation, or of a list of 9, 12 or 16 numbers."""
+    if not isinstance(matrix, (Rotation, Transform)):
+        matrix = Rotation(matrix)
+    return matrix.determinant()

@@ -1,18 +1,19 @@
-"""The same vector or transform in turned axes.
+"""Values in other frames: turned axes, rotations about a given axis, and the way from one transform to another.
 
-Only the rotation of the given transform is used: these functions turn and never translate. Their `Transpose`
-forms turn back. All of them write their result to the last argument.
+A Velocity6D held for one second is a screw motion; the exponential is where it leads, the logarithm the velocity that
+leads there.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Callable, TypeVar
 
 from almath import _matrix
-from almath._components import as_number, fill, require
-from almath.pose2d import Pose2D
-from almath.positions import Position3D, Position6D, Velocity6D
-from almath.transform import Transform
+from almath._components import AlmathError, answer, as_number, fill, in_place, require
+from almath.positions import Pose2D, Position3D, Position6D, Velocity6D
+from almath.rotations import Rotation, Transform
+from almath.tools import AXIS_MASK_X, AXIS_MASK_Y, AXIS_MASK_Z
 
 Turnable = TypeVar("Turnable", Position3D, Position6D, Velocity6D)
 
@@ -78,3 +79,163 @@ def changeReferencePose2D(theta: float, pose: Pose2D, out: Pose2D) -> None:
 def changeReferencePose2DInPlace(theta: float, pose: Pose2D) -> None:
     """Turn the point of a pose by `theta` rad about the origin, in place; its heading stays."""
     changeReferencePose2D(theta, pose, pose)
+
+
+_ABOUT = {AXIS_MASK_X: _matrix.about_x, AXIS_MASK_Y: _matrix.about_y, AXIS_MASK_Z: _matrix.about_z}
+
+# Components of a unit vector below this do not decide where the other two axes of a frame go.
+_NEGLIGIBLE = 0.0001
+
+
+def axisRotationProjection(axis: Position3D, rotated: Rotation | Transform) -> Rotation | Transform:
+    """Rotation about `axis` that is nearest to a given one; the origin of a transform stays.
+
+    `axis`: of any length but zero. `rotated`: the rotation or transform to project.
+    """
+    require(axis, Position3D, "axisRotationProjection")
+    if not isinstance(rotated, (Rotation, Transform)):
+        raise AlmathError(f"axisRotationProjection takes a Rotation or a Transform, got {rotated!r}")
+    return rotated._with_rows(_projected(tuple(axis.normalize()._values()), rotated._rows()))
+
+
+def axisRotationProjectionInPlace(axis: Position3D, rotated: Rotation | Transform) -> None:
+    """Replace a rotation by the nearest one about `axis`; the origin of a transform stays."""
+    fill(rotated, axisRotationProjection(axis, rotated), "axisRotationProjectionInPlace")
+
+
+def _projected(axis: _matrix.Triple, rows: _matrix.Matrix) -> _matrix.Matrix:
+    # Nearest means the largest trace of A(angle)^T R, which is a + b cos(angle) + c sin(angle).
+    turning = (rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1])
+    cosine = rows[0][0] + rows[1][1] + rows[2][2] - _matrix.dot(axis, _matrix.applied(rows, axis))
+    return _matrix.about_axis(axis, math.atan2(_matrix.dot(axis, turning), cosine))
+
+
+def orthogonalSpace(axis: Position3D, out: Transform | None = None) -> Transform | None:
+    """Right-handed frame whose third axis has a given direction.
+
+    `axis`: of any length but zero. `out`: a transform whose rotation to overwrite, instead of returning a new one; its
+    origin stays.
+    """
+    require(axis, Position3D, "orthogonalSpace")
+    third = axis.normalize()
+    if abs(third.x) > _NEGLIGIBLE:
+        first = Position3D(-third.y, third.x, 0.0)
+    elif abs(third.y) > _NEGLIGIBLE:
+        first = Position3D(0.0, -third.z, third.y)
+    else:
+        first = Position3D(third.z, 0.0, 0.0)
+    first = first.normalize()
+    columns = tuple(tuple(column._values()) for column in (first, third.crossProduct(first), third))
+    placed = Transform() if out is None else out
+    require(placed, Transform, "orthogonalSpace")
+    return answer(placed._with_rows(_matrix.transposed(columns)), out, "orthogonalSpace")
+
+
+def transformFromRotVec(*arguments: int | float | Position3D) -> Transform:
+    """Rotation about one of the coordinate axes, a translation, or both.
+
+    Args:
+        *arguments: A Position3D; or AXIS_MASK_X, AXIS_MASK_Y or AXIS_MASK_Z and an angle in rad; or all
+            three.
+    """
+    point = Position3D()
+    turn = arguments
+    if arguments and isinstance(arguments[-1], Position3D):
+        *turn, point = arguments
+    if not turn and arguments:
+        return Transform(point.x, point.y, point.z)
+    if len(turn) != 2 or turn[0] not in _ABOUT:
+        raise AlmathError(
+            "transformFromRotVec takes a Position3D, or AXIS_MASK_X (1), AXIS_MASK_Y (2) or AXIS_MASK_Z (4) "
+            f"and an angle, or all three, got {arguments!r}"
+        )
+    return Transform._from_parts(_ABOUT[turn[0]](as_number(turn[1], "transformFromRotVec angle")), point._values())
+
+
+transformFromRotVecInPlace = in_place(transformFromRotVec)
+
+
+# Below this angle, in rad, the closed formulas divide rounding errors by its square; their series take over.
+_SMALL_ANGLE = 0.0001
+
+
+def velocityExponential(velocity: Velocity6D) -> Transform:
+    """Transform that a body velocity, in m/s and rad/s, leads to within one second."""
+    require(velocity, Velocity6D, "velocityExponential")
+    linear = (velocity.xd, velocity.yd, velocity.zd)
+    angular = (velocity.wxd, velocity.wyd, velocity.wzd)
+    angle = math.sqrt(_matrix.dot(angular, angular))
+    if angle < _SMALL_ANGLE:
+        rows = _matrix.from_quaternion(1.0, *_matrix.scaled(angular, 0.5))
+        across, along = 0.5, 1.0 / 6.0
+    else:
+        rows = _matrix.about_axis(_matrix.scaled(angular, 1.0 / angle), angle)
+        across = (1.0 - math.cos(angle)) / angle**2
+        along = (angle - math.sin(angle)) / angle**3
+    return Transform._from_parts(rows, _bent(linear, angular, across, along))
+
+
+velocityExponentialInPlace = in_place(velocityExponential)
+
+
+def transformLogarithm(transform: Transform) -> Velocity6D:
+    """Body velocity, in m/s and rad/s, that leads from the identity to `transform` within one second.
+
+    The rotation is the shorter way round, at most pi.
+    """
+    require(transform, Transform, "transformLogarithm")
+    w, *vector = _matrix.to_quaternion(transform._rows())
+    sine = math.sqrt(_matrix.dot(vector, vector))
+    angle = 2.0 * math.atan2(sine, w)
+    if angle < _SMALL_ANGLE:
+        angular = _matrix.scaled(vector, 2.0)
+        along = 1.0 / 12.0
+    else:
+        angular = _matrix.scaled(vector, angle / sine)
+        along = (1.0 - 0.5 * angle * w / sine) / angle**2
+    return Velocity6D(*_bent(transform._point(), angular, -0.5, along), *angular)
+
+
+transformLogarithmInPlace = in_place(transformLogarithm)
+
+
+def _bent(v: _matrix.Triple, angular: _matrix.Triple, across: float, along: float) -> _matrix.Triple:
+    """Sum v + across (angular x v) + along (angular x (angular x v)).
+
+    The straight and the screwed way to a point differ by such a sum, in both directions.
+    """
+    once = _matrix.cross(angular, v)
+    twice = _matrix.cross(angular, once)
+    return tuple(a + across * b + along * c for a, b, c in zip(v, once, twice))
+
+
+def transformMean(start: Transform, end: Transform, share: float = 0.5) -> Transform:
+    """Transform on the screw motion from one to another.
+
+    `start`: where the motion begins. `share`: how much of it is done, in [0, 1].
+    """
+    require(start, Transform, "transformMean")
+    require(end, Transform, "transformMean")
+    if not 0.0 <= as_number(share, "transformMean share") <= 1.0:
+        raise AlmathError(f"transformMean takes a share in [0, 1], got {share}")
+    return start * velocityExponential(transformLogarithm(start.diff(end)) * share)
+
+
+transformMeanInPlace = in_place(transformMean)
+
+
+def position6DFromTransformDiff(current: Transform, target: Transform) -> Position6D:
+    """Difference of two transforms in the frame in which both are given, as a controller takes it.
+
+    `current`: where the body is. `target`: where it should be. Returns the translation in m, and the axis of the
+    rotation times the sine of its angle.
+    """
+    require(current, Transform, "position6DFromTransformDiff")
+    require(target, Transform, "position6DFromTransformDiff")
+    moved = (b - a for a, b in zip(current._point(), target._point()))
+    columns = zip(_matrix.transposed(current._rows()), _matrix.transposed(target._rows()))
+    turned = (0.5 * sum(parts) for parts in zip(*(_matrix.cross(a, b) for a, b in columns)))
+    return Position6D(*moved, *turned)
+
+
+position6DFromTransformDiffInPlace = in_place(position6DFromTransformDiff)
