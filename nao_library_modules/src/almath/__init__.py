@@ -12,6 +12,7 @@ instead of printing a warning and going on with another value. Plain lists do wh
 import types
 
 from almath._components import AlmathError
+from almath._components import in_place as _in_place
 from almath.conversions import (
     crossProduct,
     determinant,
@@ -25,24 +26,15 @@ from almath.conversions import (
     normalize,
     pinv,
     pose2DFromPosition2D,
-    pose2DFromPosition2DInPlace,
     pose2DFromPosition6D,
-    pose2DFromPosition6DInPlace,
     pose2DFromTransform,
-    pose2DFromTransformInPlace,
     position2DFromPose2D,
-    position2DFromPose2DInPlace,
     position2DFromTransform,
-    position2DFromTransformInPlace,
     position3DFromPosition6D,
     position3DFromTransform,
-    position3DFromTransformInPlace,
     position6DFromPose2D,
-    position6DFromPose2DInPlace,
     position6DFromPosition3D,
-    position6DFromPosition3DInPlace,
     position6DFromTransform,
-    position6DFromTransformInPlace,
     position6DFromVelocity6D,
     quaternionFromRotation3D,
     quaternionFromTransform,
@@ -52,10 +44,8 @@ from almath.conversions import (
     rotation3DFromTransform,
     rotationFromQuaternion,
     rotationFromTransform,
-    rotationFromTransformInPlace,
     transformFromDisplacement,
     transformFromPose2D,
-    transformFromPose2DInPlace,
     transformFromPosition3D,
     transformFromPosition3DInPlace,
     transformFromPosition6D,
@@ -92,15 +82,10 @@ from almath.frames import (
     changeReferenceVelocity6D,
     orthogonalSpace,
     position6DFromTransformDiff,
-    position6DFromTransformDiffInPlace,
     transformFromRotVec,
-    transformFromRotVecInPlace,
     transformLogarithm,
-    transformLogarithmInPlace,
     transformMean,
-    transformMeanInPlace,
     velocityExponential,
-    velocityExponentialInPlace,
 )
 from almath.positions import (
     Pose2D,
@@ -183,24 +168,29 @@ from almath.tools import (
     weightedMeanAngle,
 )
 
-# The SDK has each static method as a function too; scripts use both spellings.
-Pose2D_fromPolarCoordinates = Pose2D.fromPolarCoordinates
-Position2D_fromPolarCoordinates = Position2D.fromPolarCoordinates
-Quaternion_fromAngleAndAxisRotation = Quaternion.fromAngleAndAxisRotation
-Rotation_fromQuaternion = Rotation.fromQuaternion
-Rotation_fromAngleDirection = Rotation.fromAngleDirection
-Rotation_fromRotX = Rotation.fromRotX
-Rotation_fromRotXPi = Rotation.fromRotXPi
-Rotation_fromRotY = Rotation.fromRotY
-Rotation_fromRotYPi = Rotation.fromRotYPi
-Rotation_fromRotZ = Rotation.fromRotZ
-Rotation_fromRotZPi = Rotation.fromRotZPi
-Rotation_fromRotZHalfPi = Rotation.fromRotZHalfPi
-Rotation_from3DRotation = Rotation.from3DRotation
-Transform_fromRotX = Transform.fromRotX
-Transform_fromRotY = Transform.fromRotY
-Transform_fromRotZ = Transform.fromRotZ
-Transform_from3DRotation = Transform.from3DRotation
-Transform_fromPosition = Transform.fromPosition
+# The SDK has each static method as a function too, and of these functions a form that overwrites its last argument.
+for _kind in (Pose2D, Position2D, Quaternion, Rotation, Transform):
+    for _name in dir(_kind):
+        if _name.startswith("from"):
+            globals()[f"{_kind.__name__}_{_name}"] = getattr(_kind, _name)
+for _function in (
+    position2DFromPose2D,
+    position2DFromTransform,
+    position3DFromTransform,
+    position6DFromPose2D,
+    position6DFromPosition3D,
+    position6DFromTransform,
+    pose2DFromPosition2D,
+    pose2DFromPosition6D,
+    pose2DFromTransform,
+    rotationFromTransform,
+    transformFromPose2D,
+    transformFromRotVec,
+    velocityExponential,
+    transformLogarithm,
+    transformMean,
+    position6DFromTransformDiff,
+):
+    globals()[f"{_function.__name__}InPlace"] = _in_place(_function)
 
 __all__ = [name for name, value in globals().items() if not (name[0] == "_" or isinstance(value, types.ModuleType))]

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Iterable, Sequence
 from numbers import Real
 from typing import Any, ClassVar, TypeVar
+
+import numpy as np
 
 from almath import _matrix
 
@@ -38,7 +41,7 @@ def as_numbers(values: object, what: str) -> list[float]:
 
 
 def require(value: object, kind: type, where: str) -> None:
-    """See that an argument of `where`, a function or class, is of a class; AlmathError if it is not."""
+    """Check that an argument of `where`, a function or class, is of a class; AlmathError if it is not."""
     if not isinstance(value, kind):
         raise AlmathError(f"{where} takes a {kind.__name__}, got {value!r}")
 
@@ -100,8 +103,7 @@ class Components:
 
     def _assign(self, numbers: Iterable[float]) -> None:
         """Overwrite all components, in the order of `_names`."""
-        for name, number in zip(self._names, list(numbers)):
-            setattr(self, name, number)
+        vars(self).update(zip(self._names, map(float, numbers)))
 
     def _values(self) -> list[float]:
         """List the components in the order of `_names`."""
@@ -126,14 +128,6 @@ class Components:
             return NotImplemented
         return self._values() == other._values()
 
-    def __imul__(self: _Value, other: object) -> _Value:
-        """Multiply in place by whatever `*` accepts and answers with this class."""
-        product = self * other
-        if not self._same_kind(product):
-            raise AlmathError(f"{type(self).__name__} *= {other!r} would not leave a {type(self).__name__}")
-        self._assign(product._values())
-        return self
-
     # Mutable values compared by content cannot be keys.
     __hash__ = None
 
@@ -152,6 +146,24 @@ class Components:
     def __repr__(self) -> str:
         pairs = (f"{name}={value:g}" for name, value in zip(self._names, self._values()))
         return f"{type(self).__name__}({', '.join(pairs)})"
+
+
+def _overwriting(symbol: str, operation: Callable[[Any, Any], Any]) -> Callable[[_Value, object], _Value]:
+    """The form of an operator that writes its result over the left side."""
+
+    def apply(self: _Value, other: object) -> _Value:
+        result = operation(self, other)
+        if not self._same_kind(result):
+            name = type(self).__name__
+            raise AlmathError(f"{name} {symbol} {other!r} would not leave a {name}")
+        self._assign(result._values())
+        return self
+
+    return apply
+
+
+for _name, _operation in {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}.items():
+    setattr(Components, f"__i{_operation.__name__}__", _overwriting(f"{_name}=", _operation))
 
 
 class Scalable(Components):
@@ -173,10 +185,6 @@ class Scalable(Components):
             raise AlmathError(f"division of {self!r} by zero")
         return self._make(value / divisor for value in self._values())
 
-    def __itruediv__(self: _Vector, divisor: float) -> _Vector:
-        self._assign((self / divisor)._values())
-        return self
-
 
 class Linear(Scalable):
     """Components that can also be added to and subtracted from each other; one number fills them all."""
@@ -193,14 +201,6 @@ class Linear(Scalable):
             return NotImplemented
         return self._make(mine - theirs for mine, theirs in zip(self._values(), other._values()))
 
-    def __iadd__(self: _Vector, other: _Vector) -> _Vector:
-        self._assign((self + other)._values())
-        return self
-
-    def __isub__(self: _Vector, other: _Vector) -> _Vector:
-        self._assign((self - other)._values())
-        return self
-
     def __neg__(self: _Vector) -> _Vector:
         return self._make(-value for value in self._values())
 
@@ -213,7 +213,7 @@ class Vector(Scalable):
 
     def norm(self) -> float:
         """Root of the sum of the squares of all numbers, whatever their units."""
-        return math.sqrt(sum(value * value for value in self._values()))
+        return math.hypot(*self._values())
 
     def normalize(self: _Vector) -> _Vector:
         """Divide all numbers by the norm; AlmathError where it is zero."""
@@ -243,21 +243,20 @@ class Turning(Components):
     """Components that are the rows of a rotation matrix, each perhaps with a number of a translation behind it."""
 
     @classmethod
-    def _from_rows(cls: type[_Turn], rows: _matrix.Matrix) -> _Turn:
-        return cls._make(number for row in rows for number in row)
+    def _from_rows(cls: type[_Turn], rows: np.ndarray) -> _Turn:
+        return cls._make(rows.ravel().tolist())
 
-    def _with_rows(self: _Turn, rows: _matrix.Matrix) -> _Turn:
+    def _with_rows(self: _Turn, rows: np.ndarray) -> _Turn:
         """Return the same with another rotation."""
         return self._from_rows(rows)
 
-    def _lines(self) -> list[list[float]]:
-        """List the numbers row by row."""
-        numbers = self._values()
-        width = len(numbers) // 3
-        return [numbers[start : start + width] for start in range(0, len(numbers), width)]
+    def _array(self) -> np.ndarray:
+        """The numbers as a (3, 3) or (3, 4) array."""
+        return np.array(self._values()).reshape(3, -1)
 
-    def _rows(self) -> _matrix.Matrix:
-        return tuple(tuple(line[:3]) for line in self._lines())
+    def _rows(self) -> np.ndarray:
+        """The rotation as a (3, 3) array."""
+        return self._array()[:, :3]
 
     # These two have a name of their own in each class.
 
@@ -272,22 +271,22 @@ class Turning(Components):
 
     def determinant(self) -> float:
         """Determinant of the rotation: 1."""
-        return _matrix.determinant(self._rows())
+        return float(np.linalg.det(self._rows()))
 
     @classmethod
     def fromRotX(cls: type[_Turn], angle: float) -> _Turn:
         """Rotation about X by `angle`, in rad."""
-        return cls._from_rows(_matrix.about_x(angle))
+        return cls._from_rows(_matrix.about(0, angle))
 
     @classmethod
     def fromRotY(cls: type[_Turn], angle: float) -> _Turn:
         """Rotation about Y by `angle`, in rad."""
-        return cls._from_rows(_matrix.about_y(angle))
+        return cls._from_rows(_matrix.about(1, angle))
 
     @classmethod
     def fromRotZ(cls: type[_Turn], angle: float) -> _Turn:
         """Rotation about Z by `angle`, in rad."""
-        return cls._from_rows(_matrix.about_z(angle))
+        return cls._from_rows(_matrix.about(2, angle))
 
     @classmethod
     def from3DRotation(cls: type[_Turn], wx: float, wy: float, wz: float) -> _Turn:
@@ -303,7 +302,7 @@ class Turning(Components):
         return opening + (",\n" + " " * len(opening)).join(self._texts()) + "])"
 
     def _texts(self) -> list[str]:
-        return [", ".join(f"{number:g}" for number in line) for line in self._lines()]
+        return [", ".join(f"{number:g}" for number in row) for row in self._array()]
 
 
 def fill(out: _Value, value: _Value, where: str) -> None:

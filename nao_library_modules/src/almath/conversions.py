@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Union
 
 from almath import _matrix
-from almath._components import AlmathError, Placed, answer, as_number, asking, fill, in_place, require
+from almath._components import AlmathError, Placed, answer, as_number, asking, fill, require
 from almath.positions import Pose2D, Position2D, Position3D, Position6D, Velocity3D, Velocity6D
 from almath.rotations import Displacement, Quaternion, Rotation, Rotation3D, Transform
 
@@ -22,16 +22,10 @@ def position2DFromPose2D(pose: Pose2D) -> Position2D:
     return Position2D(pose.x, pose.y)
 
 
-position2DFromPose2DInPlace = in_place(position2DFromPose2D)
-
-
 def position2DFromTransform(transform: Transform) -> Position2D:
     """Origin of a transform, seen from above."""
     require(transform, Transform, "position2DFromTransform")
     return Position2D(transform.r1_c4, transform.r2_c4)
-
-
-position2DFromTransformInPlace = in_place(position2DFromTransform)
 
 
 def position3DFromPosition6D(position: Position6D) -> Position3D:
@@ -46,25 +40,16 @@ def position3DFromTransform(transform: Transform) -> Position3D:
     return Position3D(*transform._point())
 
 
-position3DFromTransformInPlace = in_place(position3DFromTransform)
-
-
 def position6DFromPose2D(pose: Pose2D) -> Position6D:
     """Pose on the floor as a position in space."""
     require(pose, Pose2D, "position6DFromPose2D")
     return Position6D(pose.x, pose.y, 0.0, 0.0, 0.0, pose.theta)
 
 
-position6DFromPose2DInPlace = in_place(position6DFromPose2D)
-
-
 def position6DFromPosition3D(point: Position3D) -> Position6D:
     """Point with angles of zero."""
     require(point, Position3D, "position6DFromPosition3D")
     return Position6D(point.x, point.y, point.z, 0.0, 0.0, 0.0)
-
-
-position6DFromPosition3DInPlace = in_place(position6DFromPosition3D)
 
 
 def position6DFromVelocity6D(velocity: Velocity6D) -> Position6D:
@@ -79,16 +64,10 @@ def position6DFromTransform(transform: Transform) -> Position6D:
     return Position6D(*transform._point(), *_matrix.to_angles(transform._rows()))
 
 
-position6DFromTransformInPlace = in_place(position6DFromTransform)
-
-
 def pose2DFromPosition2D(point: Position2D, theta: float = 0.0) -> Pose2D:
     """Pose at a point with a heading in rad."""
     require(point, Position2D, "pose2DFromPosition2D")
     return Pose2D(point.x, point.y, theta)
-
-
-pose2DFromPosition2DInPlace = in_place(pose2DFromPosition2D)
 
 
 def pose2DFromPosition6D(position: Position6D) -> Pose2D:
@@ -97,16 +76,10 @@ def pose2DFromPosition6D(position: Position6D) -> Pose2D:
     return Pose2D(position.x, position.y, position.wz)
 
 
-pose2DFromPosition6DInPlace = in_place(pose2DFromPosition6D)
-
-
 def pose2DFromTransform(transform: Transform) -> Pose2D:
     """Transform seen from above: x, y and yaw."""
     require(transform, Transform, "pose2DFromTransform")
     return Pose2D(transform.r1_c4, transform.r2_c4, _matrix.to_angles(transform._rows())[2])
-
-
-pose2DFromTransformInPlace = in_place(pose2DFromTransform)
 
 
 # --- to rotations
@@ -116,9 +89,6 @@ def rotationFromTransform(transform: Transform) -> Rotation:
     """Rotation of a transform."""
     require(transform, Transform, "rotationFromTransform")
     return Rotation._from_rows(transform._rows())
-
-
-rotationFromTransformInPlace = in_place(rotationFromTransform)
 
 
 def rotationFromQuaternion(*arguments: Quaternion | Rotation | float) -> Rotation | None:
@@ -155,9 +125,9 @@ def rotation3DFromQuaternion(quaternion: Quaternion, out: Rotation3D | None = No
 def quaternionFromRotation3D(angles: Rotation3D, out: Quaternion | None = None) -> Quaternion | None:
     """Quaternion of Rz(wz) Ry(wy) Rx(wx); written to `out` if that is given."""
     require(angles, Rotation3D, "quaternionFromRotation3D")
-    about_x, about_y, about_z = (
-        Quaternion.fromAngleAndAxisRotation(angle, *axis) for angle, axis in zip(angles._values(), _matrix.IDENTITY)
-    )
+    about_x = Quaternion.fromAngleAndAxisRotation(angles.wx, 1.0, 0.0, 0.0)
+    about_y = Quaternion.fromAngleAndAxisRotation(angles.wy, 0.0, 1.0, 0.0)
+    about_z = Quaternion.fromAngleAndAxisRotation(angles.wz, 0.0, 0.0, 1.0)
     return answer(about_z * about_y * about_x, out, "quaternionFromRotation3D")
 
 
@@ -182,9 +152,6 @@ def transformFromPose2D(pose: Pose2D) -> Transform:
     """Transform of a pose on the floor."""
     require(pose, Pose2D, "transformFromPose2D")
     return Transform.fromPosition(pose.x, pose.y, 0.0, 0.0, 0.0, pose.theta)
-
-
-transformFromPose2DInPlace = in_place(transformFromPose2D)
 
 
 def transformFromPosition3D(point: Position3D) -> Transform:

@@ -9,8 +9,10 @@ from __future__ import annotations
 import math
 from typing import Callable, TypeVar
 
+import numpy as np
+
 from almath import _matrix
-from almath._components import AlmathError, answer, as_number, fill, in_place, require
+from almath._components import AlmathError, answer, as_number, fill, require
 from almath.positions import Pose2D, Position3D, Position6D, Velocity6D
 from almath.rotations import Rotation, Transform
 from almath.tools import AXIS_MASK_X, AXIS_MASK_Y, AXIS_MASK_Z
@@ -26,10 +28,8 @@ def _turning(kind: type[Turnable], what: str, back: bool = False) -> Callable[[T
         require(transform, Transform, name)
         require(vector, kind, name)
         require(out, kind, name)
-        rows = _matrix.transposed(transform._rows()) if back else transform._rows()
-        numbers = vector._values()
-        triples = (tuple(numbers[start : start + 3]) for start in range(0, len(numbers), 3))
-        out._assign([number for triple in triples for number in _matrix.applied(rows, triple)])
+        rows = transform._rows() if back else transform._rows().T
+        out._assign((np.reshape(vector._values(), (-1, 3)) @ rows).ravel())
 
     turn.__name__ = turn.__qualname__ = name
     turn.__doc__ = f"Turn {what}{' back' if back else ''} by the rotation of `transform`; the result goes to `out`."
@@ -81,7 +81,7 @@ def changeReferencePose2DInPlace(theta: float, pose: Pose2D) -> None:
     changeReferencePose2D(theta, pose, pose)
 
 
-_ABOUT = {AXIS_MASK_X: _matrix.about_x, AXIS_MASK_Y: _matrix.about_y, AXIS_MASK_Z: _matrix.about_z}
+_AXES = {AXIS_MASK_X: 0, AXIS_MASK_Y: 1, AXIS_MASK_Z: 2}
 
 # Components of a unit vector below this do not decide where the other two axes of a frame go.
 _NEGLIGIBLE = 0.0001
@@ -95,7 +95,7 @@ def axisRotationProjection(axis: Position3D, rotated: Rotation | Transform) -> R
     require(axis, Position3D, "axisRotationProjection")
     if not isinstance(rotated, (Rotation, Transform)):
         raise AlmathError(f"axisRotationProjection takes a Rotation or a Transform, got {rotated!r}")
-    return rotated._with_rows(_projected(tuple(axis.normalize()._values()), rotated._rows()))
+    return rotated._with_rows(_projected(np.array(axis.normalize()._values()), rotated._rows()))
 
 
 def axisRotationProjectionInPlace(axis: Position3D, rotated: Rotation | Transform) -> None:
@@ -103,11 +103,9 @@ def axisRotationProjectionInPlace(axis: Position3D, rotated: Rotation | Transfor
     fill(rotated, axisRotationProjection(axis, rotated), "axisRotationProjectionInPlace")
 
 
-def _projected(axis: _matrix.Triple, rows: _matrix.Matrix) -> _matrix.Matrix:
+def _projected(axis: np.ndarray, rows: np.ndarray) -> np.ndarray:
     # Nearest means the largest trace of A(angle)^T R, which is a + b cos(angle) + c sin(angle).
-    turning = (rows[2][1] - rows[1][2], rows[0][2] - rows[2][0], rows[1][0] - rows[0][1])
-    cosine = rows[0][0] + rows[1][1] + rows[2][2] - _matrix.dot(axis, _matrix.applied(rows, axis))
-    return _matrix.about_axis(axis, math.atan2(_matrix.dot(axis, turning), cosine))
+    return _matrix.about_axis(axis, math.atan2(axis @ _matrix.axial(rows), np.trace(rows) - axis @ rows @ axis))
 
 
 def orthogonalSpace(axis: Position3D, out: Transform | None = None) -> Transform | None:
@@ -125,10 +123,10 @@ def orthogonalSpace(axis: Position3D, out: Transform | None = None) -> Transform
     else:
         first = Position3D(third.z, 0.0, 0.0)
     first = first.normalize()
-    columns = tuple(tuple(column._values()) for column in (first, third.crossProduct(first), third))
+    columns = [column._values() for column in (first, third.crossProduct(first), third)]
     placed = Transform() if out is None else out
     require(placed, Transform, "orthogonalSpace")
-    return answer(placed._with_rows(_matrix.transposed(columns)), out, "orthogonalSpace")
+    return answer(placed._with_rows(np.column_stack(columns)), out, "orthogonalSpace")
 
 
 def transformFromRotVec(*arguments: int | float | Position3D) -> Transform:
@@ -144,15 +142,13 @@ def transformFromRotVec(*arguments: int | float | Position3D) -> Transform:
         *turn, point = arguments
     if not turn and arguments:
         return Transform(point.x, point.y, point.z)
-    if len(turn) != 2 or turn[0] not in _ABOUT:
+    if len(turn) != 2 or turn[0] not in _AXES:
         raise AlmathError(
             "transformFromRotVec takes a Position3D, or AXIS_MASK_X (1), AXIS_MASK_Y (2) or AXIS_MASK_Z (4) "
             f"and an angle, or all three, got {arguments!r}"
         )
-    return Transform._from_parts(_ABOUT[turn[0]](as_number(turn[1], "transformFromRotVec angle")), point._values())
-
-
-transformFromRotVecInPlace = in_place(transformFromRotVec)
+    angle = as_number(turn[1], "transformFromRotVec angle")
+    return Transform._from_parts(_matrix.about(_AXES[turn[0]], angle), point._values())
 
 
 # Below this angle, in rad, the closed formulas divide rounding errors by its square; their series take over.
@@ -162,20 +158,16 @@ _SMALL_ANGLE = 0.0001
 def velocityExponential(velocity: Velocity6D) -> Transform:
     """Transform that a body velocity, in m/s and rad/s, leads to within one second."""
     require(velocity, Velocity6D, "velocityExponential")
-    linear = (velocity.xd, velocity.yd, velocity.zd)
-    angular = (velocity.wxd, velocity.wyd, velocity.wzd)
-    angle = math.sqrt(_matrix.dot(angular, angular))
+    linear, angular = np.reshape(velocity._values(), (2, 3))
+    angle = math.hypot(*angular)
     if angle < _SMALL_ANGLE:
-        rows = _matrix.from_quaternion(1.0, *_matrix.scaled(angular, 0.5))
+        rows = _matrix.from_quaternion(1.0, *(0.5 * angular))
         across, along = 0.5, 1.0 / 6.0
     else:
-        rows = _matrix.about_axis(_matrix.scaled(angular, 1.0 / angle), angle)
+        rows = _matrix.about_axis(angular / angle, angle)
         across = (1.0 - math.cos(angle)) / angle**2
         along = (angle - math.sin(angle)) / angle**3
     return Transform._from_parts(rows, _bent(linear, angular, across, along))
-
-
-velocityExponentialInPlace = in_place(velocityExponential)
 
 
 def transformLogarithm(transform: Transform) -> Velocity6D:
@@ -185,28 +177,25 @@ def transformLogarithm(transform: Transform) -> Velocity6D:
     """
     require(transform, Transform, "transformLogarithm")
     w, *vector = _matrix.to_quaternion(transform._rows())
-    sine = math.sqrt(_matrix.dot(vector, vector))
+    sine = math.hypot(*vector)
     angle = 2.0 * math.atan2(sine, w)
     if angle < _SMALL_ANGLE:
-        angular = _matrix.scaled(vector, 2.0)
+        angular = 2.0 * np.array(vector)
         along = 1.0 / 12.0
     else:
-        angular = _matrix.scaled(vector, angle / sine)
+        angular = np.array(vector) * (angle / sine)
         along = (1.0 - 0.5 * angle * w / sine) / angle**2
-    return Velocity6D(*_bent(transform._point(), angular, -0.5, along), *angular)
+    return Velocity6D([*_bent(np.array(transform._point()), angular, -0.5, along), *angular])
 
 
-transformLogarithmInPlace = in_place(transformLogarithm)
-
-
-def _bent(v: _matrix.Triple, angular: _matrix.Triple, across: float, along: float) -> _matrix.Triple:
+def _bent(v: np.ndarray, angular: np.ndarray, across: float, along: float) -> np.ndarray:
     """Sum v + across (angular x v) + along (angular x (angular x v)).
 
     The straight and the screwed way to a point differ by such a sum, in both directions.
     """
-    once = _matrix.cross(angular, v)
-    twice = _matrix.cross(angular, once)
-    return tuple(a + across * b + along * c for a, b, c in zip(v, once, twice))
+    turning = _matrix.skew(angular)
+    once = turning @ v
+    return v + across * once + along * (turning @ once)
 
 
 def transformMean(start: Transform, end: Transform, share: float = 0.5) -> Transform:
@@ -221,9 +210,6 @@ def transformMean(start: Transform, end: Transform, share: float = 0.5) -> Trans
     return start * velocityExponential(transformLogarithm(start.diff(end)) * share)
 
 
-transformMeanInPlace = in_place(transformMean)
-
-
 def position6DFromTransformDiff(current: Transform, target: Transform) -> Position6D:
     """Difference of two transforms in the frame in which both are given, as a controller takes it.
 
@@ -232,10 +218,5 @@ def position6DFromTransformDiff(current: Transform, target: Transform) -> Positi
     """
     require(current, Transform, "position6DFromTransformDiff")
     require(target, Transform, "position6DFromTransformDiff")
-    moved = (b - a for a, b in zip(current._point(), target._point()))
-    columns = zip(_matrix.transposed(current._rows()), _matrix.transposed(target._rows()))
-    turned = (0.5 * sum(parts) for parts in zip(*(_matrix.cross(a, b) for a, b in columns)))
-    return Position6D(*moved, *turned)
-
-
-position6DFromTransformDiffInPlace = in_place(position6DFromTransformDiff)
+    moved = np.subtract(target._point(), current._point())
+    return Position6D([*moved, *(0.5 * _matrix.axial(target._rows() @ current._rows().T))])

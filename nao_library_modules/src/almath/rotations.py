@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable
 from numbers import Real
 
+import numpy as np
+
 from almath import _matrix
 from almath._components import (
     AlmathError,
@@ -35,7 +37,7 @@ class Rotation(Turning):
     """
 
     _names = tuple(f"r{row}_c{column}" for row in (1, 2, 3) for column in (1, 2, 3))
-    _defaults = tuple(number for row in _matrix.IDENTITY for number in row)
+    _defaults = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
     @classmethod
     def _read(cls, arguments: tuple[object, ...]) -> Iterable[float]:
@@ -55,9 +57,9 @@ class Rotation(Turning):
     def __mul__(self, other: Rotation | Position3D | Velocity3D) -> Rotation | Position3D | Velocity3D:
         """Chain two rotations, or turn a point or a velocity."""
         if isinstance(other, Rotation):
-            return self._from_rows(_matrix.product(self._rows(), other._rows()))
+            return self._from_rows(self._rows() @ other._rows())
         if isinstance(other, (Position3D, Velocity3D)):
-            return other._make(_matrix.applied(self._rows(), tuple(other._values())))
+            return other._make(self._rows() @ other._values())
         return NotImplemented
 
     def isRotation(self, epsilon: float = 0.0001) -> bool:
@@ -73,7 +75,7 @@ class Rotation(Turning):
 
     def transpose(self) -> Rotation:
         """Swap rows and columns: the inverse of a rotation."""
-        return self._from_rows(_matrix.transposed(self._rows()))
+        return self._from_rows(self._rows().T)
 
     @staticmethod
     def fromQuaternion(w: float, x: float, y: float, z: float) -> Rotation:
@@ -126,7 +128,7 @@ class Rotation3D(Linear):
 
     def norm(self) -> float:
         """Root of the sum of the squares, in rad; not the angle of the rotation."""
-        return math.sqrt(sum(value * value for value in self._values()))
+        return math.hypot(*self._values())
 
 
 rotationFromRotX, rotationFromRotY, rotationFromRotZ = Rotation.fromRotX, Rotation.fromRotY, Rotation.fromRotZ
@@ -152,7 +154,7 @@ def applyRotation(rotation: Rotation, x: float, y: float, z: float) -> tuple[flo
     """
     require(rotation, Rotation, "applyRotation")
     point = tuple(as_number(value, f"applyRotation {name}") for name, value in zip("xyz", (x, y, z)))
-    return _matrix.applied(rotation._rows(), point)
+    return tuple((rotation._rows() @ point).tolist())
 
 
 def rotationFromAxesXYZ(x_axis: Position3D, y_axis: Position3D, z_axis: Position3D) -> Rotation:
@@ -162,7 +164,7 @@ def rotationFromAxesXYZ(x_axis: Position3D, y_axis: Position3D, z_axis: Position
     """
     for axis in (x_axis, y_axis, z_axis):
         require(axis, Position3D, "rotationFromAxesXYZ")
-    rotation = Rotation._from_rows(_matrix.transposed(tuple(tuple(a._values()) for a in (x_axis, y_axis, z_axis))))
+    rotation = Rotation._from_rows(np.column_stack([axis._values() for axis in (x_axis, y_axis, z_axis)]))
     if not rotation.isRotation(0.001):
         raise AlmathError(f"{x_axis!r}, {y_axis!r}, {z_axis!r} are not three right-handed unit vectors at right angles")
     return rotation
@@ -203,15 +205,21 @@ class Quaternion(Vector):
     def __mul__(self, other: Quaternion | Position3D | float) -> Quaternion | Position3D:
         """Chain two rotations, turn a point, or multiply by a number."""
         if isinstance(other, Quaternion):
-            mine, theirs = (self.x, self.y, self.z), (other.x, other.y, other.z)
-            turned = _matrix.cross(mine, theirs)
-            vector = (self.w * b + other.w * a + c for a, b, c in zip(mine, theirs, turned))
-            return self._make((self.w * other.w - _matrix.dot(mine, theirs), *vector))
+            aw, ax, ay, az = self._values()
+            bw, bx, by, bz = other._values()
+            return self._make(
+                (
+                    aw * bw - ax * bx - ay * by - az * bz,
+                    aw * bx + ax * bw + ay * bz - az * by,
+                    aw * by - ax * bz + ay * bw + az * bx,
+                    aw * bz + ax * by - ay * bx + az * bw,
+                )
+            )
         if isinstance(other, Position3D):
             rows = _matrix.from_quaternion(*self._values())
             if rows is None:
                 raise AlmathError(f"{self!r} turns nothing: its norm is zero")
-            return other._make(_matrix.applied(rows, tuple(other._values())))
+            return other._make(rows @ other._values())
         return super().__mul__(other)
 
     def isNear(self, other: Quaternion, epsilon: float = 0.0001) -> bool:
@@ -252,8 +260,8 @@ def angleAndAxisRotationFromQuaternion(quaternion: Quaternion) -> list[float]:
     require(quaternion, Quaternion, "angleAndAxisRotationFromQuaternion")
     quaternion = quaternion.normalize()
     vector = (quaternion.x, quaternion.y, quaternion.z)
-    sine = math.sqrt(_matrix.dot(vector, vector))
-    axis = _matrix.scaled(vector, 1.0 / sine) if sine > _SMALLEST_SINE else (1.0, 0.0, 0.0)
+    sine = math.hypot(*vector)
+    axis = [value / sine for value in vector] if sine > _SMALLEST_SINE else (1.0, 0.0, 0.0)
     return [2.0 * math.atan2(sine, quaternion.w), *axis]
 
 
@@ -277,7 +285,7 @@ class Transform(Turning, Placed):
             return cls._defaults
         if len(arguments) == 3:
             position = [as_number(value, f"Transform {name}") for name, value in zip("xyz", arguments)]
-            return cls._from_parts(_matrix.IDENTITY, position)._values()
+            return cls._from_parts(np.eye(3), position)._values()
         if len(arguments) != 1 or isinstance(arguments[0], Real):
             raise AlmathError(f"Transform takes 3 numbers or a sequence of 12 or 16, got {len(arguments)} arguments")
         if isinstance(arguments[0], Transform):
@@ -291,31 +299,30 @@ class Transform(Turning, Placed):
         return transform._values()
 
     @classmethod
-    def _from_parts(cls, rows: _matrix.Matrix, position: Iterable[float]) -> Transform:
-        return cls._make(number for row, offset in zip(rows, position) for number in (*row, offset))
+    def _from_parts(cls, rows: np.ndarray, position: Iterable[float]) -> Transform:
+        return cls._make(np.column_stack((rows, position)).ravel().tolist())
 
     @classmethod
-    def _from_rows(cls, rows: _matrix.Matrix) -> Transform:
+    def _from_rows(cls, rows: np.ndarray) -> Transform:
         return cls._from_parts(rows, (0.0, 0.0, 0.0))
 
-    def _with_rows(self, rows: _matrix.Matrix) -> Transform:
+    def _with_rows(self, rows: np.ndarray) -> Transform:
         return self._from_parts(rows, self._point())
 
     def _point(self) -> _matrix.Triple:
         return (self.r1_c4, self.r2_c4, self.r3_c4)
 
-    def _placed(self, point: _matrix.Triple) -> _matrix.Triple:
-        return tuple(a + b for a, b in zip(_matrix.applied(self._rows(), point), self._point()))
+    def _placed(self, point: _matrix.Triple) -> np.ndarray:
+        return self._rows() @ point + self._point()
 
     def __mul__(self, other: Transform | Position3D | Position2D) -> Transform | Position3D:
         """Chain two transforms, or place a point; one of the plane is taken at z = 0."""
         if isinstance(other, Transform):
-            rows = _matrix.product(self._rows(), other._rows())
-            return self._from_parts(rows, self._placed(other._point()))
+            return self._from_parts(self._rows() @ other._rows(), self._placed(other._point()))
         if isinstance(other, Position3D):
-            return Position3D(*self._placed((other.x, other.y, other.z)))
+            return Position3D(self._placed((other.x, other.y, other.z)))
         if isinstance(other, Position2D):
-            return Position3D(*self._placed((other.x, other.y, 0.0)))
+            return Position3D(self._placed((other.x, other.y, 0.0)))
         return NotImplemented
 
     def isTransform(self, epsilon: float = 0.0001) -> bool:
@@ -331,12 +338,12 @@ class Transform(Turning, Placed):
 
     def norm(self) -> float:
         """Length of the translation, in m."""
-        return math.sqrt(_matrix.dot(self._point(), self._point()))
+        return math.hypot(*self._point())
 
     def inverse(self) -> Transform:
         """Transform that undoes this one."""
-        rows = _matrix.transposed(self._rows())
-        return self._from_parts(rows, _matrix.scaled(_matrix.applied(rows, self._point()), -1.0))
+        rows = self._rows().T
+        return self._from_parts(rows, -rows @ self._point())
 
     def diff(self, other: Transform) -> Transform:
         """Transform that leads from here to `other`, in this frame."""
