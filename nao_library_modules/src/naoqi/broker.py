@@ -347,7 +347,7 @@ class ALBroker:
         try:
             self._session.open(self._listen_port)
         except BrokerError as error:
-            # Former connections may keep a fixed port busy for a minute; registration tells the robot the new one.
+            # Former connections may keep a fixed port busy for a minute; registration gives the robot the new one.
             logger.warning("%s; taking another port", error)
             self._session.open(0)
 

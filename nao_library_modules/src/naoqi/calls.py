@@ -82,7 +82,7 @@ class Call:
                 None waits as long as the connection lives.
 
         Raises:
-            CallTimeout: If the call still runs after the limit. It goes on; `cancel` ends it.
+            CallTimeout: If the call still runs after the limit. It continues; `cancel` ends it.
             NaoError: Any other failure, see `naoqi.errors`.
         """
         # Most answers arrive within the first slice, so this is the fast path.
@@ -181,7 +181,7 @@ class RemoteModule:
 
     Attributes:
         name: Name of the module.
-        connection: The way to it.
+        connection: The connection to the robot.
         timeout: Limit of each waiting call, in s; None for none.
     """
 
@@ -296,7 +296,7 @@ class RemoteMethod:
         """
         connection = self.module.connection
         presence, thread = connection.presence, get_ident()
-        presence.enter(thread)  # before looking for the session: when that is closed, nobody new comes in
+        presence.enter(thread)  # before looking for the session: when that is closed, no other thread enters
         try:
             live = connection.live
             if live is None or live is not self._live or live.services.get(self.module.name) is not self._service:
@@ -367,19 +367,19 @@ class SubscribingMethod(RemoteMethod):
     __slots__ = ()
 
     def __call__(self, *arguments: Any, **options: Any) -> Any:
-        """Call it and wait; it is taken down before anybody can go on to the next."""
+        """Call it and wait; it is recorded before the caller can make the next call."""
         value = super().__call__(*arguments, **options)
         self.module.connection.note_subscription(self.name, arguments)
         return value
 
     def start(self, *arguments: Any) -> Call:
-        """Call it without waiting; it is taken down when it has succeeded."""
+        """Call it without waiting; it is recorded when it has succeeded."""
 
         def note(call: Call) -> None:
             try:
                 call.result()
             except NaoError:
-                return  # whoever made the call hears of it
+                return  # the caller gets this error from the call itself
             self.module.connection.note_subscription(self.name, arguments)
 
         call = super().start(*arguments)
@@ -388,11 +388,11 @@ class SubscribingMethod(RemoteMethod):
 
 
 REMEMBERED_ERRORS = 256
-"""Of so many failed calls the error is kept until somebody waits for them; all are logged anyway."""
+"""The errors of so many failed calls are kept until a program waits for them; all are logged anyway."""
 
 
 class TaskTable:
-    """The calls posted over one connection. A call that is finished leaves; only its error stays a while."""
+    """The calls posted over one connection. A call that is finished is removed; only its error is kept for a while."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()  # guards all below; never held while a call is asked anything
@@ -402,7 +402,7 @@ class TaskTable:
         self._errors: OrderedDict[int, NaoError] = OrderedDict()
 
     def add(self, call: Call) -> int:
-        """Take a call in. Returns its number, unique on this connection."""
+        """Add a call. Returns its number, unique on this connection."""
         with self._lock:
             self._last_id += 1
             task = self._last_id
@@ -441,7 +441,7 @@ class TaskTable:
         return False
 
     def abandon(self) -> None:
-        """The program ends the connection itself: that calls still run then is no news to it."""
+        """Log later failures at debug level: the program closes the connection itself, so they are expected."""
         self._error_level = logging.DEBUG
 
     def stop(self, task: int) -> None:

@@ -1,4 +1,4 @@
-"""How long this side waits for a robot: every limit of this kind, with its reason. All in s.
+"""Time limits of waiting for a robot, each with its reason. All in s.
 
 Three things may be wrong, and each has its own limit:
 
@@ -22,7 +22,9 @@ class Timing:
 
     heartbeat_period: float = 0.3  # pause between two heartbeats: what happens within 2 s is seen by then
     silence: float = 1.3  # one that leaves a heartbeat unanswered so long is reported as silent; a busy one seldom is
-    patience: float = 20.0  # one that is silent so long is lost: twice what programs have seen robots be, and go on
+    patience: float = (
+        20.0  # one that is silent so long is lost: twice the longest silence that a robot was seen to recover from
+    )
     first_delay: float = 0.2  # pause after the first failed attempt to connect; it doubles with each further one
     longest_delay: float = 2.0  # longest pause between two attempts
 
@@ -71,22 +73,22 @@ FIRST_MODULE_LIMIT = 10.0
 READY_LIMIT = 1.0
 """A module that has just been registered may not be callable yet."""
 STANDING_LIMIT = 2.0
-"""A walk that somebody stopped: until the robot stands, and so how far it got is known."""
+"""A walk that was stopped: until the robot stands, and so how far it got is known."""
 STOP_LIMIT = 10.0
 """A walk ends on both feet."""
 FILE_LIMIT = 10.0
-"""A recorder begins or completes a file."""
+"""A recorder starts or completes a file."""
 LEARN_LIMIT = 30.0
 """A face is learned from several pictures."""
 MOVE_LIMIT = 60.0
 """A service that answers when the body has moved: to wake up, to rest, to change the state of life."""
 LOST_WORD_LIMIT = 120.0
-"""A speaking robot tells of each word; one that tells nothing for so long has lost the text."""
+"""A speaking robot reports each word; one that reports none for so long has lost the text."""
 
 WORD_TIMES_LIMIT = 0.5
 """The times of what was said are asked for when it is over, and may be missing in the result."""
 
-# Of things that come by themselves, counted in the same way.
+# Of what the robot sends unasked, counted in the same way.
 
 STREAM_LIMIT = 3.0
 """A stream of pictures or sound: without any for so long it is subscribed again."""
@@ -103,7 +105,7 @@ STOPPED_LIMIT = 0.5
 GOAL_END_LIMIT = SERVER_PATIENCE + 5.0
 """A goal of a server ends when the robot stands still, also if it is silent at first."""
 
-# Of the end of a program: nobody waits for answers any more.
+# Of the end of a program, which waits for no answers any more.
 
 FLUSH_LIMIT = 0.5
 """What was sent arrives at the robot."""
@@ -117,8 +119,8 @@ IDLE_LIMIT = 0.5
 START_PATIENCE = 30.0
 """From the start of a server: goals wait for a robot, or simulator, that is launched together with it."""
 TEXT_PATIENCE = 3.0
-"""From the arrival of a text on the topic of speech, whose sender is told nothing: for a robot never reached yet."""
+"""From the arrival of a text on the speech topic, which has no reply: for a robot that was never reached yet."""
 LOST_PATIENCE = 5.0
 """What a program that died has left is stopped on a robot that is lost, if it is back by then."""
 BOOT_LIMIT = 120.0
-"""After the connection: ALMemory, which tells of a new start of NAOqi, may appear."""
+"""After the connection: ALMemory, which reports a restart of NAOqi, may appear."""

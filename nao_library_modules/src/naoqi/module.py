@@ -67,7 +67,7 @@ def _served_method(module: Any, module_name: str, name: str, worker: Worker) -> 
                 given = _fitting(arguments, lowest, highest)
                 answer = getattr(module, name)(*map(translate.from_wire, given))
                 promise.setValue(translate.to_wire((answer,), lambda: False)[0])
-            except BaseException as error:  # sys.exit() in a callback must reach whoever called it as well
+            except BaseException as error:  # sys.exit() in a callback must reach the caller as well
                 logger.error("%s.%s%r failed", module_name, name, arguments, exc_info=True)
                 promise.setError(f"{type(error).__name__}: {error}")
 

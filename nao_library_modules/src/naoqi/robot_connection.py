@@ -96,8 +96,8 @@ class Connection:
         latency: Round trip of the last heartbeat in s; None while not connected.
         last_error: What went wrong last, empty if nothing ever did.
         tasks: The posted calls of all proxies on this connection.
-        presence: Who is inside libqi on behalf of this connection.
-        subscriptions: Event subscriptions to make again after a loss.
+        presence: Threads and callbacks inside libqi on behalf of this connection.
+        subscriptions: Event subscriptions to renew after a loss.
         witness: Called with module, method and arguments of each call before it is sent, where there is one; what it
             returns, if it is not None, is called at the end of the call, in a thread of libqi.
     """
@@ -155,13 +155,13 @@ class Connection:
     def answering_time(self) -> float:
         """A clock, s, that stands still while a connected robot owes an answer, and while this program is stopped.
 
-        Limits of answers are counted by it: a silent robot is the matter of `timing.patience`.
+        Limits of answers are counted by it: `timing.patience` limits the silence of a robot.
         """
         counted, since, most = self._answering
         return counted if since is None else counted + min(time.monotonic() - since, most)
 
     def add_listener(self, listener: Listener, silence: bool = False) -> None:
-        """Have a function called with the new state at each later change, from a thread of this connection.
+        """Call a function with the new state at each later change, from a thread of this connection.
 
         Listeners are called one after the other, in the order in which they were added. They may make remote
         calls; what they raise is logged. `silence`: call it also when `silent` begins or ends.
@@ -169,11 +169,11 @@ class Connection:
         self._listeners.add(listener, silence)
 
     def remove_listener(self, listener: Listener) -> None:
-        """Call this function no more; one that was never added is no error."""
+        """Remove a listener; one that was never added is no error."""
         self._listeners.remove(listener)
 
     def in_background(self, job: Callable[[], None]) -> None:
-        """Have a job done in the thread of the listeners, after the changes they still have to hear of."""
+        """Do a job in the thread of the listeners, after the state changes that are still in its queue."""
         self._listeners.in_background(job)
 
     def wait_connected(self, timeout: Optional[float] = None) -> bool:
@@ -355,7 +355,7 @@ class Connection:
                 return "NAOqi has started again" if live.has_restarted else "closed by the robot"
 
     def _answered(self, future: Any) -> bool:
-        """Wait for the answer to a heartbeat, and tell of silence; False if the patience is over.
+        """Wait for the answer to a heartbeat, and report silence; False if the patience is over.
 
         Parts are counted, and not the clock read: a program that was itself stopped for a while finds the time over and
         the answer waiting, and needs only a moment to read it.
@@ -370,13 +370,13 @@ class Connection:
         return True
 
     def _note_silence(self, since: Optional[float]) -> None:
-        """The robot is silent since then, or (None) answers; only a change is told."""
+        """Report that the robot is silent since a time, or (None) that it answers; only changes are reported."""
         before = self._silent_since
         if (since is None) == (before is None):
             return
         with self._condition:
             self._silent_since = since
-            self._listeners.tell(self._state, silence=True)
+            self._listeners.notify(self._state, silence=True)
         if before is None:
             logger.warning(
                 "NAOqi at %s has not answered for %.1f s: calls wait for it, up to %g s",
@@ -418,7 +418,7 @@ class Connection:
             self._failed_attempts = 0
             self.generation += live is not None
             self._condition.notify_all()
-            self._listeners.tell(state)  # with the lock: who sees a state hears only of those that follow
+            self._listeners.notify(state)  # with the lock: a thread that reads a state is notified of later ones only
 
 
 DEFAULT_PORT = 9559
@@ -469,7 +469,7 @@ class Registry:
         wait_until_idle(IDLE_LIMIT)
 
     def _give_up(self, connection: Connection) -> None:
-        """Close a connection that was never made and that nobody else waits for."""
+        """Close a connection that was never made and that no other caller waits for."""
         with self._lock:
             self._wanted[connection] = self._wanted.get(connection, 1) - 1
             unwanted = self._wanted[connection] <= 0 and connection.generation == 0
@@ -506,7 +506,7 @@ def connection(
     connect_timeout: Optional[float] = None,
     timing: Optional[Timing] = None,
 ) -> Connection:
-    """The connection to the NAOqi at an address, opened by the first who asks.
+    """The connection to the NAOqi at an address, opened by the first caller.
 
     Raises BadArguments if this is no address, RobotUnreachable if the robot is not there (only with `wait`).
 

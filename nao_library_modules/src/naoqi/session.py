@@ -40,7 +40,7 @@ class Live:
         services: Remote objects found so far, by name.
         lookups: Held while a remote object is looked for, by name.
         connected_at: When it was connected, in s of `Connection.answering_time`.
-        start_watch: Tells when NAOqi starts again behind this session; None while that cannot be known.
+        start_watch: Knows whether NAOqi has restarted behind this session; None while that cannot be known.
     """
 
     def __init__(self, on_break: Callable[[], None] = lambda: None) -> None:
@@ -61,7 +61,7 @@ class Live:
 
     @property
     def has_restarted(self) -> bool:
-        """Whether NAOqi has started again since."""
+        """Whether NAOqi has restarted since."""
         return self.start_watch is not None and self.start_watch.has_restarted
 
     def close(self) -> None:
@@ -80,22 +80,22 @@ class Live:
 
 
 class StartWatch:
-    """Hears the event with which NAOqi says that it has started, all its modules with it.
+    """Listens to the event that NAOqi raises when it has started with all its modules.
 
-    A robot that boots can be reached before; what comes then is the end of that start, and nothing is lost. Later ones
-    come from a simulated robot only, whose NAOqi begins anew while its network stays: a real one goes with its NAOqi.
+    A robot that boots can be reached before; the first event is the end of that start, and nothing is lost. Later
+    ones come from a simulated robot only, whose NAOqi restarts while its network stays up.
     `has_restarted`: whether it has started again.
     """
 
     def __init__(self, live: Live) -> None:
-        """Hear nothing yet."""
+        """Make a watch that listens to nothing yet."""
         self.has_restarted = False
         self._broken = live.broken
         self._ready = False
         self._subscriber: Any = None
 
     def begin(self, memory: Any, limit: float) -> None:
-        """Hear from now on; RuntimeError when the robot cannot do that."""
+        """Listen from now on; RuntimeError when the robot cannot do that."""
         self._subscriber = _done(memory.subscriber(READY, _async=True), limit)
         _done(self._subscriber.signal.connect(self._on_ready, _async=True), limit)
         self._ready = bool(_done(memory.getEventHistory(READY, _async=True), limit))
@@ -107,14 +107,14 @@ class StartWatch:
         self._ready = True
 
     def end(self) -> None:
-        """Let go of what libqi would keep for ever: it holds this object, and this object holds what libqi has."""
+        """Break the reference cycle through libqi: it holds this object, which holds the subscriber."""
         self._subscriber = None
 
 
 def watch_starts(live: Live, limit: float) -> None:
-    """Have `has_restarted` known, if there is ALMemory already; its object is found by the way.
+    """Watch for restarts, if there is ALMemory already; its remote object is kept in `services`.
 
-    Four questions, each after the answer to the one before; a call that needs ALMemory saves one of them later.
+    Four requests, each after the answer to the one before; the first call of ALMemory needs one less for it.
     """
     watch = StartWatch(live)
     try:

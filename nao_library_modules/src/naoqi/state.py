@@ -32,7 +32,7 @@ class Worker:
         self._closed = False
 
     def submit(self, job: Callable[[], None]) -> bool:
-        """Have a job done after those that wait already.
+        """Queue a job behind those that wait already.
 
         `job`: called without arguments in the thread of the worker; what it raises is logged. Returns whether it was
         taken; False after `close`.
@@ -49,7 +49,7 @@ class Worker:
     def close(self, timeout: float = 0.0) -> None:
         """Take no more jobs, and end the thread after those it has.
 
-        `timeout`: how long to wait for its end, in s. A job may close its own worker; then nobody waits.
+        `timeout`: how long to wait for its end, in s. A job may close its own worker; then it does not wait.
         """
         with self._lock:
             self._closed = True
@@ -73,7 +73,7 @@ class Worker:
 
 
 class State(str, enum.Enum):
-    """Where a connection stands; equal to its text, so `connection.state == "connected"` works.
+    """The state of a connection; equal to its text, so `connection.state == "connected"` works.
 
     A connected robot may be silent for a while: see `Connection.silent`.
     """
@@ -96,31 +96,33 @@ class Listeners:
     def __init__(self, name: str) -> None:
         """Make an empty list. `name`: of the thread."""
         self._lock = threading.Lock()  # guards the list; not held during calls
-        self._listeners: Dict[Listener, bool] = {}  # whether it hears of silence as well; in the order of their calls
+        self._listeners: Dict[
+            Listener, bool
+        ] = {}  # whether it is notified of silence as well; in the order of their calls
         self._worker = Worker(name)
 
     def add(self, listener: Listener, silence: bool) -> None:
-        """Call this function after those that are here already; at the begin and end of silence only with `silence`."""
+        """Add a function, called after those added before; when silence starts or ends only with `silence`."""
         with self._lock:
             self._listeners[listener] = silence
 
     def remove(self, listener: Listener) -> None:
-        """Call this function no more; one that was never added is no error."""
+        """Remove a function; one that was never added is no error."""
         with self._lock:
             self._listeners.pop(listener, None)
 
-    def tell(self, state: State, silence: bool = False) -> None:
-        """Have those who are here now called with this state; does not wait for it. `silence`: it began or ended."""
+    def notify(self, state: State, silence: bool = False) -> None:
+        """Call the present listeners with a state, without waiting for it. `silence`: it started or ended."""
         with self._lock:
-            listeners = tuple(each for each, hears in self._listeners.items() if hears or not silence)
+            listeners = tuple(each for each, of_silence in self._listeners.items() if of_silence or not silence)
         self._worker.submit(lambda: self._call(listeners, state))
 
     def in_background(self, job: Callable[[], None]) -> None:
-        """Have a job done in the same thread, after what has been told already."""
+        """Do a job in the same thread, after the notifications queued before."""
         self._worker.submit(job)
 
     def close(self) -> None:
-        """Tell nothing more; wait a moment for what has been told already."""
+        """Notify no more; wait a moment for the notifications queued before."""
         self._worker.close(timeout=1.0)
 
     def _call(self, listeners: Sequence[Listener], state: State) -> None:
@@ -139,7 +141,7 @@ Key = Tuple[str, str, str]
 
 
 class EventSubscriptions:
-    """What this process has subscribed to over one connection: a robot that comes back has forgotten it.
+    """The event subscriptions of this process over one connection: a robot that comes back has forgotten them.
 
     Those of the modules of this process are renewed by the broker that serves the module, after it has
     registered it; all others as soon as the robot is back.
@@ -157,7 +159,7 @@ class EventSubscriptions:
         return len(self._arguments)
 
     def note(self, method: str, arguments: Tuple[Any, ...]) -> None:
-        """Take down a call that succeeded.
+        """Record a call that succeeded.
 
         `method`: one of `SUBSCRIBING`. `arguments`: event, module, and for a subscription what else it had.
         """
@@ -180,7 +182,7 @@ class EventSubscriptions:
             self._owned.discard(module)
 
     def renew(self, modules: Collection[str]) -> None:
-        """Subscribe these modules again; what fails is logged, and tried again after the next loss."""
+        """Renew the subscriptions of some modules; a failure is logged, and tried again after the next loss."""
         with self._lock:
             entries = [item for item in self._arguments.items() if item[0][2] in modules]
         if not entries or not self._memory_is_there():

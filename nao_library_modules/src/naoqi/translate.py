@@ -1,6 +1,6 @@
 """Between Python's values and errors and those of libqi. Nothing else in the stack looks at libqi's texts.
 
-Values: libqi's Python binding refuses NumPy values, and turns an unknown object into a remote one without a word; so
+Values: libqi's Python binding refuses NumPy values, and turns an unknown object into a remote one silently; so
 everything that is not plain is converted here or refused by name. What arrives as raw data becomes `bytes`.
 
 Errors: libqi (3.1.5) raises `RuntimeError` for everything, so its text decides, most specific first. The texts of a
@@ -117,7 +117,7 @@ def _raw_outwards(value: bytes, takes_raw: Callable[[], bool]) -> Any:
     try:
         return value.decode("utf-8")
     except UnicodeDecodeError:
-        # libqi 3.1.5 would send the text of their repr instead, and nobody would notice.
+        # libqi 3.1.5 would send the text of their repr instead, without an error.
         raise UnsendableError(
             f"{len(value)} raw bytes can only be sent to a method that declares raw data, or as UTF-8 text"
         ) from None
