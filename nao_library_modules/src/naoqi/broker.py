@@ -209,13 +209,14 @@ class ALBroker:
         self._modules: Dict[str, Any] = {}
         self._workers: Dict[str, Worker] = {}
         self._down = threading.Event()
-        self._worker = Worker(f"naoqi broker {name}")
         self.connection = connection(robot_ip, robot_port, connect_timeout=connect_timeout)
+        self._worker = Worker(f"naoqi broker {name}", self.connection.presence)
         self._session = ServingSession(
             name, self.connection, listen_ip, self._down, lambda: self._worker.submit(self._follow)
         )
         self._session.open(listen_port)
         self.connection.add_listener(self._on_state)
+        self.connection.closers.append(self.shutdown)
         with _open_brokers_lock:
             _open_brokers.append(self)
 
@@ -248,6 +249,7 @@ class ALBroker:
         with _open_brokers_lock:
             if self in _open_brokers:
                 _open_brokers.remove(self)
+                self.connection.closers.remove(self.shutdown)
         self.connection.remove_listener(self._on_state)
         self._worker.close()
         with self._lock:
@@ -272,7 +274,6 @@ class ALBroker:
                 raise BrokerError(self._name, f"it serves a module {name!r} already")
             if not self._session.is_open:
                 raise self.connection.unreachable()
-            self.connection.presence.serve(served)
             try:
                 self._session.register(name, served, patience=0.0)
             except NaoError:
@@ -309,11 +310,8 @@ class ALBroker:
 
     # Called by the connection and by libqi; the work is done in the thread of the broker.
 
-    def _on_state(self, state: State) -> None:
-        if state is State.CLOSED:
-            self.shutdown()
-        else:
-            self._worker.submit(self._follow)
+    def _on_state(self, _state: State) -> None:
+        self._worker.submit(self._follow)
 
     def _follow(self) -> None:
         """Bring the own session in line with the state of the connection."""

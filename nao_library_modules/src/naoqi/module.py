@@ -144,7 +144,7 @@ class ALModule(ALDocable):
         """
         self.__name = name
         self.__broker: ALBroker = current_broker()
-        self.__worker = Worker(f"naoqi module {name}")
+        self.__worker = Worker(f"naoqi module {name}", self.__broker.connection.presence)
         self.__methods: List[str] = public_methods(self)
         self.logger = logging.getLogger(name)
         self.__broker.serve(name, self.__served(), self.__worker)

@@ -98,6 +98,7 @@ class Connection:
         tasks: The posted calls of all proxies on this connection.
         presence: Threads and callbacks inside libqi on behalf of this connection.
         subscriptions: Event subscriptions to renew after a loss.
+        closers: Called first when it is closed, in its thread: they end what this process serves over it.
         witness: Called with module, method and arguments of each call before it is sent, where there is one; what it
             returns, if it is not None, is called at the end of the call, in a thread of libqi.
     """
@@ -127,6 +128,7 @@ class Connection:
         self._listeners = Listeners(f"naoqi listeners {self.address}")
         self.subscriptions = EventSubscriptions(self)
         self.add_listener(self.subscriptions.on_state)
+        self.closers: List[Callable[[], None]] = []
         self.witness: Optional[Witness] = None
         self._watcher = threading.Thread(target=self._run, name=f"naoqi {self.address}", daemon=True)
         self._watcher.start()
@@ -273,6 +275,8 @@ class Connection:
                 return
             self._closing.set()
             live, opening = self.live, self._opening
+        for close in tuple(self.closers):
+            close()
         self.tasks.abandon()
         if live is not None:
             # Requests leave in order, so an answered one proves that posts and cancellations have arrived.

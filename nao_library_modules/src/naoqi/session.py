@@ -9,12 +9,11 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-import sys
 import threading
 import time
 import weakref
 from collections import defaultdict
-from typing import Any, Callable, DefaultDict, Dict, Hashable, List, Optional
+from typing import Any, Callable, DefaultDict, Dict, Hashable, Optional
 
 import qi
 
@@ -192,28 +191,21 @@ def _value(future: Any, host: str, port: int, limit: float) -> Any:
     return future.value()
 
 
-STRAND = "__qi_strand__"
-"""Attribute in which libqi keeps the queue that serialises the calls of an object."""
-POLL_PERIOD = 0.002
-"""Period in s of `wait_until_empty`: the loss of a reference raises no event."""
-
-
 class Presence:
-    """Threads that wait in libqi, callbacks that libqi still has to call, and objects of ours that it serves."""
+    """What may be inside libqi: threads that wait in it, callbacks that it holds, jobs that answer its calls."""
 
     def __init__(self) -> None:
-        self._inside: Dict[Hashable, None] = {}  # a dictionary: its single operations need no lock
-        self._served: List[List[Any]] = []
-        self._left = threading.Condition()  # guards the list above, and wakes waiting threads
+        self._inside: Dict[Hashable, Optional[int]] = {}  # a dictionary: its single operations need no lock
+        self._left = threading.Condition()  # wakes waiting threads
         self._awaited = False
 
-    def enter(self, who: Hashable) -> None:
-        """Note an entry; runs at each call, so it must stay cheap."""
-        self._inside[who] = None
+    def enter(self, one: Hashable, thread: Optional[int] = None) -> None:
+        """Note an entry, and the thread that will leave, if it is known; runs at each call, so it must stay cheap."""
+        self._inside[one] = thread
 
-    def leave(self, who: Hashable) -> None:
+    def leave(self, one: Hashable) -> None:
         """Note a return; one without an entry is no error."""
-        self._inside.pop(who, None)
+        self._inside.pop(one, None)
         if self._awaited:
             with self._left:
                 self._left.notify_all()
@@ -222,55 +214,12 @@ class Presence:
         """Track a callback that libqi holds, until its last reference is gone."""
         self.enter(weakref.ref(callback, self.leave))
 
-    def serve(self, served: Any) -> None:
-        """Track an object that libqi serves, and keep a reference to it until libqi drops its own.
-
-        Deleting the object waits for its queue. In a thread of libqi, at the end of the program, that would be fatal;
-        so the last reference stays here, and is dropped in a thread of ours.
-        """
-        with self._left:
-            self._served = [each for each in self._served if not _is_ours_alone(each)]
-            self._served.append([served])
-
     def wait_until_empty(self, limit: float) -> bool:
-        """Wait until all threads but the calling one have returned and libqi serves no objects any more.
-
-        `limit`: longest wait, in s. Returns whether that was reached.
-        """
-        self._awaited = True
-        end = time.monotonic() + limit
+        """Wait up to `limit` s until all but the calling thread have returned; whether that was reached."""
         own = threading.get_ident()
         with self._left:
-            while True:
-                self._served = [each for each in self._served if not _is_ours_alone(each)]
-                if not self._served and all(each == own for each in tuple(self._inside)):
-                    return True
-                left = end - time.monotonic()
-                if left <= 0.0:
-                    return False
-                self._left.wait(min(left, POLL_PERIOD) if self._served else left)
-
-
-def _is_ours_alone(holder: List[Any]) -> bool:
-    """Whether the list holds the only reference to its one object, and the object the only one to its queue."""
-    if sys.getrefcount(holder[0]) > _FROM_A_LIST:
-        return False
-    strand = vars(holder[0]).get(STRAND)
-    return strand is None or sys.getrefcount(strand) <= _FROM_A_VARIABLE_AND_A_DICT
-
-
-def _count_from_a_list(holder: List[Any]) -> int:
-    return sys.getrefcount(holder[0])
-
-
-def _count_from_a_variable_and_a_dict(values: Dict[str, Any]) -> int:
-    value = values.get(STRAND)
-    return sys.getrefcount(value)
-
-
-# Measured, because reference counts differ between Python versions.
-_FROM_A_LIST = _count_from_a_list([object()])
-_FROM_A_VARIABLE_AND_A_DICT = _count_from_a_variable_and_a_dict({STRAND: object()})
+            self._awaited = True
+            return self._left.wait_for(lambda: all(own in entry for entry in tuple(self._inside.items())), limit)
 
 
 TASKS = "/proc/self/task"

@@ -14,8 +14,8 @@ from typing import Any, Callable, Collection, Dict, Optional, Sequence, Set, Tup
 
 from .calls import ENDED_BY, RemoteMethod, RemoteModule, Transport
 from .errors import NaoError, RobotUnreachable, UnknownModule
-from .limits import ANSWER_LIMIT
-from .session import MEMORY
+from .limits import ANSWER_LIMIT, EXIT_LIMIT
+from .session import MEMORY, Presence
 
 logger = logging.getLogger("naoqi")
 
@@ -23,10 +23,14 @@ logger = logging.getLogger("naoqi")
 class Worker:
     """A queue of jobs and the thread that works it off; the thread starts with the first job."""
 
-    def __init__(self, name: str) -> None:
-        """Make an idle worker. `name`: of its thread, for logs and debuggers."""
+    def __init__(self, name: str, presence: Optional[Presence] = None) -> None:
+        """Make an idle worker.
+
+        `name`: of its thread, for logs and debuggers. `presence`: of the connection for which its jobs use libqi.
+        """
         self.name = name
-        self._jobs: queue.SimpleQueue[Optional[Callable[[], None]]] = queue.SimpleQueue()
+        self._presence = presence or Presence()
+        self._jobs: queue.SimpleQueue[Optional[Tuple[object, Callable[[], None]]]] = queue.SimpleQueue()
         self._lock = threading.Lock()  # guards the two below
         self._thread: Optional[threading.Thread] = None
         self._closed = False
@@ -43,33 +47,38 @@ class Worker:
             if self._thread is None:
                 self._thread = threading.Thread(target=self._work, name=self.name, daemon=True)
                 self._thread.start()
-            self._jobs.put(job)
+            entry = object()
+            self._presence.enter(entry, self._thread.ident)
+            self._jobs.put((entry, job))
         return True
 
-    def close(self, timeout: float = 0.0) -> None:
-        """Take no more jobs, and end the thread after those it has.
-
-        `timeout`: how long to wait for its end, in s. A job may close its own worker; then it does not wait.
-        """
+    def close(self) -> None:
+        """Take no more jobs, and end the thread after those it has."""
         with self._lock:
             self._closed = True
-            thread = self._thread
         self._jobs.put(None)
+
+    def join(self, timeout: float) -> None:
+        """Wait up to `timeout` s for the end of the thread; a job may close its own worker, then it does not wait."""
+        with self._lock:
+            thread = self._thread
         if thread is not None and thread is not threading.current_thread():
-            thread.join(timeout)
+            thread.join(max(0.0, timeout))
 
     def _work(self) -> None:
         while True:
-            job = self._jobs.get()
-            if job is None:
+            item = self._jobs.get()
+            if item is None:
                 return
+            entry, job = item
             try:
                 job()
             except BaseException:  # a callback may call sys.exit(): the thread serves others too
                 logger.exception("a callback in %s failed", self.name)
             # While this thread waits, it must hold nothing of libqi's: the end of the program would delete it
             # with the frame of this thread, too late for libqi.
-            job = None
+            item = job = None
+            self._presence.leave(entry)
 
 
 class State(str, enum.Enum):
@@ -123,7 +132,8 @@ class Listeners:
 
     def close(self) -> None:
         """Notify no more; wait a moment for the notifications queued before."""
-        self._worker.close(timeout=1.0)
+        self._worker.close()
+        self._worker.join(EXIT_LIMIT)
 
     def _call(self, listeners: Sequence[Listener], state: State) -> None:
         for listener in listeners:
@@ -153,7 +163,7 @@ class EventSubscriptions:
         self._lock = threading.Lock()  # guards the table
         self._arguments: Dict[Key, Tuple[Any, ...]] = {}
         self._owned: Set[str] = set()
-        self._worker = Worker(f"naoqi subscriptions {connection.address}")
+        self._worker = Worker(f"naoqi subscriptions {connection.address}", connection.presence)
 
     def __len__(self) -> int:
         return len(self._arguments)

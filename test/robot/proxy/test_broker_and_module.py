@@ -127,6 +127,15 @@ def test_shutdown_takes_modules_and_port_back(robot, eventually):
         Buttons("Buttons")
 
 
+def test_a_connection_that_is_closed_shuts_its_brokers_down_first(robot):
+    broker = broker_to(robot)
+    Buttons("Buttons")
+    naoqi.connection(*robot.address).close()
+    assert broker.getPort() == 0
+    with pytest.raises(errors.BrokerError, match="no broker"):
+        Buttons("Buttons")
+
+
 def test_events_call_the_module_in_order(buttons, memory):
     memory.subscribeToEvent(EVENT, buttons.getName(), "on_touch")
     for value in range(20):
