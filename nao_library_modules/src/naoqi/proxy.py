@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional
 
 from .broker import current_broker
 from .calls import ANSWERED_BY_ALL, Call, RemoteMethod, RemoteModule
@@ -10,6 +10,14 @@ from .errors import BadArguments
 from .limits import Timing
 from .robot_connection import Connection, connection
 from .translate import readable_call, readable_parameters, readable_type
+
+# What every NAOqi module has; a service written against libqi alone lacks it, and these functions stand in.
+
+
+def answers(module: RemoteModule) -> bool:
+    """True; an error if the module does not answer."""
+    module.method(ANSWERED_BY_ALL)()
+    return True
 
 
 def method_help(module: RemoteModule, method: str) -> List[Any]:
@@ -184,32 +192,27 @@ class ALProxy:
 
     def ping(self) -> bool:
         """True if the module answers. Raises RobotUnreachable if there is no connection."""
-        if self._remote.offers("ping"):
-            return self._remote.method("ping")()
-        self._remote.method(ANSWERED_BY_ALL)()
-        return True
+        return self._own("ping", answers)
 
     def getMethodList(self) -> List[str]:
-        if self._remote.offers("getMethodList"):
-            return self._remote.method("getMethodList")()
-        return self._remote.method_names()
+        return self._own("getMethodList", RemoteModule.method_names)
 
     def getMethodHelp(self, method: str) -> List[Any]:
         """`[name, [[parameter, description], ...], return name, return description]` of a method."""
-        if self._remote.offers("getMethodHelp"):
-            return self._remote.method("getMethodHelp")(method)
-        return method_help(self._remote, method)
+        return self._own("getMethodHelp", method_help, method)
 
     def getModuleHelp(self) -> List[Any]:
         """`[description, [[language, example], ...]]` of the module."""
-        if self._remote.offers("getModuleHelp"):
-            return self._remote.method("getModuleHelp")()
-        return module_help(self._remote)
+        return self._own("getModuleHelp", module_help)
 
     def getUsage(self, method: str) -> str:
-        if self._remote.offers("getUsage"):
-            return self._remote.method("getUsage")(method)
-        return usage(self._remote, method)
+        return self._own("getUsage", usage, method)
+
+    def _own(self, name: str, substitute: Callable[..., Any], *arguments: Any) -> Any:
+        """Call the module's own method of that name, or the substitute where it has none."""
+        if self._remote.offers(name):
+            return self._remote.method(name)(*arguments)
+        return substitute(self._remote, *arguments)
 
     def _method(self, name: str) -> RemoteMethod:
         """A remote method, even where this class has one of the same name."""
