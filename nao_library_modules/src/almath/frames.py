@@ -17,6 +17,9 @@ from almath.positions import Pose2D, Position3D, Position6D, Velocity6D
 from almath.rotations import Rotation, Transform
 from almath.tools import AXIS_MASK_X, AXIS_MASK_Y, AXIS_MASK_Z
 
+# Changes of reference use only the rotation of the given transform: they turn and never translate. Their `Transpose`
+# forms turn back. All of them write their result to the last argument.
+
 Turnable = TypeVar("Turnable", Position3D, Position6D, Velocity6D)
 
 
