@@ -20,6 +20,8 @@ class AlmathError(ValueError):
     without libqi; every message names the class or function, the value it was given and what it takes.
     """
 
+    __module__ = "almath"  # from where it is imported, and what a trace shows
+
 
 _Value = TypeVar("_Value", bound="Components")
 _Vector = TypeVar("_Vector", bound="Scalable")
