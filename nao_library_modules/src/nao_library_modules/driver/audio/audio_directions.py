@@ -11,7 +11,7 @@ from naoqi.errors import UnknownModule
 from ..base.extractor import Extractor, ExtractorKind
 
 STATES = ("nobody listens", "sounds are located", "sounds cannot be located")
-KINDS = [
+LOCALISATION_KINDS = [
     ExtractorKind("sound localisation", module, f"{module}/SoundLocated", states=STATES)
     for module in ("ALSoundLocalization", "ALAudioSourceLocalization")
 ]
@@ -59,7 +59,7 @@ class SoundDirections(Extractor):
         """
         self._sensitivity = sensitivity
         self._tell = sink
-        super().__init__(robot, KINDS[0], subscriber, self._take, self._set_up)
+        super().__init__(robot, LOCALISATION_KINDS[0], subscriber, self._take, self._set_up)
 
     def _set_up(self) -> None:
         self._choose_kind()
@@ -70,14 +70,14 @@ class SoundDirections(Extractor):
     def _choose_kind(self) -> None:
         """Choose the module that this robot has; raises NaoError if it has neither, or cannot be asked."""
         missing = []
-        for kind in KINDS:
+        for kind in LOCALISATION_KINDS:
             self.kind = kind
             try:
                 self.call("ping")
                 return
             except UnknownModule as error:
                 missing.append(error)
-        self.kind = KINDS[0]
+        self.kind = LOCALISATION_KINDS[0]
         raise missing[0]
 
     def _take(self, value: Any) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ...base.errors import BadGoal
 from ...nao.robot_files import READ, WRITTEN, full_path, is_in
 
-KINDS = {0: "wav", 1: "ogg"}
+FILE_KINDS = {0: "wav", 1: "ogg"}
 RATES = (16000, 48000)
 LONGEST = 3600
 """s of the longest recording."""
@@ -55,7 +55,7 @@ def read_recording(file: str, seconds: int, kind: int, channels: Sequence[bool],
     Raises:
         BadGoal: For a bad value. Which channels go with which rate is up to the robot.
     """
-    if kind not in KINDS:
+    if kind not in FILE_KINDS:
         raise BadGoal("audio_type", kind, "0 (wav) or 1 (ogg)")
     if not 0 < seconds <= LONGEST:
         raise BadGoal("secs", seconds, f"1 to {LONGEST}")
@@ -65,8 +65,8 @@ def read_recording(file: str, seconds: int, kind: int, channels: Sequence[bool],
         raise BadGoal("channels", list(channels), f"at least one of {', '.join(CHANNELS)}", "none is chosen")
     full = file_on_robot(file, WRITTEN)
     if not posixpath.splitext(full)[1]:
-        full = f"{full}.{KINDS[kind]}"
-    return RecordingRequest(full, seconds, KINDS[kind], rate, tuple(int(flag) for flag in channels))
+        full = f"{full}.{FILE_KINDS[kind]}"
+    return RecordingRequest(full, seconds, FILE_KINDS[kind], rate, tuple(int(flag) for flag in channels))
 
 
 def read_volume(volume: int) -> int:

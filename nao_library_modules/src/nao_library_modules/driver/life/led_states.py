@@ -13,7 +13,8 @@ from ...nao.body_devices import PREFIX
 from ...nao.light_names import COLOUR_PARTS, colour_part
 from .blinking import Colour
 
-LEDS, MEMORY = "ALLeds", "ALMemory"
+LEDS = "ALLeds"
+MEMORY = "ALMemory"
 BLUE_DEVICES = "Ears/"
 """What the names of LEDs begin with that are blue; those that have no colour in their names and are not are white."""
 
