@@ -39,7 +39,7 @@ from nao_library_actions.msg import (
 from nao_library_modules.base.kept import Kept
 from nao_library_modules.base.whole_file import WholeFile, write_whole
 from nao_library_modules.behaviors.server import NaoBehavior
-from nao_library_modules.driver.camera import camera_info_files
+from nao_library_modules.driver.camera import camera_calibration
 from nao_library_modules.driver.camera.camera_calibration import ideal
 from nao_library_modules.motion.server import NaoMotion
 from nao_library_modules.process_modules.language import trace_picture
@@ -176,7 +176,7 @@ class Bench:
             "behaviour": lambda: self.behaviors.succeed(
                 behavior("storeBehavior", "eyes", text=BEHAVIOR, overwrite=True)
             ),
-            "calibration": lambda: camera_info_files.write(
+            "calibration": lambda: camera_calibration.write(
                 DISK / "ros" / "camera_info" / "top.yaml", ideal(320, 240, 1.06, 0.83)
             ),
             "table": write_table,

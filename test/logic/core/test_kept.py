@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nao_library_modules.base.kept import Kept
-from nao_library_modules.driver.walk.walk_inhibition import WalkInhibition
+from nao_library_modules.driver.walk.nao_walker import WalkInhibition
 
 
 def test_what_is_kept_is_there_again_in_the_same_run_only(tmp_path):

@@ -13,7 +13,7 @@ from nao_library_modules.base import limits
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.field_checks import require_rising
 from nao_library_modules.driver.joints.planar_frames import read_path
-from nao_library_modules.driver.walk.footsteps import read_steps
+from nao_library_modules.driver.walk.nao_footsteps import read_steps
 from nao_library_modules.functions.chain import fields_taken
 from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_modules.functions.fields import fields_of

@@ -11,12 +11,11 @@ import pytest
 
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.paths import config_file
-from nao_library_modules.driver.base.robot_facts import KEYS, facts_of, info_fields
 from nao_library_modules.driver.joints.joint_sensors import JointSensors, read_motors, torque_per_ampere
-from nao_library_modules.driver.life.blinking import Blinks
-from nao_library_modules.driver.life.led_states import joined, shown
-from nao_library_modules.driver.sensors.foot_pressure import keys_of, read_foot
-from nao_library_modules.driver.sensors.sonars import range_of
+from nao_library_modules.driver.life.nao_leds import Blinks, joined, shown
+from nao_library_modules.driver.sensors.nao_diagnostic_updater import KEYS, facts_of, info_fields
+from nao_library_modules.driver.sensors.nao_sonar import range_of
+from nao_library_modules.driver.sensors.nao_tactile import keys_of, read_foot
 from nao_library_modules.functions.joint_trajectory import H25_BODY
 from nao_library_modules.nao.pose_tables import BadPose, Pose, UnknownPose, built_in, library, pose_table
 from nao_library_modules.ros import body_reports as reports

@@ -11,14 +11,29 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import CameraInfo
 
-from nao_library_modules.driver.camera.camera_calibration import Calibration, from_yaml, ideal, scaled, to_yaml
-from nao_library_modules.driver.camera.camera_formats import Picture, read_picture
-from nao_library_modules.driver.camera.camera_info_files import camera_name, path_of, write
-from nao_library_modules.driver.camera.camera_infos import CameraInfos
+from nao_library_modules.driver.camera.camera_calibration import (
+    Calibration,
+    CameraInfos,
+    camera_name,
+    from_yaml,
+    ideal,
+    path_of,
+    scaled,
+    to_yaml,
+    write,
+)
+from nao_library_modules.driver.camera.camera_images import (
+    Picture,
+    compress,
+    from_info,
+    header_of,
+    read_picture,
+    to_compressed,
+    to_image,
+    to_info,
+)
 from nao_library_modules.driver.camera.camera_settings import changed_tunings, fields_of, settled, stream_settings
-from nao_library_modules.driver.camera.camera_subscriber import StreamSettings
-from nao_library_modules.driver.camera.image_compression import compress
-from nao_library_modules.driver.camera.image_messages import from_info, header_of, to_compressed, to_image, to_info
+from nao_library_modules.driver.camera.camera_stream import StreamSettings
 from naoqi.errors import NaoError
 
 NAME = "nao_camera_top"

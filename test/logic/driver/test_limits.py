@@ -17,12 +17,11 @@ from nao_library_modules.base.limits import limit
 from nao_library_modules.base.places import Place
 from nao_library_modules.driver.base import reconfigure
 from nao_library_modules.driver.joints.planar_frames import read_place, read_transform
-from nao_library_modules.driver.life.blinking import Blinks
+from nao_library_modules.driver.life.nao_leds import Blinks
 from nao_library_modules.driver.memory.memory_rules import MemoryRule
-from nao_library_modules.driver.path_follower.courses import TargetCourse
-from nao_library_modules.driver.path_follower.settings import FollowerSettings
-from nao_library_modules.driver.teleop.joy_control import JoyControl, JoySettings
-from nao_library_modules.driver.walk.footsteps import read_steps
+from nao_library_modules.driver.path_follower.path_courses import FollowerSettings, TargetCourse
+from nao_library_modules.driver.teleop.teleop_nao_joy import JoyControl, JoySettings
+from nao_library_modules.driver.walk.nao_footsteps import read_steps
 from nao_library_modules.driver.walk.walk_commands import read_gait_config, read_step, read_target, read_velocity
 from nao_library_modules.functions.joint_trajectory import read_trajectory
 from nao_library_msgs.msg import StepTarget

@@ -10,10 +10,10 @@ import pytest
 from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import BadGoal, Preempted, RobotLost
-from nao_library_modules.driver.base import node as driver_node
+from nao_library_modules.driver.base import driver_node as driver_node
 from nao_library_modules.driver.base import reconfigure
-from nao_library_modules.driver.base.lazy_topic import LazyTopic
-from nao_library_modules.driver.base.rate import Rate
+from nao_library_modules.driver.base.driver_node import LazyTopic
+from nao_library_modules.driver.base.polling import Rate
 from nao_library_modules.driver.base.reconfigure import ReconfigureField
 from nao_library_modules.driver.joints.nao_joint_states import NaoJointStates
 from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, GoalOutcome

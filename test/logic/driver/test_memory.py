@@ -10,10 +10,21 @@ from hypothesis import strategies as st
 from rosgraph.names import is_legal_name
 
 from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.driver.memory.memory_key import WatchedKey
-from nao_library_modules.driver.memory.memory_names import is_pattern, matches, matching, topic_of, topics_of
-from nao_library_modules.driver.memory.memory_rules import MemoryRule, MemoryRules, read_rules
-from nao_library_modules.driver.memory.memory_values import converted, kind_of, parse_value, type_of
+from nao_library_modules.driver.memory.memory_rules import (
+    MemoryRule,
+    MemoryRules,
+    converted,
+    is_pattern,
+    kind_of,
+    matches,
+    matching,
+    parse_value,
+    read_rules,
+    topic_of,
+    topics_of,
+    type_of,
+)
+from nao_library_modules.driver.memory.memory_watch import WatchedKey
 from nao_library_modules.functions.memory_functions import parse_assignment, parse_pairs
 from naoqi.errors import NaoError
 

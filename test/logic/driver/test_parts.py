@@ -10,10 +10,9 @@ import pytest
 
 from nao_library_modules.driver import nao_driver
 from nao_library_modules.driver.joints import nao_joint_states
-from nao_library_modules.driver.nao_driver import Driver, DriverPart
-from nao_library_modules.driver.parts import PARTS, chosen, part_class
+from nao_library_modules.driver.nao_driver import PARTS, Driver, DriverPart, chosen, part_class
 from nao_library_modules.driver.sensors import nao_sonar, nao_tactile
-from nao_library_modules.driver.walk import moveto
+from nao_library_modules.driver.walk import naoqi_moveto
 from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
 
@@ -164,7 +163,7 @@ class FailingNode:
         (nao_sonar, "Sonars", "nao_robot/sonar/right"),
         (nao_tactile, "Polling", "nao_robot/fsr/left"),
         (nao_joint_states, "Polling", "robot_state_publisher"),
-        (moveto, "MoveToWalk", "move_base_simple/goal"),
+        (naoqi_moveto, "MoveToWalk", "move_base_simple/goal"),
     ],
 )
 def test_a_part_that_fails_half_way_leaves_nothing_running(module, reader, broken, monkeypatch):

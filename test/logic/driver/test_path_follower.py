@@ -24,14 +24,16 @@ from nao_library_modules.driver.joints.planar_frames import (
     read_path,
     read_place,
 )
-from nao_library_modules.driver.path_follower import legs as path_follower_legs
-from nao_library_modules.driver.path_follower import walk as path_follower_walk
-from nao_library_modules.driver.path_follower.courses import PathCourse, TargetCourse, reached
-from nao_library_modules.driver.path_follower.legs import WalkTopics
-from nao_library_modules.driver.path_follower.path import WalkPath
-from nao_library_modules.driver.path_follower.settings import FollowerSettings
-from nao_library_modules.driver.path_follower.steering import velocity
-from nao_library_modules.driver.path_follower.walk import lead
+from nao_library_modules.driver.path_follower import path_walk as path_follower_legs
+from nao_library_modules.driver.path_follower import path_walk as path_follower_walk
+from nao_library_modules.driver.path_follower.path_courses import (
+    FollowerSettings,
+    PathCourse,
+    TargetCourse,
+    WalkPath,
+    reached,
+)
+from nao_library_modules.driver.path_follower.path_walk import WalkTopics, lead, velocity
 from naoqi.errors import NaoError
 
 QUARTER, NAN = math.pi / 2, math.nan

@@ -9,8 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from nao_library_modules.driver.base import polling
-from nao_library_modules.driver.base.polling import Polling
-from nao_library_modules.driver.base.rate_meter import KEPT_FOR, RateMeter
+from nao_library_modules.driver.base.polling import KEPT_FOR, Polling, RateMeter
 from nao_library_modules.ros.health import Level
 
 ASKED = 30.0

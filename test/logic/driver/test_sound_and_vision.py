@@ -9,21 +9,19 @@ import pytest
 from std_msgs.msg import Header
 
 from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.driver.audio import microphone_blocks as blocks
-from nao_library_modules.driver.audio.audio_directions import read_direction
-from nao_library_modules.driver.audio.audio_requests import file_on_robot, read_recording, read_volume
-from nao_library_modules.driver.audio.microphone_blocks import BlockClock, channel_map, read_samples
-from nao_library_modules.driver.audio.speech_recognition import read_heard
-from nao_library_modules.driver.audio.speech_settings import (
+from nao_library_modules.driver.audio import nao_microphone as blocks
+from nao_library_modules.driver.audio.nao_audio import file_on_robot, read_direction, read_recording, read_volume
+from nao_library_modules.driver.audio.nao_microphone import BlockClock, channel_map, read_samples
+from nao_library_modules.driver.audio.robot_speech import (
     from_config,
     given_parameters,
     join_vocabulary,
     percent,
     split_vocabulary,
 )
-from nao_library_modules.driver.sensors import vision_values as vision
-from nao_library_modules.driver.sensors.vision_messages import to_face, to_landmarks, to_movement
-from nao_library_modules.driver.sensors.vision_values import Face, MovementReader
+from nao_library_modules.driver.audio.speech_recognition import read_heard
+from nao_library_modules.driver.sensors import nao_vision as vision
+from nao_library_modules.driver.sensors.nao_vision import Face, MovementReader, to_face, to_landmarks, to_movement
 from nao_library_modules.vision.detection.events import FACE, LANDMARK, Detection, DetectionArray
 from nao_library_msgs.msg import FaceDetected
 from naoqi.errors import NaoError

@@ -10,16 +10,17 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.driver.teleop import joy_control, teleop_nao_joy
-from nao_library_modules.driver.teleop.joy_control import JoyControl, JoySettings
-from nao_library_modules.driver.teleop.keyboard_control import (
+from nao_library_modules.driver.teleop import teleop_nao_joy
+from nao_library_modules.driver.teleop.teleop_nao_joy import JoyControl, JoySettings
+from nao_library_modules.driver.teleop.teleop_nao_keyboard import (
     FIRST_HOLD,
     REPEAT_HOLD,
     KeyboardControl,
     KeyCommand,
     KeyRequest,
+    TerminalKeys,
+    decode,
 )
-from nao_library_modules.driver.teleop.terminal_keys import TerminalKeys, decode
 from nao_library_modules.driver.walk.walk_commands import Velocity
 from naoqi.errors import NaoError
 
@@ -40,22 +41,22 @@ def buttons(*pressed):
 def joy():
     joy = JoyControl(JoySettings())
     joy.update(axes(), buttons())
-    assert joy.update(axes(), buttons(ENABLE)) == [joy_control.JoyRequest.ENABLE]
+    assert joy.update(axes(), buttons(ENABLE)) == [teleop_nao_joy.JoyRequest.ENABLE]
     assert joy.update(axes(), buttons()) == []
     return joy
 
 
 def test_the_control_button_toggles_once_and_poses_are_asked_for_once(joy):
-    assert joy.update(axes(x=1.0), buttons(ENABLE)) == [joy_control.JoyRequest.DISABLE]
+    assert joy.update(axes(x=1.0), buttons(ENABLE)) == [teleop_nao_joy.JoyRequest.DISABLE]
     assert joy.velocity.is_zero
     assert joy.update(axes(x=1.0), buttons(ENABLE)) == []
     joy.update(axes(), buttons())
     assert joy.update(axes(x=1.0), buttons(ENABLE, INIT)) == [
-        joy_control.JoyRequest.ENABLE,
-        joy_control.JoyRequest.INIT_POSE,
+        teleop_nao_joy.JoyRequest.ENABLE,
+        teleop_nao_joy.JoyRequest.INIT_POSE,
     ]
     assert joy.velocity.x == 1.0
-    assert joy.update(axes(), buttons(INIT, CROUCH)) == [joy_control.JoyRequest.CROUCH]
+    assert joy.update(axes(), buttons(INIT, CROUCH)) == [teleop_nao_joy.JoyRequest.CROUCH]
     assert joy.update(axes(), buttons(INIT, CROUCH)) == []
 
 
@@ -90,7 +91,7 @@ def test_with_the_head_button_the_axes_move_the_head_and_the_robot_stands(joy):
 def test_settings_assign_axes_and_buttons_and_those_that_are_missing_rest(joy):
     other = JoyControl(JoySettings(axis_x=1, axis_turn=-1, btn_enable_control=2, max_vx=0.4))
     other.update([0.0, 0.0], [0, 0, 0])
-    assert other.update([1.0, 1.0], [0, 0, 1]) == [joy_control.JoyRequest.ENABLE]
+    assert other.update([1.0, 1.0], [0, 0, 1]) == [teleop_nao_joy.JoyRequest.ENABLE]
     assert other.velocity == Velocity(0.4, 0.0, 0.0)
     assert joy.missing() == []
     assert joy.update([0.0, 0.0, 0.0, 1.0], buttons()[:9]) == []

@@ -21,21 +21,35 @@ from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.kept import Kept
 from nao_library_modules.base.places import Place
 from nao_library_modules.base.rotations import from_roll_pitch_yaw, product, rotate
-from nao_library_modules.driver.joints import state_messages as messages
-from nao_library_modules.driver.joints.feet import LEG_JOINTS, footprint, sole
+from nao_library_modules.driver.joints import nao_joint_states as messages
 from nao_library_modules.driver.joints.joint_controller import InitialStiffness
-from nao_library_modules.driver.joints.joint_sensors import Reading
-from nao_library_modules.driver.joints.odometry_offset import OdometryOffset
+from nao_library_modules.driver.joints.joint_sensors import (
+    LEG_JOINTS,
+    OdometryOffset,
+    Reading,
+    SlopeEstimator,
+    footprint,
+    sole,
+)
 from nao_library_modules.driver.joints.planar_frames import read_transform
-from nao_library_modules.driver.joints.slope import SlopeEstimator
 from nao_library_modules.driver.walk import walk_commands as commands
-from nao_library_modules.driver.walk.footsteps import read_steps, step_target
-from nao_library_modules.driver.walk.footsteps_walk import LEFT_BOX, RIGHT_BOX, check_legs, clip
-from nao_library_modules.driver.walk.walk_commands import FootStep, Target, Velocity, read_gait_config, read_step
-from nao_library_modules.driver.walk.walk_inhibition import WalkInhibition
-from nao_library_modules.driver.walk.walk_orders import Mailbox, Order, Stop, WalkEnded
-from nao_library_modules.driver.walk.walk_report import WalkJournal
-from nao_library_modules.driver.walk.walk_timing import PACE, REFRESH, WalkPace, WalkWatchdog
+from nao_library_modules.driver.walk.nao_footsteps import LEFT_BOX, RIGHT_BOX, check_legs, clip, read_steps, step_target
+from nao_library_modules.driver.walk.nao_walker import WalkInhibition, WalkJournal
+from nao_library_modules.driver.walk.walk_commands import (
+    PACE,
+    REFRESH,
+    FootStep,
+    Mailbox,
+    Order,
+    Stop,
+    Target,
+    Velocity,
+    WalkEnded,
+    WalkPace,
+    WalkWatchdog,
+    read_gait_config,
+    read_step,
+)
 from nao_library_modules.driver.walk.walker import Walker
 from nao_library_modules.ros.health import Level
 from nao_library_msgs.msg import StepTarget

@@ -13,12 +13,11 @@ from nao_library_modules.base.errors import BadGoal, Preempted
 from nao_library_modules.driver.base import lazy_subscription
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.joints.joint_sensors import JointSensors
-from nao_library_modules.driver.life.blinking import Blinks, blink, fade
-from nao_library_modules.driver.memory.memory_access import MemoryAccess
-from nao_library_modules.driver.memory.memory_rules import MemoryRule
+from nao_library_modules.driver.life.nao_leds import Blinks, blink, fade
+from nao_library_modules.driver.memory.memory_rules import MemoryAccess, MemoryRule
 from nao_library_modules.driver.memory.memory_watch import MemoryWatch
-from nao_library_modules.driver.sensors.sonars import Sonars
-from nao_library_modules.driver.sensors.touch_sensors import BUMPER, FEET, HAND, HEAD, TouchSensors
+from nao_library_modules.driver.sensors.nao_sonar import Sonars
+from nao_library_modules.driver.sensors.nao_tactile import BUMPER, FEET, HAND, HEAD, TouchSensors
 from nao_library_modules.functions.joint_trajectory import H25_BODY
 from nao_library_modules.nao.body_devices import SONARS as SONAR_KEYS
 from nao_library_modules.ros.concurrent_action_server import Replaced

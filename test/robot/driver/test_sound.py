@@ -9,13 +9,10 @@ import pytest
 
 from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.errors import Preempted
-from nao_library_modules.driver.audio.audio_directions import SoundDirections
-from nao_library_modules.driver.audio.audio_player import AudioPlayer
-from nao_library_modules.driver.audio.audio_requests import read_recording
-from nao_library_modules.driver.audio.microphone import Microphone
-from nao_library_modules.driver.audio.speech import LONGEST_QUEUE, RobotSpeech
+from nao_library_modules.driver.audio.nao_audio import AudioPlayer, SoundDirections, read_recording
+from nao_library_modules.driver.audio.nao_microphone import Microphone
+from nao_library_modules.driver.audio.robot_speech import LONGEST_QUEUE, RobotSpeech, SpeechSettings
 from nao_library_modules.driver.audio.speech_recognition import RecognizedWords, WordRecognition
-from nao_library_modules.driver.audio.speech_settings import SpeechSettings
 from nao_library_modules.driver.base import lazy_subscription
 from naoqi.errors import NaoError, RobotError
 

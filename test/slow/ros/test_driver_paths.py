@@ -17,7 +17,7 @@ from walking_fixture import WalkingTest, of_pose, seen_from_above
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
 from nao_library_modules.base.places import Place
 from nao_library_modules.driver.joints.planar_frames import pose_stamped
-from nao_library_modules.driver.path_follower.path import WalkPath
+from nao_library_modules.driver.path_follower.path_courses import WalkPath
 from nao_library_msgs.srv import SetTransform
 from nao_sim_bridge.testing import send, wait_until
 

@@ -35,7 +35,7 @@ from nao_library_actions.msg import (
     SpeechWithFeedbackAction,
     SpeechWithFeedbackGoal,
 )
-from nao_library_modules.driver.parts import PARTS
+from nao_library_modules.driver.nao_driver import PARTS
 from nao_library_modules.functions.server_types import server_type
 from nao_library_modules.ros.simple_action_client import SimpleActionClient
 from nao_library_msgs.msg import StepTarget

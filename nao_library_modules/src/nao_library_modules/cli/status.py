@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from ..driver.parts import PARTS
+from ..driver.nao_driver import PARTS
 from ..nao.body_devices import CHARGE
 from ..ros.health import SILENT
 from ..ros.part_names import PART_OF, parts_among

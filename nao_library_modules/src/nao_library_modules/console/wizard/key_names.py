@@ -6,7 +6,7 @@ import re
 
 from naoqi.errors import NaoError
 
-from ...driver.teleop.keyboard_control import ARROWS, DIRECTIONS
+from ...driver.teleop.teleop_nao_keyboard import ARROWS, DIRECTIONS
 
 SHIFT = "Shift+"
 FUNCTION_KEYS = ("F2", "F4", "F8", "F9")

@@ -29,20 +29,20 @@ from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface, node_that_offers
 from ...ros.ros_clock import RosClock
-from ..base.node import name_for_robot, publish, whenever
+from ..base.driver_node import name_for_robot, publish, whenever
 from ..base.reconfigure import ReconfigureField, serve, update
-from .speech import RobotSpeech
-from .speech_recognition import RecognizedWords, WordRecognition
-from .speech_settings import (
+from .robot_speech import (
     FORMER_NAMES,
     FULL_VOLUME,
     ROBOTS_OWN,
+    SPEECH,
+    RobotSpeech,
     SpeechSettings,
     from_config,
     given_parameters,
     join_vocabulary,
 )
-from .speech_voice import SPEECH
+from .speech_recognition import RecognizedWords, WordRecognition
 
 START = "start_recognition"
 SHUTDOWN_LIMIT = 1.0

@@ -14,7 +14,7 @@ from naoqi.limits import ANSWER_LIMIT
 from ...robot.event_relay import EventRelay
 from ...ros.health import Report
 from ..base.lazy_subscription import LazySubscription
-from .speech_settings import SpeechSettings
+from .robot_speech import SpeechSettings
 
 RECOGNITION = "ALSpeechRecognition"
 HEARD = "WordRecognized"

@@ -1,16 +1,27 @@
-"""Calibrations of cameras: computed, scaled, and in the YAML of camera_calibration_parsers. No ROS."""
+"""Calibrations of cameras: values, YAML files, and the one in use for each camera and size. No ROS."""
 
 from __future__ import annotations
 
+import logging
 import math
+import re
+import threading
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Tuple
+from urllib.parse import unquote
 
 import yaml
 
 from naoqi.errors import NaoError
 
+from ...base.paths import ros_home
+from ...base.whole_file import put_aside, write_whole
 from ...base.yaml_values import Budget, load_within
+
+log = logging.getLogger(__name__)
+
 
 Row = Tuple[float, ...]
 
@@ -117,3 +128,157 @@ def _matrix(content: dict[str, Any], key: str, columns: int | None) -> Row:
     if entry is None:
         return NO_ROTATION if columns == 3 else ()
     return tuple(float(each) for each in entry["data"])
+
+
+FILE, PACKAGE = "file://", "package://"
+DEFAULT_URL = "file://${ROS_HOME}/camera_info/${NAME}.yaml"
+UNSAFE = re.compile(r"[^A-Za-z0-9_]")
+
+
+def camera_name(words: str) -> str:
+    """A name of letters, digits and underscores, as the convention demands."""
+    return UNSAFE.sub("_", words.strip("/"))
+
+
+def path_of(url: str, name: str, package_folder: Callable[[str], str]) -> Path:
+    """The file that a URL stands for.
+
+    Raises NaoError if it is another kind of URL, or there is no such package.
+
+    Args:
+        url: `file:///folder/file.yaml` or `package://package/file.yaml`, with ${NAME} for the name of the camera and
+            ${ROS_HOME} for the folder of ROS; empty: the default of the convention.
+        name: Of the camera.
+    """
+    text = (url or DEFAULT_URL).replace("${NAME}", name).replace("${ROS_HOME}", str(ros_home()))
+    kind = text[: text.find("://") + 3].lower()
+    if kind == FILE and text[len(FILE) :].startswith("/"):
+        return Path(unquote(text[len(FILE) :]))
+    package, _, inside = text[len(PACKAGE) :].partition("/")
+    if kind == PACKAGE and package and inside:
+        return Path(package_folder(package)) / unquote(inside)
+    raise NaoError(f"camera_info_url is {url!r}: file:///folder/file.yaml or package://package/file.yaml")
+
+
+def sized(path: Path, width: int, height: int) -> Path:
+    """The file beside another one that holds the calibration of one size only."""
+    return path.with_name(f"{path.stem}_{width}x{height}{path.suffix}")
+
+
+def read(path: Path, name: str | None = None) -> Calibration:
+    """The calibration in a file; another `name` of the camera in it is logged.
+
+    Raises NaoError if it cannot be read, or holds none.
+    """
+    try:
+        calibration = from_yaml(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise NaoError(f"{path} cannot be read: {error}") from error
+    except NaoError as error:
+        raise NaoError(f"{path} is no calibration: {error}") from error
+    if name is not None and calibration.name != name:
+        log.warning("%s is of the camera %r, and used for %r", path, calibration.name, name)
+    return calibration
+
+
+def write(path: Path, calibration: Calibration) -> None:
+    """Write a calibration to a file, all of it or nothing; raises FileTrouble."""
+    write_whole(path, to_yaml(calibration))
+
+
+class CameraInfos:
+    """Calibrations of one camera. Any thread may call; files are read once, when their size is first asked for.
+
+    Of the file that the URL names and the one beside it with the size in its name (`name_320x240.yaml`), the latter
+    comes first. A file for another size is scaled, which is logged once.
+    """
+
+    def __init__(self, name: str, package_folder: Callable[[str], str]) -> None:
+        self._name = name
+        self._package_folder = package_folder
+        self._lock = threading.Lock()
+        self._url = ""
+        self._path = path_of("", name, package_folder)
+        self._known: dict[tuple[int, int], Calibration] = {}
+        self._sources: dict[tuple[int, int], str] = {}
+        self._fov: tuple[float, float] | None = None
+
+    def set_url(self, url: str) -> None:
+        """Take calibrations from another URL, see `path_of`; empty: the default place.
+
+        Raises NaoError if it is no such URL, or names a file that is not there or no calibration.
+        """
+        path = path_of(url, self._name, self._package_folder)
+        if url and not any(path.parent.glob(f"{path.stem}_*x*{path.suffix}")):
+            read(path, self._name)
+        with self._lock:
+            self._url, self._path = url, path
+            self._known.clear()
+
+    def set_fov(self, hfov: float, vfov: float) -> None:
+        """Set the fields of view, rad, for sizes without a file."""
+        with self._lock:
+            if (hfov, vfov) != self._fov:
+                self._fov = (hfov, vfov)
+                self._known.clear()
+
+    def of(self, width: int, height: int) -> Calibration | None:
+        """The calibration of pictures of one size; None while there is neither a file nor a field of view."""
+        with self._lock:
+            size = (width, height)
+            if size not in self._known:
+                found = self._find(width, height)
+                if found is None:
+                    return None
+                self._known[size], self._sources[size] = found
+                log.info("%s %dx%d: %s", self._name, width, height, found[1])
+            return self._known[size]
+
+    def source(self, width: int, height: int) -> str:
+        """Origin of the calibration of one size, in words; empty if it was not asked for yet."""
+        with self._lock:
+            return self._sources.get((width, height), "")
+
+    def set(self, calibration: Calibration) -> Path:
+        """Save a calibration and return its file; raises NaoError if it cannot be written.
+
+        The file is that of the URL, or the one beside it with the size in its name if that is for another size.
+        """
+        calibration = replace(calibration, name=self._name)
+        with self._lock:
+            path = self._path
+            own = sized(path, calibration.width, calibration.height)
+            if own.is_file() or self._is_for_another_size(path, calibration):
+                path = own
+            write(path, calibration)
+            self._known.clear()
+        return path
+
+    def _is_for_another_size(self, path: Path, calibration: Calibration) -> bool:
+        if not path.is_file():
+            return False
+        try:
+            found = read(path, self._name)
+        except NaoError as error:
+            put_aside(path, error, "another calibration takes its place")
+            return False
+        return (found.width, found.height) != (calibration.width, calibration.height)
+
+    def _find(self, width: int, height: int) -> tuple[Calibration, str] | None:
+        for path in (sized(self._path, width, height), self._path):
+            if not path.is_file():
+                continue
+            try:
+                found = read(path, self._name)
+                if (found.width, found.height) == (width, height):
+                    return found, f"calibration of {path}"
+                fitting = scaled(found, width, height)
+            except NaoError as error:
+                log.error("%s: %s", path, error)
+                continue
+            log.warning("%s is for %dx%d: scaled to %dx%d", path, found.width, found.height, width, height)
+            return fitting, f"calibration of {path}, scaled"
+        if self._fov is None:
+            return None
+        computed = replace(ideal(width, height, *self._fov), name=self._name)
+        return computed, "computed from the field of view of the robot's camera"

@@ -15,9 +15,8 @@ from std_msgs.msg import Header
 from naoqi.errors import NaoError
 
 from ...nao.camera_facts import CAMERAS
-from .camera_calibration import Calibration, ideal, scaled
-from .camera_info_files import read
-from .image_messages import to_info
+from .camera_calibration import Calibration, ideal, read, scaled
+from .camera_images import to_info
 
 WAIT = 10.0
 DEGREES = "degrees, the whole picture"

@@ -1,20 +1,27 @@
-"""The readings of nao_joint_states, each taken from the robot in one go, and their meaning. No ROS."""
+"""Readings of joints, inertial unit and odometry, and the kinematics and arithmetic on them. No ROS.
+
+Lengths and axes of the legs: published kinematics of the NAO, the same in V3 to V6; the footprint is that of REP 120
+and nao_description.
+"""
 
 from __future__ import annotations
 
 import json
 import math
+import threading
+from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Tuple
 
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT
 
 from ...base.paths import config_file
-from ...base.rotations import Vector
+from ...base.places import ORIGIN, Place
+from ...base.rotations import Quaternion, Vector, about, from_roll_pitch_yaw, inverse, rotate
 from ...nao.joint_names import MOTION
 
 MEMORY = "ALMemory"
@@ -143,3 +150,138 @@ def torque_per_ampere(joint: str) -> float:
     """Torque at a joint for each ampere of its motor, in N m / A; NaN for an unknown joint."""
     kind = joint[1:] if joint[:1] in ("L", "R") else joint
     return _motors().get(kind, math.nan)
+
+
+HIP_Y, HIP_Z = 0.05, 0.085
+THIGH, TIBIA, FOOT = 0.1, 0.1029, 0.04519
+"""m: hip in the torso frame, lengths of thigh and tibia, height of the ankle above the sole."""
+X, Y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
+_TILTED = math.sqrt(0.5)
+LEG = ("HipYawPitch", "HipRoll", "HipPitch", "KneePitch", "AnklePitch", "AnkleRoll")
+LEG_JOINTS = {side: tuple(side + joint for joint in LEG) for side in ("L", "R")}
+
+Pose = Tuple[Vector, Quaternion]
+
+
+def sole(side: str, angles: Sequence[float]) -> Vector:
+    """Place of a sole in the torso frame, m, from the angles of a leg (L or R), hip first, rad."""
+    outwards = 1.0 if side == "L" else -1.0
+    place: Vector = (0.0, 0.0, -FOOT)
+    # From the ankle up: each joint turns all that hangs on it.
+    axes = ((0.0, _TILTED, -_TILTED * outwards), X, Y, Y, Y, X)
+    lengths = (0.0, 0.0, 0.0, THIGH, TIBIA, 0.0)
+    for axis, angle, length in reversed(list(zip(axes, angles, lengths))):
+        x, y, z = rotate(about(axis, angle), place)
+        place = (x, y, z - length)
+    return (place[0], place[1] + HIP_Y * outwards, place[2] - HIP_Z)
+
+
+def footprint(angles: Mapping[str, float], roll: float, pitch: float) -> Pose:
+    """The frame base_footprint in the torso frame: between the soles, level, at the lower one, heading as the torso.
+
+    Joint angles are those measured, roll and pitch those of the torso, all in rad.
+
+    Raises KeyError if a joint of the legs is missing, as on a robot without legs.
+    """
+    tilt = from_roll_pitch_yaw(roll, pitch, 0.0)
+    feet = [sole(side, [angles[joint] for joint in joints]) for side, joints in LEG_JOINTS.items()]
+    left, right = (rotate(tilt, place) for place in feet)
+    middle = ((left[0] + right[0]) / 2, (left[1] + right[1]) / 2, min(left[2], right[2]))
+    back = inverse(tilt)
+    return rotate(back, middle), back
+
+
+class OdometryOffset:
+    """The offset of the published odometry from the robot's own: a place on the floor and a heading.
+
+    Height, roll and pitch of the torso stay those of the robot, so that the frame of odometry keeps level with the
+    floor. Every change raises NaoError before the first reading.
+
+    Threads: one corrects readings, others (services) change the offset; the lock guards all of it.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._offset = ORIGIN
+        self._raw: Place | None = None
+        self._paused_at: Place | None = None
+        self._jumps = 0
+
+    def correct(self, torso: Sequence[float]) -> tuple[tuple[float, ...], int]:
+        """The torso's x, y, z (m) and roll, pitch, yaw (rad) in the published odometry, from those in the robot's own.
+
+        Also how often the published odometry has jumped: speeds taken across a jump would be wrong.
+        """
+        x, y, z, roll, pitch, yaw = torso
+        with self._lock:
+            self._raw = Place(x, y, yaw)
+            if self._paused_at is not None:  # whatever the robot thinks it does does not count
+                self._offset = self._paused_at.then(self._raw.inverse())
+            place, jumps = self._offset.then(self._raw), self._jumps
+        return (place.x, place.y, z, roll, pitch, place.yaw), jumps
+
+    def pause(self) -> None:
+        """Let the published odometry stand still, for a robot that is carried or slips."""
+        with self._lock:
+            if self._paused_at is None:
+                self._paused_at = self._published()
+
+    def resume(self) -> None:
+        with self._lock:
+            self._paused_at = None
+
+    def move_by(self, way: Place) -> None:
+        """Move the torso in the published odometry; the way is in its frame there, seen from above."""
+        with self._lock:
+            self._jump_to(self._published().then(way))
+
+    def set(self, place: Place) -> None:
+        with self._lock:
+            self._published()
+            self._jump_to(place)
+
+    def _published(self) -> Place:
+        if self._raw is None:
+            raise NaoError("no odometry of the robot was read yet")
+        return self._offset.then(self._raw)
+
+    def _jump_to(self, place: Place) -> None:
+        self._offset = place.then(self._raw.inverse())
+        if self._paused_at is not None:
+            self._paused_at = place
+        self._jumps += 1
+
+
+SAMPLES = 5
+GAP = 0.5
+"""s without a sample after which older ones say nothing about the present."""
+
+
+class SlopeEstimator:
+    """Slopes of straight lines through the last few samples of several values.
+
+    The robot measures in cycles of its own, so of two samples 20 ms apart one may hold one cycle's motion and the next
+    three; a line through several of them is not upset by that. The slope is that of the middle of the window.
+    """
+
+    def __init__(self) -> None:
+        self._samples: deque[tuple[float, Sequence[float]]] = deque(maxlen=SAMPLES)
+
+    def add(self, time: float, values: Sequence[float]) -> list[float]:
+        """Take a sample and return the change of each value per s; zeros with less than two samples.
+
+        A `time` (s) that goes back, or far ahead, makes the estimator start anew.
+        """
+        if self._samples and not 0.0 <= time - self._samples[-1][0] <= GAP:
+            self._samples.clear()
+        if self._samples and time == self._samples[-1][0]:
+            self._samples.pop()
+        self._samples.append((time, values))
+        count = len(self._samples)
+        mean = sum(t for t, _ in self._samples) / count
+        offsets = [t - mean for t, _ in self._samples]
+        spread = sum(offset * offset for offset in offsets)
+        if spread == 0.0:
+            return [0.0] * len(values)
+        weights = [offset / spread for offset in offsets]
+        return [sum(w * v for w, v in zip(weights, column)) for column in zip(*(row for _, row in self._samples))]

@@ -24,7 +24,7 @@ from ...base.cancellation import CancellationToken
 from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ..base.node import interrupt_when_lost, whenever
+from ..base.driver_node import interrupt_when_lost, whenever
 from .joint_controller import InitialStiffness, JointController, Reached
 
 COMPLAINT_PERIOD = 5.0

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from geometry_msgs.msg import Quaternion, TransformStamped, Twist, Vector3
 from nav_msgs.msg import Odometry
 from rospy import Time
 from sensor_msgs.msg import Imu, JointState
+from std_msgs.msg import Header
 from std_srvs.srv import Empty
 from tf2_msgs.msg import TFMessage
 
@@ -16,19 +18,87 @@ from nao_library_msgs.srv import SetTransform
 
 from ...base.once_per_connection import OncePerConnection
 from ...base.places import BASE_LINK, FOOTPRINT, ODOM
+from ...base.rotations import from_roll_pitch_yaw, inverse, rotate
 from ...nao.joint_names import JointNames
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
+from ...ros.robot_frames import pose_of
 from ...ros.ros_clock import RosClock
-from ..base.lazy_topic import LazyTopic
-from ..base.node import frame_parameter, number, publish
+from ..base.driver_node import LazyTopic, frame_parameter, number, publish
 from ..base.polling import Polling
-from . import state_messages as messages
-from .feet import LEG_JOINTS, footprint
-from .joint_sensors import JointSensors, Reading
-from .odometry_offset import OdometryOffset
+from .joint_sensors import LEG_JOINTS, JointSensors, OdometryOffset, Reading, SlopeEstimator, footprint
 from .planar_frames import read_transform
-from .slope import SlopeEstimator
+
+# Rough figures for filters that fuse sensors, on the diagonal: the robot publishes none.
+TILT_VARIANCE, YAW_VARIANCE, UNKNOWN = 1e-4, 1e-2, 1e6
+TURN_VARIANCE, ACCELERATION_VARIANCE = 1e-4, 1e-2
+PLACE_VARIANCE, HEIGHT_VARIANCE, VELOCITY_VARIANCE = 1e-2, 1e-3, 1e-3
+
+
+def joint_state(stamp: Time, joints: Sequence[str], reading: Reading, velocities: Sequence[float]) -> JointState:
+    """Positions (rad), velocities (rad/s) and efforts (N m) of the joints."""
+    positions, efforts = reading.positions, reading.efforts
+    return JointState(Header(stamp=stamp), list(joints), positions, velocities, efforts)
+
+
+def joint_stiffness(stamp: Time, joints: Sequence[str], stiffnesses: Sequence[float]) -> JointState:
+    """Stiffnesses of the joints, 0 to 1, as efforts."""
+    return JointState(header=Header(stamp=stamp), name=list(joints), effort=stiffnesses)
+
+
+def imu(stamp: Time, frame: str, reading: Reading) -> Imu:
+    """The inertial unit, in the frame of the torso. The heading is that of odometry, and unknown without it."""
+    yaw = 0.0 if reading.torso is None else reading.torso[5]
+    message = Imu()
+    message.header.stamp, message.header.frame_id = stamp, frame
+    message.orientation = Quaternion(*from_roll_pitch_yaw(reading.roll, reading.pitch, yaw))
+    message.orientation_covariance = diagonal(
+        TILT_VARIANCE, TILT_VARIANCE, UNKNOWN if reading.torso is None else YAW_VARIANCE
+    )
+    message.angular_velocity = Vector3(*reading.angular_velocity)
+    message.angular_velocity_covariance = diagonal(*[TURN_VARIANCE] * 3)
+    message.linear_acceleration = Vector3(*reading.acceleration)
+    message.linear_acceleration_covariance = diagonal(*[ACCELERATION_VARIANCE] * 3)
+    return message
+
+
+def odometry(stamp: Time, frame: str, base: str, reading: Reading, velocity: Sequence[float]) -> Odometry:
+    """The torso in the robot's own odometry.
+
+    `velocity` is that of the torso in `frame`, (3,) m/s; the message has it in `base`, as REP 105 asks.
+    """
+    turn = from_roll_pitch_yaw(*reading.torso[3:])
+    message = Odometry()
+    message.header.stamp, message.header.frame_id, message.child_frame_id = stamp, frame, base
+    message.pose.pose = pose_of(reading.torso)
+    message.pose.covariance = diagonal(
+        PLACE_VARIANCE, PLACE_VARIANCE, HEIGHT_VARIANCE, TILT_VARIANCE, TILT_VARIANCE, YAW_VARIANCE
+    )
+    ahead = rotate(inverse(turn), (velocity[0], velocity[1], velocity[2]))
+    message.twist.twist = Twist(Vector3(*ahead), Vector3(*reading.angular_velocity))
+    message.twist.covariance = diagonal(*[VELOCITY_VARIANCE] * 3, *[TURN_VARIANCE] * 3)
+    return message
+
+
+def transform(stamp: Time, parent: str, child: str, place: Sequence[float], turn: Sequence[float]) -> TransformStamped:
+    """Pose of `child` in `parent`: place in m, turn as a quaternion (x, y, z, w)."""
+    message = TransformStamped(child_frame_id=child)
+    message.header.stamp, message.header.frame_id = stamp, parent
+    message.transform.translation = Vector3(*place)
+    message.transform.rotation = Quaternion(*turn)
+    return message
+
+
+def odometry_transform(stamp: Time, frame: str, base: str, reading: Reading) -> TransformStamped:
+    place = reading.torso
+    return transform(stamp, frame, base, place[:3], from_roll_pitch_yaw(*place[3:]))
+
+
+def diagonal(*variances: float) -> list[float]:
+    """A covariance matrix, row by row, of independent values."""
+    count = len(variances)
+    return [variances[i // count] if i % (count + 1) == 0 else 0.0 for i in range(count * count)]
+
 
 DEFAULT_RATE = 50.0
 
@@ -110,17 +180,17 @@ class NaoJointStates:
         now = (before + self._clock.now()) / 2
         stamp = Time.from_sec(now)
         changes = self._velocities.add(now, reading.positions)
-        publish(self._joint_states, messages.joint_state(stamp, sensors.joints, reading, changes))
+        publish(self._joint_states, joint_state(stamp, sensors.joints, reading, changes))
         if self._imu.get_num_connections() > 0:
-            publish(self._imu, messages.imu(stamp, self._base, reading))
+            publish(self._imu, imu(stamp, self._base, reading))
         if self._stiffness.get_num_connections() > 0:
-            publish(self._stiffness, messages.joint_stiffness(stamp, sensors.joints, sensors.read_stiffnesses()))
+            publish(self._stiffness, joint_stiffness(stamp, sensors.joints, sensors.read_stiffnesses()))
         transforms = self._foot_transforms(stamp, sensors, reading)
         if self._odometry is not None and reading.torso is not None:
             speed = self._speeds.add(now, reading.torso[:3])
             if self._odometry.get_num_connections() > 0:
-                publish(self._odometry, messages.odometry(stamp, self._odom, self._base, reading, speed))
-            transforms.insert(0, messages.odometry_transform(stamp, self._odom, self._base, reading))
+                publish(self._odometry, odometry(stamp, self._odom, self._base, reading, speed))
+            transforms.insert(0, odometry_transform(stamp, self._odom, self._base, reading))
         if transforms:
             publish(self._frames, TFMessage(transforms))
 
@@ -130,4 +200,4 @@ class NaoJointStates:
             return []  # a robot without legs
         # Level as far as the frame above knows: there, the two lines of the feet are level exactly.
         roll, pitch = (reading.roll, reading.pitch) if reading.torso is None else reading.torso[3:5]
-        return [messages.transform(stamp, self._base, self._footprint, *footprint(angles, roll, pitch))]
+        return [transform(stamp, self._base, self._footprint, *footprint(angles, roll, pitch))]

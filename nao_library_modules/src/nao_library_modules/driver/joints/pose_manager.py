@@ -35,7 +35,7 @@ from ...ros.goal_tracker import SERVER_LIMIT, GoalTracker
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ..base.node import interrupt_when_lost
+from ..base.driver_node import interrupt_when_lost
 from .joint_controller import FRACTION, STIFFEN_TIME
 
 POSTURE = "ALRobotPosture"

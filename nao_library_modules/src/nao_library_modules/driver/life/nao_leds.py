@@ -1,10 +1,11 @@
-"""The node nao_leds: lights that fade, eyes that blink."""
+"""The node nao_leds: colours, blinking and states of the LEDs."""
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Tuple
 
 import rospy
 from std_msgs.msg import ColorRGBA
@@ -12,19 +13,168 @@ from std_msgs.msg import ColorRGBA
 from nao_library_actions.msg import BlinkAction, BlinkFeedback, BlinkResult
 from nao_library_msgs.msg import FadeRGB, LedStates
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT, CLEAN_UP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
-from ...base.field_checks import require_zero_or
-from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
+from ...base.field_checks import require_within, require_zero_or
+from ...base.limits import limit
+from ...base.once_per_connection import OncePerConnection
+from ...nao.body_devices import PREFIX
+from ...nao.light_names import COLOUR_PARTS, colour_part
+from ...robot.robot_task import run_task
+from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome, Replaced
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ..base.lazy_topic import LazyTopic
-from ..base.node import interrupt_when_lost, number, publish
+from ..base.driver_node import LazyTopic, interrupt_when_lost, number, publish
 from ..base.polling import Polling
-from .blinking import DURATION, EYES, Blinks, Colour, blink, fade
-from .led_states import LedReader
+
+LEDS = "ALLeds"
+EYES = "FaceLeds"
+DURATION = limit("duration")
+LONGEST_PAUSE = 3.0
+"""Standard deviations above the mean that a pause may last."""
+
+Colour = Tuple[float, float, float]
+"""Red, green and blue, 0 to 1."""
+
+
+@dataclass(frozen=True)
+class Blinks:
+    """How to blink."""
+
+    colours: Sequence[Colour]  # to choose from
+    background: Colour  # between the blinks
+    duration: float  # of one blink, s: a third each to fade in, hold and fade out
+    mean_pause: float  # s
+    deviation: float  # standard deviation of the pause, s
+
+    def check(self) -> None:
+        """Raises BadGoal if they cannot be carried out."""
+        if not self.colours:
+            raise BadGoal("colors", [], "at least one colour", problem="there is no colour to blink in")
+        fields = [("bg_color", self.background), *((f"colors[{i}]", each) for i, each in enumerate(self.colours))]
+        for field, colour in fields:
+            if not all(0.0 <= part <= 1.0 for part in colour):
+                raise BadGoal(field, tuple(colour), "red, green and blue, each 0 to 1")
+        require_within("blink_duration", self.duration, DURATION)
+        require_within("blink_rate_mean", self.mean_pause, DURATION)
+        require_zero_or("blink_rate_sd", self.deviation, DURATION)
+
+    def pause(self, chance: random.Random) -> float:
+        longest = self.mean_pause + LONGEST_PAUSE * self.deviation
+        return min(max(chance.gauss(self.mean_pause, self.deviation), 0.0), longest)
+
+
+def fade(robot: Any, light: str, colour: Colour, duration: float, interrupt: CancellationToken) -> None:
+    """Fade a light or a group to a colour in `duration` s, and wait for the end.
+
+    Raises NaoError if the robot refuses or is lost; Preempted, or whatever reason the interrupt has.
+    """
+    call = robot.proxy(LEDS).call_async("fadeRGB", light, *(float(part) for part in colour), float(duration))
+    run_task(call, interrupt, lambda: None)  # a robot that cannot cancel ends the fade by itself
+
+
+def blink(
+    robot: Any,
+    blinks: Blinks,
+    clock: Any,
+    interrupt: CancellationToken,
+    tell: Callable[[Colour], None],
+    chance: random.Random,
+) -> bool:
+    """Blink until the interrupt comes; the eyes have the background colour then.
+
+    `clock` is the time of holds and pauses. `tell` gets the colour of each blink that begins. `chance` picks colours
+    and pauses. Returns whether a newer goal replaces this one. Raises NaoError if the robot refuses or is lost.
+    """
+    third = blinks.duration / 3.0
+    try:
+        while True:
+            colour = chance.choice(blinks.colours)
+            tell(colour)
+            fade(robot, EYES, colour, third, interrupt)
+            clock.wait(third, interrupt)
+            interrupt.check()
+            fade(robot, EYES, blinks.background, third, interrupt)
+            clock.wait(blinks.pause(chance), interrupt)
+            interrupt.check()
+    except Replaced:
+        return True
+    except Preempted:
+        call = robot.proxy(LEDS).call_async("fadeRGB", EYES, *(float(part) for part in blinks.background), 0.0)
+        try:
+            call.result(timeout=CLEAN_UP_LIMIT)
+        except NaoError as error:
+            raise NaoError(f"the eyes may not have the colour of the background: {error}") from error
+        return False
+
+
+MEMORY = "ALMemory"
+BLUE_DEVICES = "Ears/"
+"""What the names of LEDs begin with that are blue; those that have no colour in their names and are not are white."""
+
+
+class LedReader:
+    """Reads the lights of one robot. For one thread."""
+
+    def __init__(self, robot: Any) -> None:
+        self._robot = robot
+        self._names = OncePerConnection(robot, self._read_names)
+
+    def read(self) -> dict[str, Colour]:
+        """Colour of each light by its short name. Raises NaoError if the robot cannot be asked."""
+        lights = self._names()
+        devices = [device for light in lights.values() for device in light]
+        values = self._robot.proxy(MEMORY).call_async("getListData", [PREFIX + device for device in devices])
+        found = values.result(timeout=ANSWER_LIMIT)
+        if len(found) != len(devices):
+            raise NaoError(f"the robot's memory holds {len(found)} values of {len(devices)} LEDs")
+        return shown(lights, dict(zip(devices, found)))
+
+    def _read_names(self) -> dict[str, tuple[str, ...]]:
+        """LEDs of each light; all at once, for one after the other takes a second on a wireless network."""
+        leds = self._robot.proxy(LEDS)
+        names = leds.call_async("listLEDs").result(timeout=ANSWER_LIMIT)
+        calls = [leds.call_async("listLED", name) for name in names]
+        return joined({name: tuple(call.result(timeout=ANSWER_LIMIT)) for name, call in zip(names, calls)})
+
+
+def joined(lights: Mapping[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+    """Lights as one sees them: ChestLedsRed, ChestLedsGreen and ChestLedsBlue are one, ChestLeds."""
+    found: dict[str, tuple[str, ...]] = {}
+    for name, devices in lights.items():
+        part = next((part for part in COLOUR_PARTS if name.endswith(part)), "")
+        whole = name[: len(name) - len(part)]
+        found[whole] = (*found.get(whole, ()), *devices)
+    return found
+
+
+def shown(lights: Mapping[str, tuple[str, ...]], values: Mapping[str, Any]) -> dict[str, Colour]:
+    """Colour of each light, red, green and blue in 0..1.
+
+    `lights`: name -> its LEDs. `values`: LED -> intensity 0..1; what is no number counts as 0.
+    """
+    return {
+        name: _colour({device: _number(values.get(device)) for device in devices}) for name, devices in lights.items()
+    }
+
+
+def _colour(values: Mapping[str, float]) -> Colour:
+    parts = {colour_part(device): value for device, value in values.items()}
+    if any(part in parts for part in COLOUR_PARTS):
+        red, green, blue = (parts.get(part, 0.0) for part in COLOUR_PARTS)
+        return red, green, blue
+    strongest = max(values.values(), default=0.0)
+    if all(device.startswith(BLUE_DEVICES) for device in values):
+        return 0.0, 0.0, strongest
+    return strongest, strongest, strongest
+
+
+def _number(value: Any) -> float:
+    return min(max(float(value), 0.0), 1.0) if isinstance(value, (int, float)) else 0.0
+
 
 QUEUE = 100
 COMPLAINT_PERIOD = 5.0

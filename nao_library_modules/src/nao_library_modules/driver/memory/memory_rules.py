@@ -1,19 +1,196 @@
-"""Rules: which keys of the robot's memory are watched, and how. No ROS."""
+"""Keys of the robot's memory: names, types, access, and the rules that say which are published. No ROS."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import fnmatch
+import re
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
+from naoqi.limits import ANSWER_LIMIT
 
+from ...base.answers import json_of, value_of_json
 from ...base.errors import BadGoal
 from ...base.field_checks import require_zero_or
 from ...base.limits import limit
-from .memory_access import check_pattern
-from .memory_names import is_pattern, matches
-from .memory_values import KINDS
+from ...base.suggestion import did_you_mean
+
+FIRST = "key_"
+"""Before a name that does not begin with a letter, which ROS asks for."""
+
+
+def is_pattern(text: str) -> bool:
+    return "*" in text or "?" in text
+
+
+def matches(key: str, pattern: str) -> bool:
+    """Whether a key matches a pattern or equals it; upper and lower case matter."""
+    # Brackets are no wildcards here: keys may have some.
+    return fnmatch.fnmatchcase(key, pattern.replace("[", "[[]"))
+
+
+def matching(keys: Iterable[str], pattern: str) -> list[str]:
+    """The keys that match a pattern, sorted; an empty one matches all."""
+    return sorted(key for key in keys if not pattern or matches(key, pattern))
+
+
+def topic_of(key: str) -> str:
+    """A legal name of ROS that resembles a key: illegal characters become underscores."""
+    parts = [re.sub(r"[^A-Za-z0-9_]", "_", part) for part in key.split("/") if part]
+    name = "/".join(parts) or "_"
+    return name if name[0].isascii() and name[0].isalpha() else FIRST + name
+
+
+def topics_of(keys: Iterable[str], taken: Iterable[str]) -> dict[str, str]:
+    """A topic for each key, distinct from each other and from `taken`."""
+    used = set(taken)
+    topics = {}
+    for key in keys:
+        plain = name = topic_of(key)
+        count = 1
+        while name in used:
+            count += 1
+            name = f"{plain}_{count}"
+        used.add(name)
+        topics[key] = name
+    return topics
+
+
+BOOL, INT, FLOAT, TEXT = "bool", "int", "float", "string"
+INTS, FLOATS, TEXTS = "int[]", "float[]", "string[]"
+KINDS = (BOOL, INT, FLOAT, TEXT, INTS, FLOATS, TEXTS)
+LIST, OBJECT, NULL = "list", "object", "null"
+"""What a value may be besides; a message has it as JSON in a text."""
+LARGEST = 2**31
+"""Whole numbers of messages are below this."""
+
+
+def type_of(value: Any) -> str:
+    """The type of a value: one of KINDS, or LIST, OBJECT or NULL."""
+    if value is None:
+        return NULL
+    if isinstance(value, bool):
+        return BOOL
+    if isinstance(value, int):
+        return INT
+    if isinstance(value, float):
+        return FLOAT
+    if isinstance(value, str):
+        return TEXT
+    if isinstance(value, (list, tuple)):
+        return _list_type(value)
+    return OBJECT
+
+
+def kind_of(value: Any) -> str:
+    """The kind of message for a value: one of KINDS, TEXT for values without a message of their own."""
+    kind = type_of(value)
+    if kind in (INT, INTS) and not _fits_int(value):
+        return TEXT
+    return kind if kind in KINDS else TEXT
+
+
+def converted(value: Any, kind: str) -> Any:
+    """A value as a message of some kind carries it; None if it cannot.
+
+    Numbers widen (int to float, true to 1), and any value is a text. The other way would lose something.
+    """
+    if kind == TEXT:
+        return value if isinstance(value, str) else json_of(value)
+    if kind == BOOL:
+        return value if isinstance(value, bool) else None
+    if kind == INT:
+        return int(value) if isinstance(value, int) and _fits_int(value) else None
+    if kind == FLOAT:
+        return float(value) if isinstance(value, (bool, int, float)) else None
+    return _converted_list(value, kind)
+
+
+def parse_value(text: str) -> Any:
+    """A value from JSON; a text that is no JSON is itself."""
+    try:
+        return value_of_json(text)
+    except ValueError:
+        return text
+
+
+def _list_type(values: Sequence[Any]) -> str:
+    kinds = {type_of(value) for value in values}
+    if kinds == {INT}:
+        return INTS
+    if kinds and kinds <= {INT, FLOAT}:
+        return FLOATS
+    return TEXTS if kinds == {TEXT} else LIST
+
+
+def _converted_list(values: Any, kind: str) -> list[Any] | None:
+    if not isinstance(values, (list, tuple)):
+        return None
+    single = {INTS: INT, FLOATS: FLOAT}.get(kind)
+    if single is None:
+        return list(values) if all(isinstance(value, str) for value in values) else None
+    parts = [converted(value, single) for value in values]
+    return None if any(part is None for part in parts) else parts
+
+
+def _fits_int(value: Any) -> bool:
+    return all(-LARGEST <= each < LARGEST for each in (value if isinstance(value, (list, tuple)) else (value,)))
+
+
+MEMORY = "ALMemory"
+BATCH = 500
+"""Keys in one question."""
+
+
+class MemoryAccess:
+    """Calls ALMemory; raises NaoError if that fails. Any thread may call."""
+
+    def __init__(self, robot: Any) -> None:
+        self._robot = robot
+
+    def ask(self, method: str, *arguments: Any) -> Any:
+        return self._robot.proxy(MEMORY).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+
+    def values(self, keys: Sequence[str]) -> list[Any]:
+        """Values of keys, in order; None for one without."""
+        found: list[Any] = []
+        for begin in range(0, len(keys), BATCH):
+            found += self.ask("getListData", list(keys[begin : begin + BATCH]))
+        return found
+
+    def known(self) -> dict[str, bool]:
+        """Key -> whether it is an event, of all keys of the robot."""
+        methods = ("getDataListName", "getEventList", "getMicroEventList")
+        calls = [self._robot.proxy(MEMORY).call_async(method) for method in methods]
+        keys, *events = [call.result(timeout=ANSWER_LIMIT) for call in calls]
+        told = {name for names in events for name in names}
+        return {name: name in told for name in (*keys, *sorted(told))}
+
+    def write(self, key: str, value: Any, as_event: bool) -> None:
+        if as_event:
+            self.ask("raiseEvent", key, value)
+        else:
+            self.ask("insertListData", [[key, value]])  # insertData has overloads, and would make 1 of true
+
+    def find(self, pattern: str) -> dict[str, Any]:
+        """Key -> value, of the keys that match a pattern; None for one without. Raises BadGoal if none matches."""
+        known = self.known()
+        keys = matching(known, check_pattern(pattern))
+        if not keys:
+            several = is_pattern(pattern)
+            problem = f"no key is like {pattern!r}" if several else f"there is no key {pattern!r}"
+            raise BadGoal("pattern", pattern, "keys of the robot's memory", problem + did_you_mean(pattern, known))
+        return dict(zip(keys, self.values(keys)))
+
+
+def check_pattern(pattern: str, field: str = "pattern") -> str:
+    """The pattern or key itself; raises BadGoal if it is empty."""
+    if not pattern.strip():
+        raise BadGoal(field, pattern, "a key, or several with * and ?", problem="it is empty")
+    return pattern
+
 
 RATE = limit("sampling rate")
 """Hz, above which nobody asks."""

@@ -39,12 +39,24 @@ from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
-from ..base.lazy_topic import LazyTopic
-from ..base.node import number, publish
-from .memory_access import MemoryAccess, check_pattern
-from .memory_names import is_pattern, matching
-from .memory_rules import MemoryRule, read_rules
-from .memory_values import BOOL, FLOAT, FLOATS, INT, INTS, TEXT, TEXTS, parse_value, type_of
+from ..base.driver_node import LazyTopic, number, publish
+from .memory_rules import (
+    BOOL,
+    FLOAT,
+    FLOATS,
+    INT,
+    INTS,
+    TEXT,
+    TEXTS,
+    MemoryAccess,
+    MemoryRule,
+    check_pattern,
+    is_pattern,
+    matching,
+    parse_value,
+    read_rules,
+    type_of,
+)
 from .memory_watch import MemoryWatch
 
 MESSAGES = {

@@ -1,8 +1,13 @@
-"""The node nao_walker: walking, with the names of nao_robot."""
+"""The node nao_walker: walking, with the names of nao_robot; inhibition, head scan and diagnostics of it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import logging
+import math
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -17,21 +22,220 @@ from nao_library_msgs.srv import CmdPoseService, CmdVelService, SetArmsEnabled, 
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT
 
+from ...base.cancellation import CancellationToken
+from ...base.kept import Kept
+from ...functions.joint_trajectory import KeyFrames
 from ...nao.joint_names import MOTION, MOVE_FAILED
 from ...robot.event_relay import EventRelay
-from ...ros.health import Report
+from ...ros.health import Level, Report
 from ...ros.node_interface import AlreadyOffered, NodeInterface
 from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
-from ..base.node import number, whenever
+from ..base.driver_node import number, whenever
 from ..joints.joint_controller import InitialStiffness, JointController
 from ..joints.joint_sensors import MEMORY
-from .head_scan import HeadScan
-from .walk_commands import Velocity, read_gait_config, read_step, read_target, read_velocity
-from .walk_inhibition import WalkInhibition
-from .walk_orders import Command, Order, Stop, Superseded
-from .walk_report import IS_ACTIVE, WalkJournal
+from .walk_commands import (
+    Command,
+    Order,
+    Stop,
+    Superseded,
+    Velocity,
+    read_gait_config,
+    read_step,
+    read_target,
+    read_velocity,
+)
 from .walker import STANDS, Walker
+
+log = logging.getLogger(__name__)
+
+
+class WalkInhibition:
+    """Holds on walking, by the node that put them on. Every method may be called from any thread.
+
+    A node that inhibits walking means the others: one that follows a path keeps a joystick from interfering, and walks
+    itself. `kept`: where they are kept for the time after the death of this node. `own`: name of this node: holds of
+    parts that died with it are gone.
+    """
+
+    def __init__(self, kept: Kept, own: str = "") -> None:
+        self._lock = threading.Lock()
+        self._kept = kept
+        self._holds: Counter[str] = kept.load(_kept_holds) or Counter()
+        self._holds.pop(own, None)
+
+    def inhibit(self, owner: str) -> int:
+        """Put a hold on walking; how many there are now."""
+        with self._lock:
+            self._holds[owner] += 1
+            return self._keep()
+
+    def let_go(self, owner: str) -> int:
+        """Take a hold off, one of the node's own if it has any, else the first that was put on; how many are left.
+
+        A person who lets go at a command line has another name each time. Without any hold this is no error: clients
+        of nao_robot let go to be sure, or once more than they inhibited.
+        """
+        with self._lock:
+            if not self._holds:
+                return 0
+            held = owner if owner in self._holds else next(iter(self._holds))
+            self._holds[held] -= 1
+            if not self._holds[held]:
+                del self._holds[held]
+            return self._keep()
+
+    def drop(self) -> None:
+        """Take all holds off."""
+        with self._lock:
+            self._holds.clear()
+            self._keep()
+
+    def _keep(self) -> int:
+        self._kept.save(self._holds)
+        return sum(self._holds.values())
+
+    @property
+    def owners(self) -> list[str]:
+        with self._lock:
+            return list(self._holds)
+
+    def against(self, node: str) -> list[str]:
+        """The other nodes that keep a node from walking."""
+        return [owner for owner in self.owners if owner != node]
+
+
+def _kept_holds(kept: Any) -> Counter[str]:
+    if not all(type(count) is int and count > 0 for count in kept.values()):
+        raise ValueError(f"{kept!r} does not count holds on walking")
+    return Counter(kept)
+
+
+IS_ACTIVE = "moveIsActive"
+"""The method that the report asks: its answer says nothing about commands."""
+COMPLAINT_PERIOD = 5.0
+"""s of real time from one complaint to the next about the same thing."""
+
+
+class WalkJournal:
+    """Remembers commands and failures. Every method may be called from any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._complained: dict[str, float] = {}
+        self._command = ""
+        self._commanded_at = 0.0
+        self._failures = 0
+        self._last_failure = ""
+        self._failing = ""  # what failed last, and has not succeeded since
+
+    def commanded(self, source: str, now: float) -> None:
+        with self._lock:
+            self._command, self._commanded_at = source, now
+
+    def succeeded(self, name: str) -> None:
+        """The robot carried a command out, or answered: a command clears any failure, IS_ACTIVE its own."""
+        with self._lock:
+            if name != IS_ACTIVE or self._failing == name:
+                self._failing = ""
+
+    def failed(self, name: str, error: BaseException) -> None:
+        with self._lock:
+            self._failures += 1
+            self._failing = name
+            self._last_failure = f"{name}: {error}"
+        if self._is_due(f"{name} failed"):
+            log.error("%s: %s", name, error)
+
+    def warn(self, key: str, text: str) -> None:
+        """Log a warning, but not all the time about the same `key`."""
+        if self._is_due(key):
+            log.warning("%s", text)
+
+    def report(self, now: float, doing: str, active: bool | None, owners: Sequence[str], watchdog_stops: int) -> Report:
+        """The line of diagnostics at `now` s of ROS time.
+
+        `doing` is what the node has the robot do, `active` whether the robot answers that it walks (None: not asked).
+        """
+        with self._lock:
+            age = f"{now - self._commanded_at:.1f}" if self._command else ""
+            values = {
+                "commanded": doing,
+                "robot": {None: "unknown", True: "walks", False: "stands"}[active],
+                "inhibited by": ", ".join(owners),
+                "last command": self._command,
+                "last command (s ago)": age,
+                "stopped because commands ceased": str(watchdog_stops),
+                "commands that failed": str(self._failures),
+                "last failure": self._last_failure,
+            }
+            failing = self._failing
+        message = values["robot"] + (f", inhibited by {values['inhibited by']}" if owners else "")
+        if failing:
+            return Report(Level.WARN, f"{message}; {values['last failure']}", values)
+        return Report(Level.OK, message, values)
+
+    def _is_due(self, key: str) -> bool:
+        now = time.monotonic()
+        with self._lock:
+            due = now - self._complained.get(key, now - 2 * COMPLAINT_PERIOD) >= COMPLAINT_PERIOD
+            if due:
+                self._complained[key] = now
+            return due
+
+
+YAW, PITCH = "HeadYaw", "HeadPitch"
+DOWN, UP, AFTERWARDS = math.radians(28.0), math.radians(-35.0), math.radians(22.0)
+"""HeadPitch at the beginning and the end of the sweep, and after it, rad; those of nao_robot."""
+SWEEP_SPEED = math.radians(3.3)
+"""rad/s: a laser scanner at 10 Hz then has a line each third of a degree, as in nao_robot."""
+
+
+class HeadScan:
+    """The head of one robot. A scan runs in the thread that asks for it, which may be any.
+
+    `speed` is the fraction of the joints' top speed on the way to the sweep, and from it.
+    """
+
+    def __init__(self, controller: JointController, speed: float) -> None:
+        self.speed = speed
+        self._controller = controller
+        self._closed = CancellationToken()
+        self._scanning = threading.Lock()
+
+    @property
+    def active(self) -> bool:
+        return self._scanning.locked()
+
+    def run(self, prepare: Callable[[], None] = lambda: None) -> None:
+        """Look down, sweep up, look at the ground before the feet; `prepare` is called first, as a part of it.
+
+        Raises NaoError if a scan is under way, the robot refuses or is lost, or the node ends.
+        """
+        if not self._scanning.acquire(blocking=False):
+            raise NaoError("a head scan is under way")
+        try:
+            prepare()
+            self._look(DOWN)
+            sweep = KeyFrames((PITCH,), ((DOWN - UP) / SWEEP_SPEED,), ((UP,),))
+            self._require_end(self._controller.follow(sweep, self._closed).preempted)
+            self._look(AFTERWARDS)
+        finally:
+            self._scanning.release()
+
+    def close(self) -> None:
+        """End a scan that is under way; the head stops where it is."""
+        self._closed.stop()
+
+    def _look(self, pitch: float) -> None:
+        reached = self._controller.move((YAW, PITCH), (0.0, pitch), self.speed, False, self._closed)
+        self._require_end(reached.preempted)
+
+    @staticmethod
+    def _require_end(preempted: bool) -> None:
+        if preempted:
+            raise NaoError("the head scan was ended before time: the node ends")
+
 
 STEPS_IN_LINE = 50
 CLOSE_LIMIT = 5.0

@@ -1,10 +1,13 @@
-"""Commands to walk (a velocity, a target, a step) and gait parameters: messages become checked values. No ROS."""
+"""Commands to walk: read from messages, queued as orders, and paced. No ROS."""
 
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Mapping
-from dataclasses import dataclass
+from concurrent.futures import Future, InvalidStateError
+from contextlib import suppress
+from dataclasses import dataclass, field
 from typing import Any, List, Union
 
 from naoqi.errors import NaoError
@@ -132,3 +135,166 @@ def _pose(pose: Any, field: str = "") -> tuple[float, float, float]:
     for name, limit_ in (("x", WAY), ("y", WAY), ("theta", ANGLE)):
         require_within(f"{field}pose.{name}", getattr(pose, name), limit_)
     return float(pose.x), float(pose.y), float(pose.theta)
+
+
+MOST = int(limit("footsteps").highest)
+
+
+class Stop:
+    """Stand, with both feet on the ground."""
+
+    def __str__(self) -> str:
+        return "stopping"
+
+
+Command = Union[Velocity, Target, FootStep, Stop]
+
+
+class WalkEnded(NaoError):
+    """A command to walk did not come to its end: the robot did not get there."""
+
+    def __init__(self, command: Command, reason: str) -> None:
+        super().__init__(f"{command} ended before time: {reason}")
+
+
+class Superseded(WalkEnded):
+    """A newer command ended it."""
+
+
+@dataclass(eq=False)
+class Order:
+    """A command, on its way to the robot and until it is carried out.
+
+    `answer` is done when it was carried out, failed, or was superseded.
+    """
+
+    command: Command
+    source: str  # for texts: "cmd_vel from /teleop"
+    watched: bool = False  # the robot has to stop when no further command of this kind comes
+    to_the_end: bool = False  # a step counts as carried out when it is made, not when the robot has taken it
+    arrived: float = 0.0  # s
+    replaces: bool = False  # the robot walked by an older order when this one's turn came
+    stopped_by: str = ""
+    answer: Future = field(default_factory=Future)
+
+    @property
+    def halts(self) -> bool:
+        return isinstance(self.command, Stop) or (isinstance(self.command, Velocity) and self.command.is_zero)
+
+    def succeed(self) -> None:
+        """It was carried out; later ends do not count."""
+        with suppress(InvalidStateError):
+            self.answer.set_result(None)
+
+    def fail(self, error: Exception) -> None:
+        """It was not carried out; later ends do not count."""
+        with suppress(InvalidStateError):
+            self.answer.set_exception(error)
+
+    def superseded(self, reason: str) -> None:
+        self.fail(Superseded(self.command, reason))
+
+
+class Mailbox:
+    """Orders that wait. The newest replaces those before it; only steps queue up, and a stop is never left out.
+
+    Any thread may put orders in.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._orders: list[Order] = []
+
+    def put(self, order: Order) -> None:
+        """Add an order; those that it replaces end. A step that is one too many fails, a stop never does."""
+        replaced: list[Order] = []
+        with self._lock:
+            if len(self._orders) >= MOST:
+                if isinstance(order.command, FootStep):
+                    order.fail(WalkEnded(order.command, f"{len(self._orders)} orders wait already, {MOST} at most"))
+                    return
+                replaced.append(self._orders.pop(0))
+            if not isinstance(order.command, FootStep):
+                replaced += [waiting for waiting in self._orders if not isinstance(waiting.command, Stop)]
+                self._orders = [waiting for waiting in self._orders if isinstance(waiting.command, Stop)]
+            self._orders.append(order)
+        for old in replaced:
+            old.superseded(f"{order.source} came after it")
+
+    @property
+    def first(self) -> Order | None:
+        """The order whose turn it is; it stays in the box."""
+        with self._lock:
+            return self._orders[0] if self._orders else None
+
+    def take(self) -> Order | None:
+        with self._lock:
+            return self._orders.pop(0) if self._orders else None
+
+    @property
+    def halts(self) -> bool:
+        """Whether an order waits after which the robot stands."""
+        with self._lock:
+            return any(order.halts for order in self._orders)
+
+
+PACE = 0.05
+"""s from one velocity or target to the next, at least."""
+REFRESH = 1.0
+"""s after which a velocity that is commanded on and on is sent again. The robot may have ended the walk by itself:
+legs that were limp, feet in the air."""
+
+
+class WalkPace:
+    """What was sent last, and when."""
+
+    def __init__(self) -> None:
+        self._velocity: Velocity | None = None
+        self._sent: float | None = None
+        self._heard: float | None = None
+
+    def pause(self, now: float) -> float:
+        """Time until the next velocity or target may be sent; at once if not above 0."""
+        return 0.0 if self._sent is None else self._sent + PACE - now
+
+    def sent(self, velocity: Velocity | None, now: float) -> None:
+        """Note that a command was sent; `velocity` is what the robot has now, None after another kind of command."""
+        self._velocity, self._sent = velocity, now
+
+    def is_news(self, velocity: Velocity, now: float) -> bool:
+        """Note that a velocity is commanded; whether it has to be sent.
+
+        A velocity that the robot has already is sent again now and then. A standstill is sent again only after a break
+        in the commands: then it is no longer an idle stick, and may be meant for a walk that others began.
+        """
+        before, self._heard = self._heard, now
+        if velocity != self._velocity or before is None or self._sent is None or now - before > REFRESH:
+            return True
+        return not velocity.is_zero and now - self._sent >= REFRESH
+
+
+class WalkWatchdog:
+    """Time since the last command of a steered walk, which stops after `limit` s without one; 0: never."""
+
+    def __init__(self, limit: float) -> None:
+        self.limit = limit
+        self._last: float | None = None
+
+    def feed(self, now: float) -> None:
+        """A command came: watch the walk from now on."""
+        self._last = now if self.limit > 0.0 else None
+
+    def rest(self) -> None:
+        """Nothing is steered any more: watch nothing."""
+        self._last = None
+
+    def left(self, now: float) -> float | None:
+        """Time until the walk has to stop, 0 or less when it is over; None while there is nothing to watch.
+
+        If `now` lies before the last command, the clock was set back (a simulation that began anew), and the command
+        counts as just come.
+        """
+        if self._last is None:
+            return None
+        self._last = min(self._last, now)
+        return self._last + self.limit - now

@@ -18,9 +18,20 @@ from ...base.errors import Preempted
 from ...nao.joint_names import MOTION
 from ...nao.stiff_legs import ask_for_stiff_legs
 from ...robot.robot_task import run_task
-from .walk_commands import FootStep, GaitConfig, Target, Velocity
-from .walk_orders import Command, Mailbox, Order, Stop, Superseded, WalkEnded
-from .walk_timing import WalkPace, WalkWatchdog
+from .walk_commands import (
+    Command,
+    FootStep,
+    GaitConfig,
+    Mailbox,
+    Order,
+    Stop,
+    Superseded,
+    Target,
+    Velocity,
+    WalkEnded,
+    WalkPace,
+    WalkWatchdog,
+)
 
 log = logging.getLogger(__name__)
 

@@ -1,4 +1,4 @@
-"""A queue of texts that the robot says, each once. No ROS."""
+"""Speech of one robot: settings, voice, and texts said one after the other. No ROS."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
@@ -18,10 +19,192 @@ from ...base.limits import limit
 from ...robot.event_relay import EventRelay
 from ...robot.robot_task import end_call
 from ...ros.health import Level, Report
-from .speech_settings import SpeechSettings
-from .speech_voice import SPEECH, BorrowedVoice
 
 log = logging.getLogger(__name__)
+
+
+SEPARATOR = "/"
+ROBOTS_OWN = -1
+"""Volume that leaves the robot's own."""
+FULL_VOLUME = 100
+FORMER_NAMES = {
+    "audio_expression": "enable_audio_expression",
+    "visual_expression": "enable_visual_expression",
+    "word_spotting": "enable_word_spotting",
+}
+"""Parameter -> its name in the first versions of nao_speech."""
+
+
+@dataclass(frozen=True)
+class SpeechSettings:
+    """Settings of speech and recognition; `PARAMETERS` of nao_speech describes them."""
+
+    voice: str = ""  # empty: the robot's own
+    language: str = ""  # empty: the robot's own
+    volume: float | None = None  # 0 to 1; None: the robot's own
+    vocabulary: tuple[str, ...] = ()
+    audio_expression: bool = True
+    visual_expression: bool = True
+    word_spotting: bool = False
+
+
+def from_config(config: Mapping[str, Any]) -> SpeechSettings:
+    """Settings from the values of the parameters: volume in percent or -1, vocabulary as "yes / no"."""
+    volume = config["volume"]
+    return SpeechSettings(
+        voice=config["voice"].strip(),
+        language=config["language"].strip(),
+        volume=None if volume < 0 else volume / FULL_VOLUME,
+        vocabulary=split_vocabulary(config["vocabulary"]),
+        audio_expression=config["audio_expression"],
+        visual_expression=config["visual_expression"],
+        word_spotting=config["word_spotting"],
+    )
+
+
+def given_parameters(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Private parameters that are set, in the form of today; raises NaoError for a wrong value.
+
+    The first versions of nao_speech had the volume as a share of 1, the vocabulary as a list, and longer names for the
+    switches: all of that is accepted.
+    """
+    given: dict[str, Any] = {}
+    for name in ("voice", "language"):
+        if name in parameters:
+            given[name] = _checked(name, parameters[name], str, "a text")
+    if "volume" in parameters:
+        given["volume"] = percent(parameters["volume"])
+    if "vocabulary" in parameters:
+        given["vocabulary"] = _vocabulary(parameters["vocabulary"])
+    for name, former in FORMER_NAMES.items():
+        for each in (name, former):  # the node takes former names away when it has read them: one there is new
+            if each in parameters:
+                given[name] = _checked(each, parameters[each], bool, "true or false")
+    return given
+
+
+def percent(volume: Any) -> int:
+    """Volume in percent, or -1 for the robot's own.
+
+    Takes an integer in percent, or a float as a share of 1; raises NaoError for anything else.
+    """
+    if isinstance(volume, float) and 0.0 <= volume <= 1.0:
+        return round(FULL_VOLUME * volume)
+    whole = isinstance(volume, int) or (isinstance(volume, float) and volume.is_integer())
+    if whole and not isinstance(volume, bool) and ROBOTS_OWN <= volume <= FULL_VOLUME:
+        return int(volume)
+    raise NaoError(f"~volume is {volume!r}: 0 to 100 %, 0.0 to 1.0, or -1 for the robot's own")
+
+
+def split_vocabulary(text: str) -> tuple[str, ...]:
+    """Words and phrases of "yes / no / good morning"."""
+    return tuple(word.strip() for word in text.split(SEPARATOR) if word.strip())
+
+
+def join_vocabulary(words: Sequence[str]) -> str:
+    """The inverse of `split_vocabulary`; raises NaoError if a word is empty or holds the separator."""
+    for word in words:
+        if SEPARATOR in word:
+            raise NaoError(f"field words: {word!r} holds {SEPARATOR!r}, which separates words")
+        if not word.strip():
+            raise NaoError(f"field words: {word!r} is empty")
+    return f" {SEPARATOR} ".join(word.strip() for word in words)
+
+
+def _vocabulary(value: Any) -> str:
+    if isinstance(value, str):
+        return join_vocabulary(split_vocabulary(value))
+    if isinstance(value, (list, tuple)) and all(isinstance(word, str) for word in value):
+        return join_vocabulary(value)
+    raise NaoError(f"~vocabulary is {value!r}: a text as 'yes / no', or a list of texts")
+
+
+def _checked(name: str, value: Any, kind: type, allowed: str) -> Any:
+    if not isinstance(value, kind):
+        raise NaoError(f"~{name} is {value!r}: {allowed}")
+    return value
+
+
+SPEECH = "ALTextToSpeech"
+METHODS = {
+    "language": ("getLanguage", "setLanguage"),
+    "voice": ("getVoice", "setVoice"),
+    "volume": ("getVolume", "setVolume"),
+}
+"""In this order: another language brings another voice with it."""
+SAME_VOLUME = 0.005
+
+
+class BorrowedVoice:
+    """Changes how the robot speaks for a while, and restores it.
+
+    Changes that others make meanwhile are left alone. What could not be restored because the robot was lost is restored
+    when it is back. Used by one thread at a time.
+    """
+
+    def __init__(self, robot: Any) -> None:
+        self._robot = robot
+        self._before: dict[str, Any] = {}
+        self._ours: dict[str, Any] = {}
+
+    @property
+    def owed(self) -> bool:
+        return bool(self._before)
+
+    def take(self, settings: SpeechSettings) -> None:
+        """Apply the settings that are given; raises NaoError if the robot cannot, and then it speaks as before."""
+        if self.owed:
+            self._settle()
+        wanted = {"language": settings.language, "voice": settings.voice, "volume": settings.volume}
+        wanted = {name: value for name, value in wanted.items() if value not in ("", None)}
+        if not wanted:
+            return
+        touched = [name for name in METHODS if name in wanted or (name == "voice" and "language" in wanted)]
+        self._before = {name: self._get(name) for name in touched}
+        self._ours = dict(self._before)
+        try:
+            for name in touched:
+                if name in wanted and not _same(self._get(name), wanted[name]):
+                    self._ask(METHODS[name][1], wanted[name])
+                    self._ours = {each: self._get(each) for each in touched}
+        except NaoError:
+            self._settle()
+            raise
+
+    def give_back(self) -> None:
+        """Restore the former values; raises NaoError if the robot cannot be asked, and then they are still owed."""
+        if not self.owed:
+            return
+        now = {name: self._get(name) for name in self._before}
+        still_ours = [name for name in self._before if _same(now[name], self._ours[name])]
+        changed = [name for name in still_ours if not _same(now[name], self._before[name])]
+        if "language" in changed and "voice" in still_ours and "voice" not in changed:
+            changed.append("voice")
+        for name in METHODS:
+            if name in changed:
+                self._ask(METHODS[name][1], self._before[name])
+        self._before, self._ours = {}, {}
+
+    def _settle(self) -> None:
+        """Restore what the robot accepts; what it refuses must not keep it silent."""
+        try:
+            self.give_back()
+        except NaoError as error:
+            log.warning("the robot keeps the voice that it was given: %s", error)
+            self._before, self._ours = {}, {}
+
+    def _get(self, name: str) -> Any:
+        return self._ask(METHODS[name][0])
+
+    def _ask(self, method: str, *arguments: Any) -> Any:
+        return self._robot.proxy(SPEECH).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, (int, float)) and isinstance(other, (int, float)):
+        return abs(one - other) < SAME_VOLUME
+    return one == other
+
 
 STARTED = f"{SPEECH}/TextStarted"
 SIGNS_OF_LIFE = (STARTED, f"{SPEECH}/CurrentSentence", f"{SPEECH}/CurrentWord")

@@ -27,13 +27,10 @@ from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome,
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
-from ..base.node import frame_parameter, interrupt_when_lost
+from ..base.driver_node import frame_parameter, interrupt_when_lost
 from ..joints.planar_frames import PlanarFrames, pose_stamped, read_path, read_place
-from .courses import Aim, PathCourse, TargetCourse
-from .legs import WalkTopics
-from .path import WalkPath
-from .settings import FollowerSettings
-from .walk import lead
+from .path_courses import Aim, FollowerSettings, PathCourse, TargetCourse, WalkPath
+from .path_walk import WalkTopics, lead
 
 SHUTDOWN_LIMIT = 4.0
 LEGS = frozenset({"the legs"})
