@@ -9,13 +9,14 @@ import pytest
 
 from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
+from nao_library_modules.base.error_codes import ErrorCode, code_in
 from nao_library_modules.base.errors import BadGoal, Preempted, RobotLost
-from nao_library_modules.driver.base import driver_node as driver_node
-from nao_library_modules.driver.base import reconfigure
+from nao_library_modules.driver.base import driver_node, reconfigure
 from nao_library_modules.driver.base.driver_node import LazyTopic
 from nao_library_modules.driver.base.polling import Rate
 from nao_library_modules.driver.base.reconfigure import ReconfigureField
 from nao_library_modules.driver.joints.nao_joint_states import NaoJointStates
+from nao_library_modules.driver.joints.pose_manager import PostureMissed
 from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, GoalOutcome
 from naoqi.errors import NaoError
 
@@ -128,6 +129,14 @@ def test_goals_that_will_not_do_abort_with_their_text_and_feedback_goes_to_its_g
     assert "division by zero" in send(ConcurrentActionServer(frozenset, lambda *_: 1 / 0), "HeadYaw").wait()[2]
     handle = send(ConcurrentActionServer(frozenset, execute, with_feedback=True), "HeadYaw")
     assert handle.wait()[0] == "succeeded" and handle.feedback == ["half of HeadYaw"]
+
+
+def test_an_error_with_a_code_tells_it_in_the_status_of_its_goal():
+    def execute(_joints, _interrupt):
+        raise PostureMissed("Stand")
+
+    state, _, text = send(ConcurrentActionServer(frozenset, execute), "HeadYaw").wait()
+    assert state == "aborted" and code_in(text) is ErrorCode.POSTURE_MISSED
 
 
 def test_goals_that_are_too_many_are_aborted_with_what_is_allowed(server, work):

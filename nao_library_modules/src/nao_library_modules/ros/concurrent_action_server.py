@@ -13,6 +13,7 @@ from naoqi.errors import NaoError
 from naoqi.limits import START_PATIENCE
 
 from ..base.cancellation import CancellationToken
+from ..base.error_codes import with_code
 from ..base.errors import Preempted
 from ..base.limits import limit
 from .action_server import let_the_client_note_the_goal
@@ -155,7 +156,7 @@ class ConcurrentActionServer:
         except Preempted:
             return "preempted", None, member.reason
         except NaoError as error:
-            return "aborted", None, str(error)
+            return "aborted", None, with_code(error)
         except Exception as error:
             log.exception("a goal failed")
             return "aborted", None, f"unexpected error: {error!r}"

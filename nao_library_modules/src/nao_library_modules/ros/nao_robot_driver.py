@@ -28,6 +28,7 @@ from nao_library_actions.msg import (
 from nao_library_msgs.srv import CmdPoseService, CmdVelService
 from naoqi.errors import NaoError
 
+from ..base.error_codes import ErrorCode, code_in
 from ..base.places import FOOTPRINT, Place
 from ..functions.joint_trajectory import KeyFrames
 from ..nao.pose_tables import built_in
@@ -52,8 +53,6 @@ LOOK_PERIOD = 1.0
 """s of this computer between two looks for a driver that is not there."""
 CONNECT_LIMIT = 2.0
 """s of this computer that the server of an action may take to be connected, once."""
-NOT_THERE = "ended before time"
-"""In the text of nao_walker for a walk that somebody or something stopped."""
 
 
 class NaoRobotDriver:
@@ -95,7 +94,7 @@ class NaoRobotDriver:
 
     def walk_by(self, place: Place) -> DriverCall | None:
         """Walk to a place seen from the robot by dead reckoning; False if the robot did not get there."""
-        return self._ask("cmd_pose_srv", CmdPoseService, _arrived, Pose2D(place.x, place.y, place.yaw))
+        return self._ask("cmd_pose_srv", CmdPoseService, arrived, Pose2D(place.x, place.y, place.yaw))
 
     def walk_to(self, place: Place) -> DriverCall | None:
         """Walk to a place seen from the robot, by who plans walks; False if somebody stopped it."""
@@ -135,7 +134,7 @@ class NaoRobotDriver:
 
     def take_posture(self, name: str, speed: float) -> DriverCall | None:
         """Take a posture; False if the robot did not get there."""
-        return self._send("body_pose_naoqi", BodyPoseWithSpeedGoal(name, speed), _posture_reached)
+        return self._send("body_pose_naoqi", BodyPoseWithSpeedGoal(name, speed), posture_reached)
 
     def _action(self, name: str) -> DriverAction:
         if name not in self._actions:
@@ -182,9 +181,9 @@ def _walked(state: int, text: str) -> bool | None:
     return _succeeded(state, text)
 
 
-def _posture_reached(state: int, text: str) -> bool:
+def posture_reached(state: int, text: str) -> bool:
     """Whether it was reached. Raises NaoError if it failed for another reason."""
-    if state == GoalStatus.ABORTED and "did not reach the posture" in text:
+    if state == GoalStatus.ABORTED and code_in(text) is ErrorCode.POSTURE_MISSED:
         return False
     _succeeded(state, text)
     return True
@@ -196,9 +195,9 @@ def _no_answer(error: str) -> None:
         raise NaoError(error)
 
 
-def _arrived(error: str) -> bool | None:
+def arrived(error: str) -> bool | None:
     """None; False if the robot did not get there. Raises NaoError if there is another error."""
-    return False if NOT_THERE in error else _no_answer(error)
+    return False if code_in(error) is ErrorCode.WALK_ENDED else _no_answer(error)
 
 
 def _trajectory(frames: KeyFrames) -> JointTrajectoryGoal:

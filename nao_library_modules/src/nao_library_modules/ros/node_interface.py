@@ -12,6 +12,7 @@ import rospy
 from naoqi.errors import NaoError
 
 from ..base.document_names import names_of
+from ..base.error_codes import with_code
 from ..base.errors import Preempted
 from ..processes.closing import close_all
 from .action_server import ActionServer
@@ -98,7 +99,7 @@ class NodeInterface:
                 raise rospy.ServiceException("the node ends") from signal
             except NaoError as error:
                 rospy.logerr("%s: %s", name, error)
-                raise rospy.ServiceException(str(error)) from error
+                raise rospy.ServiceException(with_code(error)) from error
             return kind._response_class() if response is None else response
 
         self.service(name, kind, serve)

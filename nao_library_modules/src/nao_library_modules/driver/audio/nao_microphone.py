@@ -198,7 +198,7 @@ class Microphone:
                 "lost blocks": str(self._blocks.lost),
             }
         report = self._hearing.report("nobody listens", "heard", "the microphones cannot be heard", values)
-        if self._silent and report.message == "heard":
+        if self._silent and report.level is Level.OK and self._hearing.wanted:
             return Report(Level.ERROR, self._silence(), report.values)
         return report
 

@@ -25,6 +25,7 @@ from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT
 
 from ...base.cancellation import CancellationToken
+from ...base.error_codes import CodedError, ErrorCode
 from ...base.field_checks import require_within
 from ...nao.joint_names import MOTION
 from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
@@ -47,6 +48,15 @@ MARGIN = 1.0
 """s that a pose may take longer than it says."""
 CANCEL_LIMIT = 2.0
 """s that a cancelled pose may take to end."""
+
+
+class PostureMissed(CodedError):
+    """The robot ended its motion, and not in the posture."""
+
+    code = ErrorCode.POSTURE_MISSED
+
+    def __init__(self, posture: str) -> None:
+        super().__init__(f"the robot did not reach the posture {posture}")
 
 
 class PoseManager:
@@ -129,7 +139,7 @@ class PoseManager:
             posture.call_async("stopMove").result(timeout=ANSWER_LIMIT)
 
         if not run_task(posture.call_async("goToPosture", goal.posture_name, goal.speed), interrupt, stop):
-            raise NaoError(f"the robot did not reach the posture {goal.posture_name}")
+            raise PostureMissed(goal.posture_name)
         return GoalOutcome(BodyPoseWithSpeedResult())
 
 

@@ -45,7 +45,7 @@ from .walk_commands import (
     read_target,
     read_velocity,
 )
-from .walker import STANDS, Walker
+from .walker import Walker
 
 log = logging.getLogger(__name__)
 
@@ -234,7 +234,7 @@ class HeadScan:
     @staticmethod
     def _require_end(preempted: bool) -> None:
         if preempted:
-            raise NaoError("the head scan was ended before time: the node ends")
+            raise NaoError("the head scan was stopped: the node ends")
 
 
 STEPS_IN_LINE = 50
@@ -448,7 +448,7 @@ class NaoWalker:
 
     def _on_failure(self, _: str, value: Any) -> None:
         """Log the cause, which no call to walk at a velocity returns. In a thread of libqi."""
-        if value and self._walker.doing != STANDS:
+        if value and self._walker.doing is not None:
             self._journal.warn(MOVE_FAILED, f"the robot does not walk on: {value[0]}")
 
     def _report(self) -> Report:
@@ -459,9 +459,8 @@ class NaoWalker:
                 self._journal.succeeded(IS_ACTIVE)
             except NaoError as error:
                 self._journal.failed(IS_ACTIVE, error)
-        return self._journal.report(
-            rospy.get_time(), self._walker.doing, active, self._inhibition.owners, self._walker.watchdog_stops
-        )
+        doing, owners = str(self._walker.doing or "nothing"), self._inhibition.owners
+        return self._journal.report(rospy.get_time(), doing, active, owners, self._walker.watchdog_stops)
 
 
 def _is_zero(command: Command) -> bool:

@@ -12,6 +12,7 @@ from typing import Any, List, Union
 
 from naoqi.errors import NaoError
 
+from ...base.error_codes import CodedError, ErrorCode
 from ...base.errors import BadGoal
 from ...base.field_checks import number_parameter, require_within
 from ...base.limits import limit
@@ -150,11 +151,13 @@ class Stop:
 Command = Union[Velocity, Target, FootStep, Stop]
 
 
-class WalkEnded(NaoError):
-    """A command to walk did not come to its end: the robot did not get there."""
+class WalkEnded(CodedError):
+    """A command to walk was not carried out to its end: the robot did not get there."""
+
+    code = ErrorCode.WALK_ENDED
 
     def __init__(self, command: Command, reason: str) -> None:
-        super().__init__(f"{command} ended before time: {reason}")
+        super().__init__(f"{command} ended early: {reason}")
 
 
 class Superseded(WalkEnded):

@@ -38,7 +38,7 @@ log = logging.getLogger(__name__)
 STEP_TIME = 0.5
 """s that a step takes."""
 NOT_THERE = "another client or a protection of the robot stopped it"
-STANDS, CLOSED = "nothing", "the node ends"
+CLOSED = "the node ends"
 
 
 class Walker:
@@ -71,7 +71,7 @@ class Walker:
         self._closed = threading.Event()
         self._lock = threading.Lock()
         self._running: list[Order] = []
-        self._doing = STANDS
+        self._doing: Command | None = None
         self._owes_stop = False
         self._pace = WalkPace()
         robot.connection.add_listener(self._connection_changed)
@@ -79,8 +79,8 @@ class Walker:
         self._thread.start()
 
     @property
-    def doing(self) -> str:
-        """What it does at the moment, by its orders."""
+    def doing(self) -> Command | None:
+        """What the robot does at the moment by its orders; None: it stands."""
         with self._lock:
             return self._doing
 
@@ -106,7 +106,7 @@ class Walker:
         """
         self._robot.connection.remove_listener(self._connection_changed)
         self._closed.set()
-        if not only_own or self._box.first is not None or self.doing != STANDS:
+        if not only_own or self._box.first is not None or self.doing is not None:
             self._stop_at_the_end(limit)
         self._news.stop()
         self._thread.join(CLEAN_UP_LIMIT)
@@ -244,8 +244,8 @@ class Walker:
             before = [old for old in self._running if not old.answer.done()]
             steps = [old for old in before if isinstance(order.command, FootStep) and isinstance(old.command, FootStep)]
             self._running = [*steps, order]
-            order.replaces = self._doing != STANDS
-            self._doing = STANDS if order.halts else str(order.command)
+            order.replaces = self._doing is not None
+            self._doing = None if order.halts else order.command
         ending = [old for old in before if old not in steps]
         if isinstance(order.command, Stop):
             for old in ending:
@@ -310,7 +310,7 @@ class Walker:
                 self._owes_stop = True
             if order in self._running:
                 self._running.remove(order)
-                self._doing = self._doing if self._running else STANDS
+                self._doing = self._doing if self._running else None
         if order.stopped_by and not arrived and not isinstance(order.command, Stop):
             order.superseded(f"{order.stopped_by} stopped it")
         elif error is not None:
