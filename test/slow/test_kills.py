@@ -22,6 +22,13 @@ from nao_sim_bridge.testing import wait_until
 pytestmark = pytest.mark.timeout(1800)
 SCRIPT = Path(__file__).resolve().parents[1] / "soak/kills.py"
 LIMIT = 60.0
+OWN_SERVER = """
+import sys
+from nao_library_modules.lights import NaoLights
+from nao_library_modules.node import run_module
+sys.exit(run_module(NaoLights, "NaoLights", "A server of one's own in place of the launched one."))
+"""
+ROOM_MADE = "another node took the name /NaoLights: this one is started again when that one has ended"
 KILLS = amount(6, 18)
 """Of the first kinds; `test/soak/kills.py` takes all of them, and with `--kills 100` some again."""
 
@@ -37,7 +44,7 @@ def test_what_a_killed_node_was_doing_ends_and_the_node_comes_back(tmp_path):
     assert [each for each in records if None in (each["still"], each["ended"], each["works"])] == []
 
 
-def test_a_simulator_that_was_killed_comes_back_and_one_that_was_switched_off_does_not(tmp_path):
+def test_what_is_killed_or_makes_room_comes_back_and_a_simulator_that_was_switched_off_does_not(tmp_path):
     folders = dict.fromkeys(("ROS_HOME", "ROS_LOG_DIR"), str(tmp_path))
     arguments = {"driver": "false", "record_dir": str(tmp_path), "sim_time": "true"}
     with OwnStack(tmp_path / "stack.txt", arguments) as stack:
@@ -46,6 +53,12 @@ def test_a_simulator_that_was_killed_comes_back_and_one_that_was_switched_off_do
         def lights_work():
             command = ["nao", "leds", "FaceLeds", "green"]
             return subprocess.run(command, env=environment, capture_output=True, timeout=LIMIT).returncode == 0
+
+        def pid_of(name):
+            try:
+                return ServerProxy(rosgraph.Master("/test", stack.master_uri).lookupNode(name)).getPid("/test")[2]
+            except (rosgraph.MasterError, OSError):
+                return 0
 
         stack.wait_for_robot()
         wait_until(lights_work, LIMIT, "lights")
@@ -61,6 +74,14 @@ def test_a_simulator_that_was_killed_comes_back_and_one_that_was_switched_off_do
         master = rosgraph.Master("/test", stack.master_uri)
         assert master.getParam("/use_sim_time") is True
         assert master.getParam("/nao_sim/bound_port") == stack.nao_port  # set to 0 by the second launch file
+
+        rooms_made = stack.log.read_text().count(ROOM_MADE)
+        command = [sys.executable, "-c", OWN_SERVER, "--pport", str(stack.nao_port)]
+        with subprocess.Popen(command, env=environment) as own:
+            wait_until(lambda: stack.log.read_text().count(ROOM_MADE) > rooms_made, LIMIT, "a server that makes room")
+            wait_until(lambda: pid_of("/NaoLights") == own.pid and lights_work(), LIMIT, "lights of the own server")
+            own.send_signal(signal.SIGINT)
+        wait_until(lambda: pid_of("/NaoLights") not in (0, own.pid) and lights_work(), LIMIT, "the launched server")
 
         session = qi.Session()
         session.connect(f"tcp://127.0.0.1:{stack.nao_port}")

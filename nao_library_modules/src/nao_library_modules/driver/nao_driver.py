@@ -16,7 +16,7 @@ from ..base.suggestion import did_you_mean
 from ..robot.robot import Robot
 from ..ros.driver_types import require_types
 from ..ros.health import Level, Report, connection_report
-from ..ros.node import own_as_node, robot_address, start_node, take_patience
+from ..ros.node import NodeProcess, own_as_node, robot_address, take_patience
 from ..ros.node_interface import NodeInterface
 from ..ros.part_names import PartNames
 from .base.driver_node import keep
@@ -160,9 +160,7 @@ class Driver:
 
 
 def run(description: str, argv: Sequence[str] | None = None) -> int:
-    """Start the node and keep it until it ends; returns the exit status.
-
-    A launched node whose name another node takes comes back when that one has ended.
+    """Start the node and keep it until it ends, see `NodeProcess`; returns the exit status.
 
     ROS API:
         Parameters `~pip`, `~pport`: the robot; `patience`, see `take_patience`; `nao_driver/messages`, see
@@ -170,10 +168,10 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
         `/diagnostics`. Each part has the topics, services, actions and parameters that it has as a node of its own,
         under the same names.
     """
-    options = start_node(NAME, description, argv)
+    process = NodeProcess(NAME, description, argv)
     try:
         require_types()
-        ip, port = robot_address(options, rospy.get_param)
+        ip, port = robot_address(process.options, rospy.get_param)
         words = chosen(rospy.get_param("~parts", ALL))
         robot = Robot(ip, port)
         take_patience(robot)
@@ -182,5 +180,5 @@ def run(description: str, argv: Sequence[str] | None = None) -> int:
         return 1
     own_as_node(robot, watches=bool(rospy.get_param("~watches", False)))
     driver = Driver(robot, words, PartNames())
-    keep(robot, driver.reports, driver.close)
+    keep(process, robot, driver.reports, driver.close)
     return 0

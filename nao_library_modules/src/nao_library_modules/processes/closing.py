@@ -50,12 +50,14 @@ def _name(step: Step) -> str:
     return getattr(step, "__qualname__", repr(step))
 
 
-def exit_in_time(limit: float = EXIT_LIMIT) -> None:
-    """End the process after `limit` s, even if threads still wait."""
+def exit_in_time(limit: float = EXIT_LIMIT) -> threading.Timer:
+    """End the process after `limit` s, even if threads still wait. Returns the timer, which can be cancelled."""
 
     def end() -> None:
-        time.sleep(limit)
         print(f"the end took longer than {limit:g} s: something hangs, and is cut off", file=sys.stderr, flush=True)
         os._exit(1)
 
-    threading.Thread(target=end, name="limit of the end", daemon=True).start()
+    timer = threading.Timer(limit, end)
+    timer.name, timer.daemon = "limit of the end", True
+    timer.start()
+    return timer

@@ -34,7 +34,7 @@ from ..functions.joint_trajectory import KeyFrames
 from ..nao.pose_tables import built_in
 from ..owners.line import SERVICE
 from .driver_calls import DriverAction, DriverCall, GoalCall, ServiceCall
-from .master_watch import GONE
+from .master_api import GONE
 from .robot_frames import pose_of, tf_prefix
 
 log = logging.getLogger(__name__)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -15,6 +17,7 @@ import rospy
 
 from naoqi.errors import NaoError
 from naoqi.limits import DEFAULT_TIMING, SERVER_PATIENCE, Timing
+from naoqi.registry import close_all as close_connections
 
 from ..base.field_checks import number_parameter
 from ..base.limits import limit
@@ -22,8 +25,7 @@ from ..owners.host import watch_owners
 from ..owners.line import OwnerLine
 from ..processes.closing import exit_in_time
 from .goal_tracker import GoalTracker
-from .master_watch import MasterWatch
-from .node_place import TAKEN, NodePlace, wait_for_name
+from .master_api import MasterCheck, node_runs
 from .server_node import forward_logs
 from .startup_grace import require_start_patience
 
@@ -36,6 +38,10 @@ PORT_PERIOD = 0.2
 TOLD_AFTER = 10.0
 """s of waiting after which that is in the log."""
 FORWARDED_LOGGERS = ("naoqi", "nao_library_modules")
+LAUNCHED = "__log:="
+"""How an argument begins that roslaunch gives to its nodes, and nobody else does."""
+NAME_PERIOD = 1.0
+"""s between two looks whether the node's name is free."""
 SERVER = "NaoLights"
 """Whose parameters tell which robot the nodes of a namespace are for."""
 
@@ -124,17 +130,15 @@ def run_module(
     parameters: Mapping[str, Any] | None = None,
     watches: bool = False,
 ) -> int:
-    """Start a module as a node and keep it until the node ends.
-
-    A launched node whose name another node takes comes back when that one has ended.
+    """Start a module as a node and keep it until the node ends; see `NodeProcess`.
 
     Args:
         name: Default name of the node.
         description: What `--help` says.
         argv: Arguments, those of the process by default.
         parameters: Name -> default of further private parameters, which the module takes by name.
-        watches: Whether the node stops what nodes that have died left going, and tells a new ROS master of all nodes;
-            for nodes that set nothing going themselves.
+        watches: Whether the node stops what nodes that have died left going, and says when the ROS master is gone; for
+            nodes that set nothing going themselves.
 
     Returns:
         Exit status.
@@ -144,9 +148,9 @@ def run_module(
         file to start with the module. `~start_patience`: s from the start for which goals wait for a robot that
         has never been reached (default 30). `patience`: see `take_patience`.
     """
-    options = start_node(name, description, argv)
+    process = NodeProcess(name, description, argv)
     try:
-        ip, port = robot_address(options, rospy.get_param)
+        ip, port = robot_address(process.options, rospy.get_param)
         with being_made(name):
             made = module(
                 ip,
@@ -161,27 +165,48 @@ def run_module(
         rospy.logfatal("%s", error)
         return 1
     own_as_node(made.robot, watches)
-    place = NodePlace()
-    rospy.spin()
-    place.come_back()
+    process.spin()
     return 0
 
 
-def start_node(name: str, description: str, argv: Sequence[str] | None) -> argparse.Namespace:
-    """Make this process a node that ends in time and whose log has what the libraries tell.
+class NodeProcess:
+    """This process as a node: it ends in time, and its log has what the libraries log.
 
-    A launched node whose name another node takes waits here until that one has ended. Returns what `robot_parser` gives
-    for the arguments.
+    The master shuts a node down whose name another one takes, such as a server of a user's in place of a launched one.
+    A process that roslaunch started waits then until the other one has ended, and ends: roslaunch starts it again.
+
+    Attributes:
+        options: What `robot_parser` gives for the arguments.
     """
-    options = robot_parser(description).parse_args(rospy.myargv(argv)[1:])
-    waited_for = wait_for_name()
-    end_in_time()  # before rospy's own hook, which hangs where Ctrl-C comes while the node talks to the master
-    with being_made(name):
-        rospy.init_node(name)
-    if waited_for:
-        rospy.logwarn("the name %s is free again: this node is back", waited_for)
-    forward_logs(*FORWARDED_LOGGERS)
-    return options
+
+    def __init__(self, name: str, description: str, argv: Sequence[str] | None) -> None:
+        self.options = robot_parser(description).parse_args(rospy.myargv(argv)[1:])
+        self._exit: threading.Timer | None = None
+        # Before rospy's own hook, which hangs where Ctrl-C comes while the node talks to the master.
+        rospy.core.add_preshutdown_hook(self._on_shutdown)
+        with being_made(name):
+            rospy.init_node(name)
+        forward_logs(*FORWARDED_LOGGERS)
+
+    def spin(self) -> None:
+        """Wait until the node has ended; in a launched process, also until no other node has its name. Main thread."""
+        name, own = rospy.get_name(), rospy.get_node_uri()
+        rospy.spin()
+        if not any(argument.startswith(LAUNCHED) for argument in sys.argv) or not node_runs(name, but=own):
+            return
+        # Not to /rosout: the topics are closed.
+        text = f"another node took the name {name}: this one is started again when that one has ended"
+        print(text, file=sys.stderr, flush=True)
+        for number in (signal.SIGINT, signal.SIGTERM):  # rospy's handlers only end the node
+            signal.signal(number, signal.SIG_DFL)
+        if self._exit is not None:
+            self._exit.cancel()
+        close_connections()
+        while node_runs(name, but=own):
+            time.sleep(NAME_PERIOD)
+
+    def _on_shutdown(self, _reason: str) -> None:
+        self._exit = exit_in_time()
 
 
 @contextmanager
@@ -203,7 +228,7 @@ def own_as_node(robot: Any, watches: bool) -> None:
     own_goals(robot.owners)
     if watches:
         watch_owners(robot)
-        rospy.on_shutdown(MasterWatch(rosgraph.get_master_uri(), rospy.get_name()).close)
+        rospy.on_shutdown(MasterCheck(rosgraph.get_master_uri(), rospy.get_name()).close)
 
 
 def own_goals(owners: OwnerLine) -> None:
@@ -213,8 +238,8 @@ def own_goals(owners: OwnerLine) -> None:
 
 
 def end_in_time() -> None:
-    """See that this process ends soon after its node; one whose name was taken begins anew instead."""
-    rospy.core.add_preshutdown_hook(lambda reason: TAKEN in reason or exit_in_time())
+    """See that this process ends soon after its node."""
+    rospy.core.add_preshutdown_hook(lambda _: exit_in_time())
 
 
 def robot_beside(name: str, default: Any) -> Any:

@@ -14,8 +14,7 @@ import rospy
 from rosgraph.xmlrpc import XmlRpcHandler, XmlRpcNode
 from std_srvs.srv import Trigger, TriggerResponse
 
-from .master_watch import GONE
-from .node_place import in_use
+from .master_api import GONE, node_runs
 
 log = logging.getLogger(__name__)
 
@@ -52,7 +51,7 @@ class PartNames:
         node = rospy.get_name()
         service = f"{name}{PART_OF}{node.rpartition('/')[2]}"
         try:
-            if in_use(name) or not self._answers.ready.wait(START_LIMIT):
+            if node_runs(name) or not self._answers.ready.wait(START_LIMIT):
                 return
             rospy.Service(service, Trigger, lambda _: TriggerResponse(True, _listed(name, node, offered)))
             master = rosgraph.Master(name)

@@ -9,7 +9,7 @@ from typing import Any
 import rospy
 
 from ...functions.server_types import servers_among, those_in
-from ...ros.master_watch import GONE
+from ...ros.master_api import GONE
 
 FRESH, PATIENCE = 1.0, 0.5
 """s of this computer: for which an answer is good, and for which one is waited."""

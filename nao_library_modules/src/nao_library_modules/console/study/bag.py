@@ -17,7 +17,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ...ros.master_watch import GONE, Api, Refused
+from ...ros.master_api import GONE, Api, Refused
 from ..robots.waits import within
 
 LONGEST = "4h"

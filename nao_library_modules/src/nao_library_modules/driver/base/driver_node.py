@@ -20,9 +20,8 @@ from ...ros.concurrent_action_server import ConcurrentActionServer
 from ...ros.diagnostics import DiagnosticsPublisher, Reports
 from ...ros.driver_types import require_types
 from ...ros.health import connection_report
-from ...ros.node import being_made, own_as_node, robot_address, start_node, take_patience
+from ...ros.node import NodeProcess, being_made, own_as_node, robot_address, take_patience
 from ...ros.node_interface import AlreadyOffered, NodeInterface
-from ...ros.node_place import NodePlace
 from ...ros.robot_frames import tf_prefix
 
 
@@ -78,9 +77,7 @@ def run_driver(
     argv: Sequence[str] | None = None,
     watches: bool = False,
 ) -> int:
-    """Start a driver node and keep it until it ends; returns the exit status.
-
-    A launched node whose name another node takes comes back when that one has ended.
+    """Start a driver node and keep it until it ends, see `NodeProcess`; returns the exit status.
 
     Args:
         make: Makes the node's object for a robot, which need not be there yet, and a side to ROS: it has `close()`, and
@@ -94,10 +91,10 @@ def run_driver(
         Parameters `~pip`, `~pport`: the robot; `patience`, see `take_patience`; `nao_driver/messages`, see
         `driver_types`. Publishes `/diagnostics`.
     """
-    options = start_node(name, description, argv)
+    process = NodeProcess(name, description, argv)
     try:
         require_types()
-        ip, port = robot_address(options, rospy.get_param)
+        ip, port = robot_address(process.options, rospy.get_param)
         robot = Robot(ip, port)
         take_patience(robot)
         with being_made(name):
@@ -107,17 +104,17 @@ def run_driver(
         return 1
     own_as_node(robot, watches)
     reports = {"robot": lambda: connection_report(robot.address, robot.connection), **node.reports()}
-    keep(robot, reports, node.close)
+    keep(process, robot, reports, node.close)
     return 0
 
 
-def keep(robot: Robot, reports: Reports | Callable[[], Reports], close: Callable[[], object]) -> None:
+def keep(
+    process: NodeProcess, robot: Robot, reports: Reports | Callable[[], Reports], close: Callable[[], object]
+) -> None:
     """Publish diagnostics as DiagnosticsPublisher takes them until the node ends, then close."""
     diagnostics = DiagnosticsPublisher(robot.address, reports)
     rospy.on_shutdown(lambda: close_all(close, diagnostics.close))
-    place = NodePlace()
-    rospy.spin()
-    place.come_back()
+    process.spin()
 
 
 def _made(make: Callable[[Robot, NodeInterface], Any], robot: Robot) -> Any:
