@@ -240,7 +240,7 @@ def test_joints_are_wanted_by_who_listens_and_not_by_the_node_that_makes_frames_
     states = NaoJointStates(robot, node)
 
     def wanted():
-        return states.reports()["readings"]().message != "nobody listens"
+        return states.reports()["readings"]().message != "no subscriber"
 
     try:
         assert not wanted()

@@ -20,7 +20,7 @@ from naoqi.errors import NaoError
 def test_parts_are_chosen_by_their_words_in_the_order_of_the_table():
     assert chosen("all") == list(PARTS) == chosen(["all"])
     assert chosen("walker joint_states") == ["joint_states", "walker"]
-    for words, text in (("", "~parts is empty"), ("wlaker", "no part 'wlaker': did you mean 'walker'")):
+    for words, text in (("", "~parts is empty"), ("wlaker", "part 'wlaker' not found: did you mean 'walker'")):
         with pytest.raises(NaoError, match=text):
             chosen(words)
 
@@ -93,7 +93,7 @@ def test_a_part_that_cannot_be_started_is_tried_again_and_told_of_while_the_othe
         Level.OK, "runs", {"failed attempts": str(walker._attempts)}
     )
     told = [record.getMessage() for record in caplog.records if "nao_walker" in record.getMessage()]
-    assert told[0] == "nao_walker is not there: ~cmd_vel_timeout is 'soon': 0 to 3600 s" and len(told) <= 2, "once"
+    assert told[0] == "nao_walker cannot be started: ~cmd_vel_timeout is 'soon': 0 to 3600 s" and len(told) <= 2, "once"
 
 
 def test_a_part_has_names_of_its_own_and_what_a_failed_one_has_made_is_taken_back(parts):

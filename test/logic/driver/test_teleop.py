@@ -159,7 +159,7 @@ def test_a_velocity_is_repeated_until_the_gamepad_is_silent_or_goes_away(pad):
     assert pad.heads[-1] == pytest.approx((0.5 * 2.0943, 0.0)) and sum(each.is_zero for each in sent) == 1
     pad.move(x=1.0)
     pad.publishers = 0
-    soon(lambda: "nobody publishes /joy" in pad.node.report().message and sent[-1].is_zero)
+    soon(lambda: "no publisher of /joy" in pad.node.report().message and sent[-1].is_zero)
     for button in (INIT, CROUCH, ENABLE):
         pad.move([button])
         pad.move()

@@ -54,7 +54,7 @@ def ours(video):
 
 
 def test_pictures_come_with_their_times_while_somebody_looks(stream, robot, video, seen, until, eventually):
-    assert stream.report().message == "nobody looks" and not ours(video)
+    assert stream.report().message == "no subscriber" and not ours(video)
     stream.want(True)
     until(lambda: seen, step=1 / 60)
     report = stream.report()

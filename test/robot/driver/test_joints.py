@@ -171,7 +171,7 @@ def test_what_is_wanted_is_tried_again_until_it_works_and_started_anew_when_it_d
 def test_sonars_measure_only_while_somebody_listens_and_after_a_loss(robot, driver_robot, clock, until, closing):
     told = []
     sonars = closing(Sonars(driver_robot, "ros_nao_sonar", 20.0, clock, told.append))
-    assert sonars.report().message == "nobody listens"
+    assert sonars.report().message == "no subscriber"
     sonars.want(True)
     begin = robot.now.time
     until(lambda: len(told) > 8, step=0.02)
@@ -224,7 +224,7 @@ def test_keys_are_found_by_name_and_pattern_and_written_as_they_are(robot, drive
     assert access.values(keys) == list(range(1200)) and access.values([]) == []
     assert access.find("Mine/119?") == {f"Mine/119{i}": 1190 + i for i in range(10)}
     assert access.find("Mine/5") == {"Mine/5": 5} and access.values(["Never"]) == [None]
-    for pattern, words in (("Mine/x", "there is no key 'Mine/x'"), ("x*", "no key is like"), ("", "empty")):
+    for pattern, words in (("Mine/x", "key 'Mine/x' not found"), ("x*", "no key matches"), ("", "empty")):
         with pytest.raises(BadGoal, match=words):
             access.find(pattern)
     with pytest.raises(BadGoal, match=f"did you mean '{FRONT}'"):
@@ -327,7 +327,7 @@ def test_every_change_of_every_touch_sensor_is_told_once(robot, driver_robot, cl
     robot.server.press(["Head/Touch/Front"])
     robot.advance(0.1)
     sensors = closing(TouchSensors(driver_robot, lambda s, now: told.append((s.place, s.number, now)), told.append))
-    eventually(lambda: sensors.report().message == "touches are told")
+    eventually(lambda: sensors.report().message == "touches are published")
     assert set(told) == {(HEAD, 1, True), (FEET, 0, True)}  # how it is at the beginning
     told.clear()
     for pressed in (["LHand/Touch/Left", "RFoot/Bumper/Right"], []):

@@ -32,7 +32,7 @@ def test_blocks_come_while_somebody_listens_with_samples_times_and_places(
 ):
     blocks = []
     microphone = closing(Microphone(driver_robot, "ros_naoqi_microphone", clock, blocks.append))
-    assert microphone.report().message == "nobody listens"
+    assert microphone.report().message == "no subscriber"
     microphone.want(True)
     eventually(lambda: microphone.report().message == "heard")
     robot.post("ALAudioDevice", "playSine", 1000, 80, 0, 2.0)
@@ -49,7 +49,7 @@ def test_blocks_come_while_somebody_listens_with_samples_times_and_places(
     until(lambda: blocks[-1].rate == 48000)
     assert (len(blocks[-1].places), len(blocks[-1].samples)) == (4, 4 * 8160)
     microphone.want(False)
-    eventually(lambda: microphone.report().message == "nobody listens")
+    eventually(lambda: microphone.report().message == "no subscriber")
     robot.advance(0.5)
     count = len(blocks)
     robot.advance(1.0)
@@ -112,7 +112,7 @@ def test_sounds_are_located_only_while_somebody_listens_and_once_after_a_loss(ro
     directions = closing(SoundDirections(driver_robot, "ros_nao_audio", 0.8, found.append))
     subscribers = robot.ALSoundLocalization.getSubscribersInfo
     robot.ALMemory.raiseEvent("ALSoundLocalization/SoundLocated", event)
-    assert not subscribers() and directions.report().message == "nobody listens"
+    assert not subscribers() and directions.report().message == "no subscriber"
     directions.want(True)
     eventually(lambda: directions.report().message == "sounds are located")
     assert [name for name, *_ in subscribers()] == ["ros_nao_audio"]
@@ -241,7 +241,7 @@ def test_it_listens_for_the_vocabulary_until_it_is_stopped(recognition, robot, s
         recognition.stop()
     assert listeners(robot) == [] and robot.ALSpeechRecognition.getAudioExpression() is beeps
     settings[0] = SpeechSettings()
-    with pytest.raises(NaoError, match="no vocabulary"):
+    with pytest.raises(NaoError, match="vocabulary is empty"):
         recognition.start()
     assert recognition.report().message == "does not listen" and listeners(robot) == []
     recognition.apply()  # while it does not listen a vocabulary waits

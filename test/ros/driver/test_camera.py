@@ -137,7 +137,7 @@ class DriverCamera(unittest.TestCase):
         self.wait_for_nobody()
         counts = []
         for _ in range(3):  # one that is under way still comes after the first
-            counts.append(self.reports.values("nao_camera: camera bottom", "nobody looks")["pictures"])
+            counts.append(self.reports.values("nao_camera: camera bottom", "no subscriber")["pictures"])
             self.robot.advance(1.0)
         self.assertEqual(counts[1], counts[2])
 
@@ -150,7 +150,7 @@ class DriverCamera(unittest.TestCase):
         told = lambda status: {entry.key: entry.value for entry in status.values}  # noqa: E731
         with Look(FOLDERS[TOP]) as look:
             look.now()
-            measured = lambda status: status.message != "nobody looks" and told(status)["rate reached (1/s)"]  # noqa: E731
+            measured = lambda status: status.message != "no subscriber" and told(status)["rate reached (1/s)"]  # noqa: E731
             report = self.reports.wait("nao_camera: camera top", measured)
         self.assertRegex(report.message, "^(pictures come|only .* of 15 pictures a second)$")  # as the computer can
         values = told(report)

@@ -134,7 +134,7 @@ class DriverSound(unittest.TestCase):
             pass
         counts = []
         for _ in range(3):  # blocks that are under way still come after the first
-            counts.append(self.reports.values(f"{MICROPHONE}: microphones", "nobody listens")["blocks"])
+            counts.append(self.reports.values(f"{MICROPHONE}: microphones", "no subscriber")["blocks"])
             self.robot.advance(2.0)
         self.assertEqual(counts[1], counts[2])
 

@@ -64,7 +64,7 @@ class DriverSpeechWords(unittest.TestCase):
         heard = []
         subscriber = rospy.Subscriber("word_recognized", WordRecognized, heard.append)
         self.addCleanup(subscriber.unregister)
-        self.assertIn("no vocabulary", self.call("start_recognition"))
+        self.assertIn("vocabulary is empty", self.call("start_recognition"))
         run = self.set_vocabulary("yes", "no", "good morning", "robot")
         self.assertEqual((run.state, run.result.success), (GoalStatus.SUCCEEDED, True), run.text)
         self.assertEqual(self.call("start_recognition"), "")

@@ -52,13 +52,13 @@ ALL = "all"
 def chosen(words: str | Sequence[str]) -> list[str]:
     """The named parts, in the order of the table: words between blanks, or a list of them; "all" stands for all.
 
-    Raises NaoError if there is no such part, or none is named.
+    Raises NaoError if a part is unknown, or none is named.
     """
     named = words.split() if isinstance(words, str) else list(words)
     for word in named:
         if word not in PARTS and word != ALL:
             hint = did_you_mean(str(word), PARTS)
-            raise NaoError(f"~parts: there is no part {word!r}{hint}; there are {ALL}, {', '.join(PARTS)}")
+            raise NaoError(f"~parts: part {word!r} not found{hint}; known are {ALL}, {', '.join(PARTS)}")
     if not named:
         raise NaoError(f"~parts is empty: {ALL}, or some of {', '.join(PARTS)}")
     return [part for part in PARTS if ALL in named or part in named]
@@ -85,7 +85,7 @@ class DriverPart:
         self._robot = robot
         self._names = names
         self._ended = threading.Event()
-        self._problem = "it is being started"
+        self._problem = "starting"
         self._attempts = 0
         self._made: Any = None
         self._thread = threading.Thread(target=self._start, name=f"start of {word}", daemon=True)
@@ -128,7 +128,7 @@ class DriverPart:
     def _failed(self, error: Exception) -> None:
         problem = str(error) if isinstance(error, NaoError) else f"unexpected error: {error!r}"
         if problem != self._problem:  # of several in a row only the first
-            log.error("%s is not there: %s", self.name, problem, exc_info=not isinstance(error, NaoError))
+            log.error("%s cannot be started: %s", self.name, problem, exc_info=not isinstance(error, NaoError))
         self._problem = problem
         self._attempts += 1
 
@@ -150,7 +150,7 @@ class Driver:
         return reports
 
     def close(self) -> None:
-        """End all parts, at the same time: each may take a moment until the robot stands, or is silent."""
+        """Close all parts at the same time: each may take a moment until the robot stands, or is silent."""
         ends = [threading.Thread(target=part.close, name=f"end of {part.name}") for part in self.parts]
         for end in ends:
             end.start()

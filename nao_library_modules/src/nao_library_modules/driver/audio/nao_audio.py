@@ -123,7 +123,7 @@ class AudioPlayer:
         run_task(call, self._interrupt, lambda: self._ask(PLAYER, "stopAll"))
 
     def record(self, request: RecordingRequest) -> None:
-        """Record the microphones until the time is over.
+        """Record the microphones for the time of the request.
 
         Raises:
             NaoError: If the robot cannot, or if a recording is under way.
@@ -176,7 +176,7 @@ class AudioPlayer:
         return self._robot.proxy(module).call_async(method, *arguments).result(timeout=limit)
 
 
-STATES = ("nobody listens", "sounds are located", "sounds cannot be located")
+STATES = ("no subscriber", "sounds are located", "sounds cannot be located")
 LOCALISATION_KINDS = [
     ExtractorKind("sound localisation", module, f"{module}/SoundLocated", states=STATES)
     for module in ("ALSoundLocalization", "ALAudioSourceLocalization")
@@ -224,7 +224,7 @@ class SoundDirections(Extractor):
             sink: Gets each direction, in a thread of libqi.
         """
         self._sensitivity = sensitivity
-        self._tell = sink
+        self._on_direction = sink
         super().__init__(robot, LOCALISATION_KINDS[0], subscriber, self._take, self._set_up)
 
     def _set_up(self) -> None:
@@ -249,7 +249,7 @@ class SoundDirections(Extractor):
     def _take(self, value: Any) -> None:
         direction = read_direction(value)
         if direction is not None:
-            self._tell(direction)
+            self._on_direction(direction)
 
 
 TORSO = "torso"
@@ -261,7 +261,7 @@ class NaoAudioServices:
     """Sound of one robot, under the names of nao_interaction.
 
     File names are relative to the home of the robot's user; for the simulator that is its `record_dir`. What goes
-    wrong is the error of the service that was called: the others go on.
+    wrong is the error of the service that was called: the others continue.
 
     ROS API (relative names):
         Services `nao_audio/play_file` (nao_library_msgs/AudioPlayback: answers when the file was played),
@@ -269,7 +269,7 @@ class NaoAudioServices:
         (nao_library_msgs/SetAudioMasterVolume), `nao_audio/get_master_volume` (nao_library_msgs/GetAudioMasterVolume).
         Publishes `nao_audio/audio_source_localization` (nao_library_msgs/AudioSourceLocalization: direction in the
         frame of the head, and the pose of the head in the frame of the header, the torso); sounds are located only
-        while somebody listens.
+        while it has subscribers.
         Parameter `~sensitivity` (-1): of the localisation, 0 to 1; -1: what the robot has.
     """
 

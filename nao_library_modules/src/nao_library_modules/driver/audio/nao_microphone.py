@@ -152,7 +152,7 @@ class SoundReceiver(ALModule):
 class Microphone:
     """Blocks of sound while they are wanted, also after a lost connection.
 
-    The robot has to reach this computer for it. If it cannot, the report and the log say so.
+    The robot has to reach this host for it. If it cannot, the report and the log say so.
     """
 
     def __init__(self, robot: Any, name: str, clock: Any, sink: Callable[[Block], None]) -> None:
@@ -197,7 +197,7 @@ class Microphone:
                 "blocks": str(self._count),
                 "lost blocks": str(self._blocks.lost),
             }
-        report = self._hearing.report("nobody listens", "heard", "the microphones cannot be heard", values)
+        report = self._hearing.report("no subscriber", "heard", "the microphones cannot be heard", values)
         if self._silent and report.level is Level.OK and self._hearing.wanted:
             return Report(Level.ERROR, self._silence(), report.values)
         return report
@@ -258,7 +258,7 @@ class Microphone:
         return False
 
     def _silence(self) -> str:
-        where = f"{self._broker.getIP()}:{self._broker.getPort()}" if self._broker is not None else "this computer"
+        where = f"{self._broker.getIP()}:{self._broker.getPort()}" if self._broker is not None else "this host"
         return f"no sound comes from the microphones: the robot has to reach this program at {where}"
 
     def _note_life(self) -> None:
@@ -284,7 +284,7 @@ QUEUE = 50
 
 
 class NaoMicrophone:
-    """Publishes blocks of 170 ms while somebody listens; otherwise the robot sends nothing.
+    """Publishes blocks of 170 ms while it has subscribers; otherwise the robot sends nothing.
 
     ROS API:
         Publishes `~audio_raw` (nao_library_msgs/AudioBuffer), stamped with the time of its first sample.

@@ -46,7 +46,7 @@ class WordRecognition:
         Args:
             subscriber: Name of the subscriber at the robot.
             settings: Gives vocabulary and expressions.
-            sink: Gets recognised words, whoever has started the recognition; in a thread of libqi.
+            sink: Gets recognised words, also of a recognition that another client started; in a thread of libqi.
         """
         self._robot = robot
         self._subscriber = subscriber
@@ -60,10 +60,10 @@ class WordRecognition:
         self._hearing.want(True)
 
     def start(self) -> None:
-        """Begin to listen; go on after a lost connection. No effect if it listens.
+        """Start listening, again after a lost connection. No effect if it listens.
 
         Raises:
-            NaoError: If there is no vocabulary, the robot cannot be asked, or another subscriber uses the recognition.
+            NaoError: If the vocabulary is empty, the robot cannot be asked, or another subscriber uses the recognition.
         """
         self._listening.start_now()
 
@@ -99,7 +99,7 @@ class WordRecognition:
     def _begin(self) -> None:
         settings = self._settings()
         if not settings.vocabulary:
-            raise NaoError("there is no vocabulary: set ~vocabulary, or send one to speech_vocabulary_action")
+            raise NaoError("the vocabulary is empty: set ~vocabulary, or send one to speech_vocabulary_action")
         owners = [info[0] for info in self._ask("getSubscribersInfo")]
         if self._subscriber in owners:  # left over from a process that was killed
             self._ask("unsubscribe", self._subscriber)

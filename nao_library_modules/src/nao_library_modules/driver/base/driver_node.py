@@ -26,23 +26,23 @@ from ...ros.robot_frames import tf_prefix
 
 
 class LazyTopic(rospy.SubscribeListener):
-    """Calls a function, which must not wait, when some topics get their first listener, and when the last one leaves.
+    """Calls a function, which must not wait, when some topics get their first subscriber, and when the last one leaves.
 
-    Callbacks come from threads of rospy, sometimes out of order: so each counts the listeners, under a lock.
+    Callbacks come from threads of rospy, sometimes out of order: so each counts the subscribers, under a lock.
 
     Attributes:
-        listened: Whether somebody listens, as last reported.
+        listened: Whether there are subscribers, as last reported.
     """
 
     def __init__(self, report: Callable[[bool], None], *publishers: rospy.Publisher, but: Collection[str] = ()) -> None:
-        """`but` has the full names of nodes whose listening does not count."""
+        """`but` has the full names of nodes whose subscriptions do not count."""
         super().__init__()
         self._report = report
         self._publishers = publishers
         self._but = but
         self._lock = threading.Lock()
         self.listened = False
-        # Not in the constructor of the publisher: the first listener would find none.
+        # Not in the constructor of the publisher: the first subscriber would find none.
         for publisher in publishers:
             publisher.impl.add_subscriber_listener(self)
         self._look()
@@ -62,7 +62,7 @@ class LazyTopic(rospy.SubscribeListener):
 
 
 def listeners(publisher: rospy.Publisher) -> list[str]:
-    """Full names of the nodes that listen to a topic; none to one that was taken back."""
+    """Full names of the nodes that subscribe to a topic; none of one that was unregistered."""
     return [node for _, node, *_ in publisher.impl.get_stats_info()] if publisher.impl else []
 
 

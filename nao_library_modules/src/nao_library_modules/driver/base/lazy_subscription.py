@@ -192,7 +192,7 @@ MEMORY = "ALMemory"
 
 @dataclass(frozen=True)
 class ExtractorKind:
-    """A module of the robot that detects something, and what it tells of it."""
+    """A module of the robot that detects something, and where its values are."""
 
     name: str  # for people
     module: str

@@ -51,17 +51,17 @@ class Rate:
 WINDOW = 3.0
 """s that the rate is measured over."""
 SLOW, SLOW_FOR = 0.8, 3.0
-"""Share of the rate asked for below which it is not kept, and how long it has to stay there, s, until that is told."""
+"""Share of the rate asked for below which it is not kept, and how long it stays there, s, until that is logged."""
 KEPT, KEPT_FOR = 0.9, 10.0
-"""Share from which on it is kept again, and how long, s, until that is told: a rate at a bound does not flap."""
+"""Share from which on it is kept again, and how long, s, until that is logged: a rate at a bound does not flap."""
 GAP = 1.5
 """Periods between two of them from which on some are missing."""
 
 
 class RateMeter:
-    """Counts what comes at a rate, and says once in the log when the rate is not kept, and once when it is again.
+    """Counts what comes at a rate, and logs once when the rate is not kept, and once when it is again.
 
-    Whoever delivers it leaves out what it cannot deliver in time. All times are those of one clock: ROS time, or the
+    The source leaves out what it cannot deliver in time. All times are those of one clock: ROS time, or the
     robot's. Any thread may call.
 
     Attributes:
@@ -76,12 +76,12 @@ class RateMeter:
         self._name = name
         self._what = what
         self._lock = threading.Lock()
-        self._begin_anew()
+        self._reset()
 
     def restart(self) -> None:
-        """Begin another stream: the time until the next one comes is no gap, and nothing is told of the former."""
+        """Begin another stream: the time until the next one comes is no gap, and the former stream is not judged."""
         with self._lock:
-            self._begin_anew()
+            self._reset()
 
     def note(self, time: float, asked: float) -> None:
         """Count one that came at `time`, s; `asked`, Hz, is the rate that should be kept."""
@@ -97,7 +97,7 @@ class RateMeter:
             while self._times[-1] - self._times[0] > WINDOW and len(self._times) > 2:
                 self._times.popleft()
             news = self._judge(time, asked)
-        if news:  # without the lock: who listens to the log may take its time
+        if news:  # without the lock: handlers of the log may take their time
             log.log(*news)
 
     @property
@@ -118,10 +118,10 @@ class RateMeter:
 
     # --- under the lock -------------------------------------------------------------------------------------------
 
-    def _begin_anew(self) -> None:
+    def _reset(self) -> None:
         self._times: deque[float] = deque()
         self._slow = False
-        self._since: float | None = None  # when the rate began to be other than what was told last, s
+        self._since: float | None = None  # when the rate began to be other than what was logged last, s
 
     def _rate(self) -> float | None:
         span = self._times[-1] - self._times[0] if self._times else 0.0
@@ -153,13 +153,13 @@ RETRY = 0.5
 
 
 class Polling:
-    """Readings at an even rate, in a thread of its own that sleeps while nobody wants any."""
+    """Readings at an even rate, in a thread of its own that sleeps while none are wanted."""
 
     def __init__(self, robot: Any, name: str, rate: float, clock: Any, read: Callable[[], None]) -> None:
         """Nothing is wanted yet.
 
         `read` asks the robot for what `name` says and hands on its answer, in the thread of this object, at `rate` Hz
-        of the clock (WallClock or RosClock). Readings that are late are left out; see RateMeter for what is told then.
+        of the clock (WallClock or RosClock). Readings that are late are left out; RateMeter logs that.
         """
         self._robot = robot
         self._name = name
@@ -167,7 +167,7 @@ class Polling:
         self._period = 1.0 / rate
         self._clock = clock
         self._read = read
-        self._interrupt = CancellationToken()  # ends a wait when nobody wants readings any more, or for good
+        self._interrupt = CancellationToken()  # ends a wait when readings are no longer wanted, or for good
         self._condition = threading.Condition()
         self._wanted = False
         self._closed = False
@@ -192,7 +192,7 @@ class Polling:
             "missed readings": str(self._meter.missed),
         }
         if not self._wanted:
-            return Report(Level.OK, "nobody listens", values)
+            return Report(Level.OK, "no subscriber", values)
         if self._problem:
             return Report(Level.ERROR, f"the {self._name} cannot be read: {self._problem}", values)
         slow = self._meter.problem(self._asked)
@@ -226,7 +226,7 @@ class Polling:
                 if self._problem != self._logged:  # of several in a row only the first
                     log.warning("the %s cannot be read: %s", self._name, self._problem)
                     self._logged = self._problem
-            except Exception as error:  # a mistake in here must not leave a node that lives and says nothing
+            except Exception as error:  # a mistake in here must not leave a node that runs and publishes nothing
                 self._problem = f"unexpected error: {error!r}"
                 log.exception("the %s cannot be read", self._name)
             self._interrupt.wait(RETRY)
@@ -234,7 +234,7 @@ class Polling:
     def _read_on(self) -> None:
         rate = Rate(self._clock, self._period, min(FASTEST, self._period / 2), self._interrupt)
         last = None
-        self._meter.restart()  # nobody wanted any until now, or there was no robot
+        self._meter.restart()  # none were wanted until now, or the robot was not connected
         while rate.wait() and self._robot.connection.state == "connected":
             now = self._clock.now()
             if now == last:

@@ -143,7 +143,7 @@ def camera_name(words: str) -> str:
 def path_of(url: str, name: str, package_folder: Callable[[str], str]) -> Path:
     """The file that a URL stands for.
 
-    Raises NaoError if it is another kind of URL, or there is no such package.
+    Raises NaoError if it is another kind of URL, or its package is not found.
 
     Args:
         url: `file:///folder/file.yaml` or `package://package/file.yaml`, with ${NAME} for the name of the camera and

@@ -26,7 +26,7 @@ ALGORITHMS = {0: "average", 1: "weighted average", 2: "for highlights", 3: "for 
 
 @dataclass(frozen=True)
 class Tuning:
-    """A parameter of the picture that the camera itself has; it holds for all who use the camera.
+    """A parameter of the picture that the camera itself has; it holds for all clients of the camera.
 
     The limits of `field` are the widest that a camera of a NAO has: each has some of its own.
     """
@@ -84,7 +84,7 @@ def fields_of(
 ) -> tuple[ReconfigureField, ...]:
     """The parameters of one camera, under the names of naoqi_camera.
 
-    `alone`: the node serves this camera only, and can change over to the other.
+    `alone`: the node serves this camera only, and can switch to the other.
     """
     source = (ReconfigureField("source", camera, "camera", TOP, BOTTOM, CAMERAS),) if alone else ()
     return (

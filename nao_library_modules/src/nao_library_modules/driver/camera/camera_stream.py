@@ -182,7 +182,7 @@ class CameraStream:
                 if self._subscription is subscription:
                     self._change_back(subscription.handle, settings, before)
                     raise
-                # It ended meanwhile, because nobody looks any more: the settings are those of the next one.
+                # It ended meanwhile, for lack of subscribers: the settings are those of the next one.
             self._settings = settings
             if settings.frame_rate != before.frame_rate:
                 self._rate.restart()
@@ -190,7 +190,7 @@ class CameraStream:
     def _change_back(self, handle: str, tried: StreamSettings, before: StreamSettings) -> None:
         try:
             self._subscriber.change(handle, tried, before)
-        except NaoError as error:  # what went wrong first is what is told
+        except NaoError as error:  # the first error is the one to report
             log.debug("%s: %s", self._name, error)
             self._lazy.restart()
 
@@ -206,7 +206,7 @@ class CameraStream:
             "last error": self._lazy.problem or self._problem,
         }
         if not self._lazy.wanted:
-            return Report(Level.OK, "nobody looks", values)
+            return Report(Level.OK, "no subscriber", values)
         if not self._lazy.running or self._problem:
             problem = self._lazy.problem or self._problem or "the robot is not connected"
             return Report(Level.ERROR, f"no pictures: {problem}", values)
@@ -225,7 +225,7 @@ class CameraStream:
 
     def _begin(self) -> None:
         self._forget()  # that of a connection that was lost
-        self._prepare()  # without the lock: who changes the settings holds others
+        self._prepare()  # without the lock: changes of settings hold others
         with self._changing:
             handle = self._subscriber.subscribe(self._settings)
             self._rate.restart()
@@ -274,7 +274,7 @@ class CameraStream:
             except Preempted:
                 continue
             except NaoError as error:
-                # A lost connection is told elsewhere, and one that has ended has no pictures.
+                # A lost connection is reported elsewhere, and one that has ended has no pictures.
                 if not isinstance(error, RobotUnreachable) and not subscription.interrupt.is_set():
                     self._fail_once(str(error))
             except Exception as error:  # a mistake in here must not leave a node that lives and shows nothing

@@ -40,7 +40,7 @@ WARN_PERIOD = 10.0
 
 
 class CameraTopics:
-    """Publishes the pictures of one camera while somebody subscribes; otherwise the robot sends nothing.
+    """Publishes the pictures of one camera while it has subscribers; otherwise the robot sends nothing.
 
     See `nao_camera.NaoCamera` for names. Pictures are published in a thread of the camera; parameters change in those
     of their services.
@@ -53,7 +53,7 @@ class CameraTopics:
             camera: NAOqi's number.
             folder: Prefix of the topics, with its slash.
             part: Prefix of the parameters; may be empty.
-            alone: Whether the node serves this camera only, and can change over to the other.
+            alone: Whether the node serves this camera only, and can switch to the other.
         """
         self._robot = robot
         self._node = node
@@ -153,13 +153,13 @@ class CameraTopics:
         except NO_ANSWER:
             raise
         except NaoError as error:
-            rospy.logwarn("the robot does not tell what its %s covers: %s", CAMERA_NAMES[camera], error)
+            rospy.logwarn("the field of view of the %s cannot be read: %s", CAMERA_NAMES[camera], error)
         self._tuning.set_again(camera)
         while True:
             choices = self._choices
             shown = self._tuning.read(camera)
             if choices == self._choices:
-                break  # else somebody has chosen meanwhile, and what was read may be older than that
+                break  # else a client has chosen meanwhile, and what was read may be older
         self._shown.update(shown)
         if any(self._config[name] != value for name, value in shown.items()):
             update(self._server, shown)
@@ -212,15 +212,15 @@ def _package_folder(package: str) -> str:
     try:
         return packages.get_path(package)
     except rospkg.ResourceNotFound as error:
-        raise NaoError(f"there is no package {package!r}{did_you_mean(package, packages.list())}") from error
+        raise NaoError(f"package {package!r} not found{did_you_mean(package, packages.list())}") from error
 
 
 ALONE = ("camera_switch", "source")
-"""Parameters whose presence tells that the node is to serve one camera."""
+"""Parameters whose presence says that the node is to serve one camera."""
 
 
 class NaoCamera:
-    """Publishes the pictures of both cameras, each while somebody looks.
+    """Publishes the pictures of both cameras, each while it has subscribers.
 
     ROS API (relative names, the same with `bottom` for `top`):
         Publishes `nao_robot/camera/top/image_raw` (sensor_msgs/Image), `nao_robot/camera/top/camera_info`
@@ -232,11 +232,11 @@ class NaoCamera:
         `~top/frame_rate` (15), `~top/color_space` (NAOqi's number, 13: bgr8), `~top/camera_info_url`,
         `~top/use_ros_time` (true: stamps in ROS time; false: stamps of the robot's own clock. Default true; false on
         simulated time, which is the clock of the simulated robot), and those of the picture, which belong to the
-        robot's camera and are left as they are until somebody sets them: `~top/auto_exposition`, `auto_exposure_algo`,
+        robot's camera and are left as they are until a client sets them: `~top/auto_exposition`, `auto_exposure_algo`,
         `exposure`, `gain`, `brightness`, `contrast`, `saturation`, `hue`, `sharpness`, `auto_white_balance`,
         `white_balance`. `nao_robot/camera/top/image_raw/compressed/format` (jpeg or png), `jpeg_quality`, `png_level`,
         as image_transport has them. `~camera_top_frame`, `~camera_bottom_frame`: other names of the frames.
-        `~calibration_file_top`, `~calibration_file_bottom`: URLs where there is no camera_info_url.
+        `~calibration_file_top`, `~calibration_file_bottom`: URLs where camera_info_url is not set.
         Calibration: that of camera_info_url; without one, that of ROS_HOME/camera_info/NAME.yaml, where
         set_camera_info puts it (NAME is nao_camera_top, with the namespace before it); without that, computed from
         the field of view. One for another size is scaled; NAME_320x240.yaml is for that size only.

@@ -28,7 +28,7 @@ INIT_STIFFNESS = "~init_stiffness"
 STIFFEN_TIME = 0.5
 """s in which the whole body gets stiff or limp."""
 REPORT_PERIOD = 0.1
-"""s of this computer between two reports of a motion under way."""
+"""s of wall time between two reports of a motion under way."""
 ALIVE, LIFELESS = "solitary", "disabled"
 
 
@@ -37,7 +37,7 @@ class Reached:
     """Measured angles in rad (stiffnesses: 0..1), one for each joint."""
 
     values: list[float]
-    preempted: bool  # ended before time
+    preempted: bool  # interrupted before its end
 
 
 class JointController:
@@ -96,17 +96,17 @@ class JointController:
             start = self._quick("getAngles", joints, False) if frames.needs_start else ()
             call = motion.call_async("angleInterpolationBezier", *frames.absolute(start).bezier_arguments())
         if report is not None:
-            self._report_until_over(call, joints, interrupt, report)
+            self._report_until_finished(call, joints, interrupt, report)
         return self._motion_ended(call, joints, interrupt)
 
-    def _report_until_over(
+    def _report_until_finished(
         self, call: Any, joints: list[str], interrupt: CancellationToken, report: MotionReport
     ) -> None:
-        over = threading.Event()
-        call.add_done_callback(lambda _: over.set())
+        finished = threading.Event()
+        call.add_done_callback(lambda _: finished.set())
         try:
-            with interrupt.waking(over.set):
-                while not over.wait(REPORT_PERIOD):
+            with interrupt.waking(finished.set):
+                while not finished.wait(REPORT_PERIOD):
                     report(joints, *(self._quick("getAngles", joints, measured) for measured in (False, True)))
         except Exception as error:  # the motion is seen to its end, reported or not
             log.warning("%s: the motion is no longer reported: %s", ", ".join(joints), error)

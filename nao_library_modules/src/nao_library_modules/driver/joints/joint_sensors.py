@@ -270,7 +270,7 @@ class SlopeEstimator:
     def add(self, time: float, values: Sequence[float]) -> list[float]:
         """Take a sample and return the change of each value per s; zeros with less than two samples.
 
-        A `time` (s) that goes back, or far ahead, makes the estimator start anew.
+        A `time` (s) that goes back, or far ahead, restarts the estimator.
         """
         if self._samples and not 0.0 <= time - self._samples[-1][0] <= GAP:
             self._samples.clear()

@@ -126,7 +126,7 @@ def main() -> int:
     try:
         name = rospy.search_param(DESCRIPTION)
         if name is None:
-            raise NaoError(f"there is no parameter {DESCRIPTION}")
+            raise NaoError(f"parameter {DESCRIPTION} not found: does a launch file load the robot description?")
         JointSliders(movable_joints(rospy.get_param(name))).run()
     except NaoError as error:
         rospy.logfatal("%s", error)

@@ -104,7 +104,7 @@ DEFAULT_RATE = 50.0
 
 
 class NaoJointStates:
-    """Publishes the state of one robot, at an even rate, while somebody listens to one of its topics or to /tf.
+    """Publishes the state of one robot, at an even rate, while one of its topics or /tf has subscribers.
 
     One thread reads and publishes; `close` and the diagnostics come from others and touch only what is set once.
 
@@ -112,10 +112,10 @@ class NaoJointStates:
         Publishes `joint_states` (sensor_msgs/JointState; efforts are torques in N m from the motor currents),
         `imu` (sensor_msgs/Imu, in the frame of the torso), `odom` (nav_msgs/Odometry), and on /tf the frames odom ->
         base_link and base_link -> base_footprint (REP 105, REP 120). `~joint_stiffness` (sensor_msgs/JointState:
-        efforts are stiffnesses, 0 to 1), while somebody listens: under the name of the node, for what is published on
+        efforts are stiffnesses, 0 to 1), while it has subscribers: under the name of the node, for what is published on
         `joint_stiffness` is what nao_controller sets.
         Services, with `~use_odometry`: `pause_odometry` (std_srvs/Empty: place and heading stand still, whatever the
-        robot does), `resume_odometry` (std_srvs/Empty: they go on from there), `set_odometry_pose`
+        robot does), `resume_odometry` (std_srvs/Empty: they continue from there), `set_odometry_pose`
         (nao_library_msgs/SetTransform: pose of the torso in odometry), `odometry_offset`
         (nao_library_msgs/SetTransform: moves it, in its own frame). Of transforms x, y and yaw count.
         Parameters `~sensor_rate` (50 Hz; `~torso_odom_rate` is its older name), `~base_frame_id` (base_link),
@@ -151,7 +151,7 @@ class NaoJointStates:
         self._polling = Polling(robot, "joints", rate, self._clock, self._read)
         node.if_it_fails(self._polling.close)
         topics = (self._joint_states, self._imu, self._stiffness, self._odometry, self._frames)
-        # It is there at all times, and makes frames for those who listen to /tf.
+        # It runs at all times, and only turns joint states into frames on /tf.
         frames_only = node.resolve(node.param("~frame_publisher", "robot_state_publisher"))
         self._lazy = LazyTopic(self._polling.want, *filter(None, topics), but=(frames_only,))
 
@@ -162,7 +162,7 @@ class NaoJointStates:
         self._polling.close()
 
     def _odometry_now(self) -> OdometryOffset:
-        """The offset, which knows where the robot is now: nobody may have listened for long."""
+        """The offset, corrected by where the robot is now: the last reading may be old."""
         self._offset.correct(self._sensors().read_torso())
         return self._offset
 

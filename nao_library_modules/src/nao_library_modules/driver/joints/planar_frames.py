@@ -35,7 +35,7 @@ fast, and a robot that is silent does not say where it is."""
 
 @lru_cache(maxsize=None)
 def _frames_of_tf() -> tf2_ros.Buffer:
-    """The transforms of /tf: a busy topic, to which a process listens once, and not before somebody asks."""
+    """The transforms of /tf: a busy topic, subscribed once a process, at the first question."""
     buffer = tf2_ros.Buffer(debug=False)
     buffer.listener = tf2_ros.TransformListener(buffer)
     return buffer
@@ -65,7 +65,7 @@ class PlanarFrames:
         stamp = transform.header.stamp
         age = (rospy.Time.now() - stamp).to_sec()
         if stamp and age > OLDEST and self._unchanged(child, frame, stamp) > OLDEST:
-            raise NaoError(f"where {child} is in {frame} was told {age:.1f} s ago: does nao_joint_states run?")
+            raise NaoError(f"{child} in {frame} was last published {age:.1f} s ago: does nao_joint_states run?")
         return seen_from_above(transform.transform)
 
     def place_in(self, frame: str, pose: PoseStamped, patience: float = PATIENCE) -> Place:

@@ -66,8 +66,8 @@ class PoseManager:
         Actions `body_pose` (nao_library_actions/BodyPose: a pose of the tables below), `body_pose_naoqi`
         (nao_library_actions/BodyPoseWithSpeed: a posture that the robot knows; the motors are switched on first).
         Calls the action `joint_trajectory`, and the service `stop_walk_srv` (std_srvs/Empty) if there is one.
-        Parameters `~poses`: name -> joint_names, positions, time_from_start; read again when a goal names a pose that
-        nobody knows. `~xap`: path, or list of paths, of pose libraries of Choregraphe.
+        Parameters `~poses`: name -> joint_names, positions, time_from_start; read again when a goal names an unknown
+        pose. `~xap`: path, or list of paths, of pose libraries of Choregraphe.
     """
 
     def __init__(self, robot: Any, node: NodeInterface) -> None:
@@ -103,7 +103,7 @@ class PoseManager:
 
     def _pose(self, name: str) -> Pose:
         if name not in self._poses:
-            self._poses = self._read_poses()  # somebody may have loaded more meanwhile
+            self._poses = self._read_poses()  # more may have been loaded meanwhile
         if name not in self._poses:
             raise UnknownPose(name, self._poses)
         return self._poses[name]
@@ -122,7 +122,7 @@ class PoseManager:
         try:
             self._stop_walk()
         except rospy.ServiceException as error:
-            rospy.logdebug("%s: %s", STOP_WALK, error)  # nobody walks where nobody offers it
+            rospy.logdebug("%s: %s", STOP_WALK, error)  # without the service the robot is not walking
 
     # --- postures of the robot ------------------------------------------------------------------------------------
 
@@ -164,11 +164,11 @@ class TrajectoryClient:
     def take(self, pose: Pose, interrupt: CancellationToken) -> None:
         """Take a pose, unless the interrupt ends it.
 
-        Raises NaoError if there is no server, or it does not get there in time; Preempted, or whatever reason the
-        interrupt has.
+        Raises NaoError if the server is not found, or the robot does not get there in time; Preempted, or whatever
+        reason the interrupt has.
         """
         if not self._client.wait_for_server(rospy.Duration(SERVER_LIMIT)):
-            raise NaoError(f"there is no server for {rospy.resolve_name(ACTION)}: is nao_controller running?")
+            raise NaoError(f"server of {rospy.resolve_name(ACTION)} not found: is nao_controller running?")
         wake = CancellationToken()
         goal = GoalTracker(wake.trigger)
         handle = self._client.send_goal(_goal(pose), goal.look)

@@ -48,13 +48,13 @@ ABILITIES = tuple(
 class AutonomousLife:
     """Autonomous life of one robot. Any thread may call. Methods raise NaoError if the robot refuses or lacks it."""
 
-    def __init__(self, robot: Any, tell: Callable[[str], None]) -> None:
+    def __init__(self, robot: Any, publish: Callable[[str], None]) -> None:
         """Begin to listen to the state; the robot need not be connected yet.
 
-        `tell` gets each state, in a thread of libqi or of this object; it must not wait.
+        `publish` gets each state, in a thread of libqi or of this object; it must not wait.
         """
         self._robot = robot
-        self._tell = tell
+        self._publish = publish
         self._state = ""
         self._relay = EventRelay(lambda: robot.proxy(MEMORY), lambda _, state: self._note(state))
         self._listening = LazySubscription(robot, "state of autonomous life", self._begin, self._relay.close)
@@ -97,7 +97,7 @@ class AutonomousLife:
     def _note(self, state: Any) -> None:
         self._state = str(state or "")
         if self._state:
-            self._tell(self._state)
+            self._publish(self._state)
 
     def _ask(self, module: str, method: str, *arguments: Any) -> Any:
         return self._robot.proxy(module).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)

@@ -57,7 +57,7 @@ class Behaviors:
         try:
             run_task(call, interrupt, lambda: self._stop(name))
         except Preempted:
-            # A call that could be cancelled has ended; what it started must not go on without it.
+            # A call that could be cancelled has ended; what it started must not continue without it.
             if self._runs(name):
                 self._stop(name)
             raise
@@ -72,14 +72,14 @@ class Behaviors:
         try:
             return bool(self._ask("isBehaviorRunning", name))
         except NaoError as error:
-            log.warning("%s may go on: %s", name, error)
+            log.warning("%s may still run: %s", name, error)
             return False
 
     def _stop(self, name: str) -> None:
         try:
             self._robot.proxy(MODULE).call_async("stopBehavior", name).result(timeout=CLEAN_UP_LIMIT)
         except NaoError as error:
-            log.warning("%s may go on: %s", name, error)
+            log.warning("%s may still run: %s", name, error)
 
     def _ask(self, method: str, *arguments: Any) -> Any:
         return self._robot.proxy(MODULE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)

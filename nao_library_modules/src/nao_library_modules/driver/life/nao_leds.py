@@ -53,7 +53,7 @@ class Blinks:
     def check(self) -> None:
         """Raises BadGoal if they cannot be carried out."""
         if not self.colours:
-            raise BadGoal("colors", [], "at least one colour", problem="there is no colour to blink in")
+            raise BadGoal("colors", [], "at least one colour", problem="no colour to blink in")
         fields = [("bg_color", self.background), *((f"colors[{i}]", each) for i, each in enumerate(self.colours))]
         for field, colour in fields:
             if not all(0.0 <= part <= 1.0 for part in colour):
@@ -81,19 +81,19 @@ def blink(
     blinks: Blinks,
     clock: Any,
     interrupt: CancellationToken,
-    tell: Callable[[Colour], None],
+    report: Callable[[Colour], None],
     chance: random.Random,
 ) -> bool:
     """Blink until the interrupt comes; the eyes have the background colour then.
 
-    `clock` is the time of holds and pauses. `tell` gets the colour of each blink that begins. `chance` picks colours
+    `clock` is the time of holds and pauses. `report` gets the colour of each blink that begins. `chance` picks colours
     and pauses. Returns whether a newer goal replaces this one. Raises NaoError if the robot refuses or is lost.
     """
     third = blinks.duration / 3.0
     try:
         while True:
             colour = chance.choice(blinks.colours)
-            tell(colour)
+            report(colour)
             fade(robot, EYES, colour, third, interrupt)
             clock.wait(third, interrupt)
             interrupt.check()
@@ -188,8 +188,8 @@ class NaoLeds:
     ROS API (relative names):
         Subscribes `fade_rgb` (nao_library_msgs/FadeRGB): fades one after the other, in the order of the messages.
         Action `blink` (nao_library_actions/Blink): the eyes blink until the goal is cancelled or a newer one comes;
-        so it never succeeds. `still_blinking` in its result tells that a newer one has come.
-        Publishes `led_states` (nao_library_msgs/LedStates): what each light shows, while somebody listens.
+        so it never succeeds. `still_blinking` in its result says that a newer one has come.
+        Publishes `led_states` (nao_library_msgs/LedStates): what each light shows, while it has subscribers.
         Parameter `~led_rate` (10 Hz).
     """
 
@@ -247,10 +247,10 @@ class NaoLeds:
         )
         blinks.check()
 
-        def tell(colour: Colour) -> None:
+        def report(colour: Colour) -> None:
             publish(BlinkFeedback(last_color=ColorRGBA(*colour, 1.0)))
 
-        replaced = blink(self._robot, blinks, self._clock, interrupt, tell, self._chance)
+        replaced = blink(self._robot, blinks, self._clock, interrupt, report, self._chance)
         return GoalOutcome(BlinkResult(still_blinking=replaced), preempted=True)
 
 

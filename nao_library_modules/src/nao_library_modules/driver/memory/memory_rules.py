@@ -165,8 +165,8 @@ class MemoryAccess:
         methods = ("getDataListName", "getEventList", "getMicroEventList")
         calls = [self._robot.proxy(MEMORY).call_async(method) for method in methods]
         keys, *events = [call.result(timeout=ANSWER_LIMIT) for call in calls]
-        told = {name for names in events for name in names}
-        return {name: name in told for name in (*keys, *sorted(told))}
+        event_names = {name for names in events for name in names}
+        return {name: name in event_names for name in (*keys, *sorted(event_names))}
 
     def write(self, key: str, value: Any, as_event: bool) -> None:
         if as_event:
@@ -180,7 +180,7 @@ class MemoryAccess:
         keys = matching(known, check_pattern(pattern))
         if not keys:
             several = is_pattern(pattern)
-            problem = f"no key is like {pattern!r}" if several else f"there is no key {pattern!r}"
+            problem = f"no key matches {pattern!r}" if several else f"key {pattern!r} not found"
             raise BadGoal("pattern", pattern, "keys of the robot's memory", problem + did_you_mean(pattern, known))
         return dict(zip(keys, self.values(keys)))
 
@@ -193,7 +193,7 @@ def check_pattern(pattern: str, field: str = "pattern") -> str:
 
 
 RATE = limit("sampling rate")
-"""Hz, above which nobody asks."""
+"""Hz, the most that rules may ask for."""
 
 
 @dataclass(frozen=True)

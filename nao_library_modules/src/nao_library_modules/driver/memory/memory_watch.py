@@ -40,7 +40,7 @@ class WatchedKey:
     """
 
     def __init__(self, name: str, topic_name: str, rule: MemoryRule, make_topic: Callable[..., Any]) -> None:
-        """Watch a key; there is no topic yet.
+        """Watch a key, without a topic yet.
 
         `make_topic` opens a topic: it gets its name, the kind of message and a function to call with whether there are
         subscribers. It returns an object with `publish(value)` and `close()`.
@@ -56,7 +56,7 @@ class WatchedKey:
         self._make_topic = make_topic
         self._lock = threading.Lock()
         self._topic: Any = None
-        self._opening: object = None  # what tells the present topic from those before
+        self._opening: object = None  # identifies the present topic
         self._due: float | None = None
         self._last: float | None = None
         self._held: Any = NOTHING
@@ -64,11 +64,11 @@ class WatchedKey:
 
     # --- the topic; for the thread that opens topics --------------------------------------------------------------
 
-    def open(self, value: Any, tell: Callable[[], None]) -> None:
+    def open(self, value: Any, changed: Callable[[], None]) -> None:
         """Open the topic, or another one for values of another type; nothing happens while the type is unknown.
 
-        `value`: gives the type, unless the rule does; None for no value. `tell`: called when somebody begins or ceases
-        to listen.
+        `value`: gives the type, unless the rule does; None for no value. `changed`: called when subscribers
+        come or all have gone.
         """
         kind = self.rule.kind or ("" if value is None else kind_of(value))
         if not kind or kind == self.kind:
@@ -82,7 +82,7 @@ class WatchedKey:
         def demand(wanted: bool) -> None:
             if self._opening is opening:  # listeners leave a topic that was closed, and that means nothing
                 self.wanted = wanted
-                tell()
+                changed()
 
         topic = self._make_topic(self.topic_name, kind, demand)
         with self._lock:
@@ -326,7 +326,7 @@ class MemoryWatch:
             self._news.clear()
             pause = self._look()
             if pause is None:
-                self._news.wait(RETRY)  # of this computer's time: that of a simulator may have ended with it
+                self._news.wait(RETRY)  # of wall time: that of a simulator may have stopped with it
             else:
                 self._clock.wait(pause, self._news)
                 self._rest.wait(FASTEST)  # however fast simulated time runs, or events come
@@ -365,7 +365,7 @@ class MemoryWatch:
         if self._stale:
             try:
                 self._resolve()
-            except BadGoal as error:  # new keys of the robot are too many: what is watched goes on
+            except BadGoal as error:  # new keys of the robot are too many: what is watched continues
                 log.error("%s", error)
                 self._overflow, self._stale = str(error), False
         self._generation = generation
@@ -429,7 +429,7 @@ class MemoryWatch:
         for key, value in zip(begun, self._memory.values([key.name for key in begun])):
             key.to_be_told = False
             if value is not None and key.wanted:
-                self._hand_over(key, value)  # who begins to listen learns how it stands
+                self._hand_over(key, value)  # a new subscriber gets the present value
 
     def _hand_over(self, key: WatchedKey, value: Any) -> None:
         if not key.deliver(value):

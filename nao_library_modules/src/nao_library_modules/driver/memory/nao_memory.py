@@ -73,7 +73,7 @@ MOST_TOPICS = 1000
 
 
 class NaoMemory:
-    """The memory of one robot. A topic is named after its key, and data is read only while somebody listens to it.
+    """The memory of one robot. A topic is named after its key, and data is read only while it has subscribers.
 
     ROS API:
         Publishes `~KEY` for each watched key (nao_library_msgs/BoolStamped, IntStamped, FloatStamped, StringStamped,
@@ -130,7 +130,7 @@ class NaoMemory:
         known = self._memory.known()
         if pattern in known:
             return f"{pattern} has no value yet: its topic appears with the first one"
-        return f"there is no key like {pattern!r} yet{did_you_mean(pattern, known)}; topics appear when there is"
+        return f"no key matches {pattern!r} yet{did_you_mean(pattern, known)}; topics appear when one does"
 
     def _on_unwatch(self, request: Any) -> UnwatchMemoryResponse:
         left = self._watch.unwatch(request.pattern)
@@ -176,12 +176,12 @@ class NaoMemory:
 class MemoryTopic(LazyTopic):
     """The topic of a key. Each further subscriber gets the last message first."""
 
-    def __init__(self, node: NodeInterface, name: str, kind: str, tell: Callable[[bool], None]) -> None:
-        """Open the topic `name` below the node, of a kind in MESSAGES; `tell` gets whether it has subscribers."""
+    def __init__(self, node: NodeInterface, name: str, kind: str, report: Callable[[bool], None]) -> None:
+        """Open the topic `name` below the node, of a kind in MESSAGES; `report` gets whether it has subscribers."""
         self._kind = MESSAGES[kind]
         self._last: Any = None
         self._topic = rospy.Publisher(node.resolve(f"~{name}"), spoken(self._kind), queue_size=QUEUE)
-        super().__init__(tell, self._topic)
+        super().__init__(report, self._topic)
 
     def publish(self, value: Any) -> None:
         """Publish a value of the topic's kind, with the present time."""
@@ -202,7 +202,7 @@ class MemoryTopic(LazyTopic):
 
 
 def _kept_rules(kept: Any) -> list[MemoryRule]:
-    rules = [MemoryRule(**told) for told in kept]
+    rules = [MemoryRule(**fields) for fields in kept]
     for rule in rules:
         rule.check()
     return rules

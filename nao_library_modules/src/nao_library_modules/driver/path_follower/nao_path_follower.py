@@ -41,7 +41,7 @@ NODE_KILLED = "node killed"
 class NaoPathFollower:
     """Walks to targets and along paths. One goal at a time: a new one takes over from the one before, walking.
 
-    A goal that ends for any other reason but a new one leaves the robot standing on both feet. While one runs, nobody
+    A goal that ends for any reason but a newer one leaves the robot standing on both feet. While one runs, nobody
     else walks: `inhibit_walk` is called for it.
 
     Targets and paths may be in any frame of /tf. In frames that hang below that of odometry (those of the robot too)
@@ -107,7 +107,7 @@ class NaoPathFollower:
         try:
             return self._walk(goal, interrupt, publish)
         except (Replaced, RobotLost):
-            raise  # the new goal goes on from here; a robot that is gone cannot be stopped
+            raise  # the new goal continues from here; a robot that is gone cannot be stopped
         except BaseException:
             self._stop()
             raise

@@ -100,22 +100,22 @@ class WalkPath:
     """
 
     def __init__(self, waypoints: Sequence[Place]) -> None:
-        kept: list[Place] = []
+        merged: list[Place] = []
         indices: list[int] = []
         for index, waypoint in enumerate(waypoints):
-            if kept and waypoint.distance_to(kept[-1]) < SHORTEST:
-                kept[-1] = waypoint  # of the last two, the later heading counts
+            if merged and waypoint.distance_to(merged[-1]) < SHORTEST:
+                merged[-1] = waypoint  # of the last two, the later heading counts
                 indices[-1] = index
             else:
-                kept.append(waypoint)
+                merged.append(waypoint)
                 indices.append(index)
-        if len(kept) < 2:
+        if len(merged) < 2:
             count = f"{len(waypoints)} pose" + ("s at one place" if len(waypoints) > 1 else "")
             raise BadGoal("path.poses", count, "two at least; the action walk_target goes to a single pose")
-        self.waypoints = tuple(kept)
+        self.waypoints = tuple(merged)
         self._indices = tuple(indices)
         self._along = [0.0]
-        for start, end in zip(kept, kept[1:]):
+        for start, end in zip(merged, merged[1:]):
             self._along.append(self._along[-1] + start.distance_to(end))
         self.length = self._along[-1]
 

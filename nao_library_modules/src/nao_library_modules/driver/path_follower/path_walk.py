@@ -81,7 +81,7 @@ class StuckWatch:
 
 
 LISTENER_LIMIT = 5.0
-"""s to wait for somebody who listens to the commands."""
+"""s to wait for a subscriber to the commands."""
 ON_ITS_WAY, LOOK_PERIOD = 1.0, 0.02
 """s of real time that a command may take to reach nao_walker on a busy computer, and between two looks at the robot."""
 STOP, INHIBIT, LET_GO = "stop_walk_srv", "inhibit_walk", "uninhibit_walk"
@@ -114,13 +114,13 @@ class WalkTopics:
     def prepare(self, interrupt: CancellationToken) -> None:
         """Get ready to walk: the robot takes the pose for it, if it does not walk already.
 
-        Raises NaoError if it cannot, or nobody passes commands on to it; Preempted, or whatever reason the interrupt
+        Raises NaoError if it cannot, or no node passes commands on to it; Preempted, or whatever reason the interrupt
         has.
         """
         if not self._commands.get_num_connections():
             self._heard.wait(LISTENER_LIMIT)
         if not self._commands.get_num_connections():
-            raise NaoError(f"nobody listens to {self._node.resolve(self._topic)}: does nao_walker run?")
+            raise NaoError(f"no subscriber to {self._node.resolve(self._topic)}: does nao_walker run?")
         self._failed_before = self._last_failure()
         if not self.walking():
             ask_for_stiff_legs(self._robot)
@@ -160,7 +160,7 @@ class WalkTopics:
     def _stop_now(self) -> None:
         try:
             self._stop()
-        except (rospy.ServiceException, rospy.ROSException):  # nobody offers it, or it failed: ask the robot itself
+        except (rospy.ServiceException, rospy.ROSException):  # not offered, or failed: ask the robot itself
             self._stop_robot()
         standing = self._robot.proxy(MOTION).call_async("waitUntilMoveIsFinished")
         standing.result(timeout=STOP_LIMIT)
@@ -176,7 +176,7 @@ class WalkTopics:
         self._robot.owners.let_go(INHIBIT)
 
     def _own_walk(self) -> None:
-        """Own the walk of this node: nao_walker, which begins it, goes on when this node dies."""
+        """Own the walk of this node: nao_walker, which begins it, continues when this node dies."""
         self._robot.owners.hold(self, "walk", [MOTION, "stopMove", []])
 
     def _last_failure(self) -> list:
@@ -199,11 +199,11 @@ class WalkTopics:
 
 
 RESEND_DISTANCE, RESEND_TURN = 0.02, math.radians(4.0)
-"""m and rad that the aim moves before the robot gets it: it plans its steps anew each time."""
+"""m and rad that the aim moves before the robot gets it: it plans all its steps again each time."""
 GRACE, WALL_GRACE = 1.0, 0.25
 """s from a command until the robot must be seen to walk; simulated time may be fast, so of real time as well."""
 SETTLE = 3.0
-"""s that a robot which is near enough may go on, to get nearer, before it is stopped."""
+"""s that a robot which is near enough may continue, to get nearer, before it is stopped."""
 FASTEST_ROUND = 0.008
 """s of real time from one round to the next at least, however fast simulated time runs."""
 
@@ -275,7 +275,7 @@ class _Poses(_Mode):
 
 
 class _Velocities(_Mode):
-    """Leads by velocities, each round anew."""
+    """Leads by velocities, a new one each round."""
 
     def __init__(self, *shared: Any) -> None:
         super().__init__(*shared)

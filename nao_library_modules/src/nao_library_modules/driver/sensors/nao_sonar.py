@@ -74,7 +74,7 @@ class Sonars:
 
     def _read(self) -> None:
         if not self._measuring.running:
-            return  # the memory holds what was measured for somebody else, long ago
+            return  # the memory holds an old measurement, of another subscriber
         values = self._robot.proxy(MEMORY).call_async("getListData", list(SONARS.values())).result(timeout=ANSWER_LIMIT)
         if len(values) != len(SONARS):
             raise NaoError(f"the robot's memory answers {values!r} for {', '.join(SONARS.values())}")
@@ -86,7 +86,7 @@ DEFAULT_RATE = 10.0
 
 
 class NaoSonar:
-    """The two sonars of one robot. They are silent while nobody listens.
+    """The two sonars of one robot. They are silent without subscribers.
 
     ROS API (relative names):
         Publishes `nao_robot/sonar/left`, `nao_robot/sonar/right` (sensor_msgs/Range, frames LSonar_frame and

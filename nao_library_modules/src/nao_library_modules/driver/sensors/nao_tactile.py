@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 
 MEMORY = "ALMemory"
 GRAVITY = 9.81
-"""The robot tells forces in kg."""
+"""The robot gives forces in kg."""
 CENTER = "{}Foot/FSR/CenterOfPressure/{}"
 CONTACT = "{}FootContact"
 LIGHTEST = 0.5
@@ -120,18 +120,18 @@ class TouchSensors:
     """
 
     def __init__(
-        self, robot: Any, tell: Callable[[TouchSensor, bool], None], tell_clicks: Callable[[int], None]
+        self, robot: Any, publish: Callable[[TouchSensor, bool], None], publish_clicks: Callable[[int], None]
     ) -> None:
         """Begin to listen; the robot need not be connected yet.
 
         Args:
-            tell: Gets a sensor and whether it is touched, in a thread of libqi or of this object; must not wait.
-            tell_clicks: Gets how often the chest button was clicked, likewise.
+            publish: Gets a sensor and whether it is touched, in a thread of libqi or of this object; must not wait.
+            publish_clicks: Gets how often the chest button was clicked, likewise.
         """
         self._robot = robot
-        self._tell = tell
-        self._tell_clicks = tell_clicks
-        # The lock is held while a change is told: changes of one sensor come in several threads of libqi.
+        self._publish = publish
+        self._publish_clicks = publish_clicks
+        # The lock is held while a change is published: changes of one sensor come in several threads of libqi.
         self._lock = threading.Lock()
         self._touched: dict[str, bool | None] = {s.event: None if s.place == FEET else False for s in SENSORS.values()}
         self._heard: set[str] = set()
@@ -142,7 +142,7 @@ class TouchSensors:
     def report(self) -> Report:
         with self._lock:
             values = {event: {None: "unknown", True: "touched", False: ""}[now] for event, now in self._touched.items()}
-        return self._listening.report("closed", "touches are told", "deaf", values)
+        return self._listening.report("closed", "touches are published", "touches cannot be read", values)
 
     def close(self) -> None:
         self._listening.close()
@@ -161,7 +161,7 @@ class TouchSensors:
         """Read the sensors whose events came: libqi delivers events in quick succession in any order.
 
         The keys of the sensors would not do: a bouncing foot has no contact for a moment, for which there is no event.
-        Returns True: nothing has to be started anew.
+        Returns True: nothing has to be restarted.
         """
         with self._lock:
             heard = [sensor for event, sensor in SENSORS.items() if event in self._heard]
@@ -170,7 +170,7 @@ class TouchSensors:
             if heard:
                 self._read({sensor: (sensor.event,) for sensor in heard})
         except NaoError as error:
-            log.debug("touch sensors: %s", error)  # a lost connection is told elsewhere; the next look asks again
+            log.debug("touch sensors: %s", error)  # a lost connection is reported elsewhere; the next look asks again
             with self._lock:
                 self._heard.update(sensor.event for sensor in heard)
         return True
@@ -188,7 +188,7 @@ class TouchSensors:
 
     def _on_event(self, name: str, value: Any) -> None:
         if name in CLICKS:
-            self._tell_clicks(CLICKS[name])
+            self._publish_clicks(CLICKS[name])
         elif isinstance(value, (bool, int, float)):
             self._take(SENSORS[name], value > 0.5, is_event=True)
 
@@ -200,7 +200,7 @@ class TouchSensors:
                 return  # what was read is older than the event
             if self._touched[sensor.event] is not touched:
                 self._touched[sensor.event] = touched
-                self._tell(sensor, touched)
+                self._publish(sensor, touched)
 
 
 QUEUE = 10
@@ -211,14 +211,14 @@ class NaoTactileNode:
     """What the touch sensors, bumpers, buttons and soles of one robot feel.
 
     Touches come from the robot's events; nothing is asked for again and again but the forces under the feet, while
-    somebody listens to them. A sensor that is touched when the robot is reached is told then.
+    they have subscribers. A sensor that is touched when the robot is reached is published then.
 
     ROS API (relative names):
         Publishes `tactile_touch` (nao_library_msgs/TactileTouch) and `head_touch` (nao_library_msgs/HeadTouch): the
         same, under the older and the later name; `hand_touch` (nao_library_msgs/HandTouch), `bumper`
         (nao_library_msgs/Bumper), `chest_button` (nao_library_msgs/ChestButton), `foot_contact` (std_msgs/Bool,
         latched: whether at least one foot stands on the ground), `nao_robot/fsr/left`, `nao_robot/fsr/right`
-        (nao_library_msgs/Fsr, while somebody listens).
+        (nao_library_msgs/Fsr, while they have subscribers).
         Parameters `~fsr_rate` (20 Hz), `tf_prefix` (searched upwards; put before the frames).
     """
 

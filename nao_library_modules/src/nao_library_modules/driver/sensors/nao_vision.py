@@ -74,7 +74,7 @@ PARTS = (
 LONGEST_STEP = 0.5
 """s between two events above which velocities are unknown."""
 NO_POSE = (0.0,) * 6
-"""Stands for a pose of the camera that an event does not tell."""
+"""Stands for a pose of the camera that an event does not contain."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class Movement:
 
 
 def _seen(read: Callable[[Any], DetectionArray], value: Any) -> DetectionArray | None:
-    """What an event tells, which may lack time, poses or camera; None if it tells of nothing, or is no such event."""
+    """The detections of an event, which may lack time, poses or camera; None if it has none, or is no such event."""
     if not _is_list(value, 2):
         return None
     stamp = value[0] if _is_list(value[0], 2) else (0, 0)
@@ -119,7 +119,7 @@ def read_faces(value: Any) -> tuple[DetectionArray, list[Face]] | None:
     seen = _seen(face_detections, value)
     if seen is None:
         return None
-    # Behind the faces comes what the recognition has to say over time: that has no shape.
+    # Behind the faces comes what the recognition found over time: that has no shape.
     extras = [each[1] for each in value[1] if len(each) == 2 and _is_list(each[0], 0)]
     return seen, [_face(shape, extra) for shape, extra in zip(seen.detections, extras)]
 
@@ -258,7 +258,7 @@ class NaoVisionServices:
     """What the vision modules of one robot find, under the names of nao_interaction.
 
     What is switched on is switched on again on a robot that was lost, and off when the node ends. What goes wrong is
-    the error of the service that was called: the others go on.
+    the error of the service that was called: the others continue.
 
     ROS API (relative names):
         Services `nao_vision/face_detection/enable`, `.../disable`, `nao_vision/motion_detection/enable`,

@@ -28,7 +28,7 @@ POSE_LIMIT = 10.0
 class TeleopClients:
     """Clients of nao_walker, nao_controller and pose_manager.
 
-    Any thread may call; nothing here waits. Failures are reported by `tell`.
+    Any thread may call; nothing here waits. Failures are reported by `report`.
 
     ROS API (relative names):
         Publishes `cmd_vel` (geometry_msgs/Twist), `joint_angles` (nao_library_msgs/JointAnglesWithSpeed), `speech`
@@ -36,12 +36,12 @@ class TeleopClients:
         (std_srvs/Empty), and the action `body_pose` (nao_library_actions/BodyPose).
     """
 
-    def __init__(self, tell: Callable[[str], None]) -> None:
+    def __init__(self, report: Callable[[str], None]) -> None:
         """Create the clients; the servers need not be there yet.
 
-        `tell` gets a line of text when something was done, or could not be.
+        `report` gets a line of text when something was done, or could not be.
         """
-        self._tell = tell
+        self._report = report
         self._cmd_vel = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
         self._joint_angles = rospy.Publisher("joint_angles", spoken(JointAnglesWithSpeed), queue_size=1)
         self._speech = rospy.Publisher("speech", String, queue_size=10)
@@ -82,25 +82,25 @@ class TeleopClients:
             try:
                 job()
             except rospy.ROSException as error:
-                self._tell(str(error))
+                self._report(str(error))
 
     def _call(self, service: str, done: str) -> bool:
         try:
             rospy.ServiceProxy(service, Empty)()
         except rospy.ServiceException as error:
-            self._tell(f"{service}: {error}")
+            self._report(f"{service}: {error}")
             return False
         if done:
-            self._tell(done)
+            self._report(done)
         return True
 
     def _take_pose(self, name: str, then: str) -> None:
         limit = rospy.Duration.from_sec(POSE_LIMIT)
         if not self._poses.wait_for_server(limit):
-            self._tell("there is no server of body_pose: is pose_manager running?")
+            self._report("server of body_pose not found: is pose_manager running?")
             return
         state = self._poses.send_goal_and_wait(BodyPoseGoal(name), limit)
         text = f"{name}: {GoalStatus.to_string(state).lower()} {self._poses.get_goal_status_text()}"
-        self._tell(text.rstrip())
+        self._report(text.rstrip())
         if state == GoalStatus.SUCCEEDED and then:
             self._call(then, "")

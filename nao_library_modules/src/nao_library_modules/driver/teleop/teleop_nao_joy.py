@@ -172,7 +172,7 @@ class TeleopNaoJoy:
     def report(self) -> Report:
         values = {"control": "enabled" if self._control.enabled else "disabled"}
         if not self._joy.get_num_connections():
-            return Report(Level.WARN, f"nobody publishes {self._joy.resolved_name}", values)
+            return Report(Level.WARN, f"no publisher of {self._joy.resolved_name}", values)
         return Report(Level.OK, f"control is {values['control']}", values)
 
     def _on_joy(self, message: Joy) -> None:

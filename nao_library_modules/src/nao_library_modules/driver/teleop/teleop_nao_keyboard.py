@@ -209,21 +209,21 @@ class TeleopNaoKeyboard:
 
     def __init__(self, poses: Sequence[str], speed: float) -> None:
         self._control = KeyboardControl(poses, speed)
-        self._clients = TeleopClients(self._tell)
+        self._clients = TeleopClients(self._print)
         self._walking = False
         self._actions: dict[KeyCommand, Callable[[KeyRequest], None]] = {
             KeyCommand.STOP: self._stop,
             KeyCommand.POSE: lambda request: self._clients.take_pose(request.detail),
             KeyCommand.WAKE_UP: lambda request: self._clients.call("wakeup", "the robot is awake"),
             KeyCommand.REST: lambda request: self._clients.call("rest", "the robot rests"),
-            KeyCommand.SPEED: lambda request: self._tell(request.detail),
-            KeyCommand.HELP: lambda request: self._tell(self._control.help),
-            KeyCommand.UNKNOWN: lambda request: self._tell(f"{request.detail!r} does nothing; h for help"),
+            KeyCommand.SPEED: lambda request: self._print(request.detail),
+            KeyCommand.HELP: lambda request: self._print(self._control.help),
+            KeyCommand.UNKNOWN: lambda request: self._print(f"{request.detail!r} does nothing; h for help"),
         }
 
     def run(self, keys: TerminalKeys) -> None:
         """Obey keys until one of them ends it, or the node ends."""
-        self._tell(self._control.help)
+        self._print(self._control.help)
         try:
             while not rospy.is_shutdown():
                 for key in keys.read(PERIOD):
@@ -246,12 +246,12 @@ class TeleopNaoKeyboard:
             self._clients.walk(velocity)
 
     def _stop(self, _: KeyRequest) -> None:
-        self._tell("stop")
+        self._print("stop")
         self._walking = False
         self._clients.walk(self._control.velocity(float("inf")))
         self._clients.call("stop_walk_srv", "the robot stands")
 
     @staticmethod
-    def _tell(text: str) -> None:
+    def _print(text: str) -> None:
         sys.stdout.write(text + "\n")
         sys.stdout.flush()

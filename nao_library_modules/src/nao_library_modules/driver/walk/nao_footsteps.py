@@ -83,7 +83,7 @@ class Walked:
     """The steps that were made, in order, as the robot can make them."""
 
     steps: tuple[FootStep, ...]
-    preempted: bool = False  # ended before time
+    preempted: bool = False  # stopped before the last step
 
 
 class FootstepWalk:

@@ -54,7 +54,7 @@ class WalkInhibition:
     """Holds on walking, by the node that put them on. Every method may be called from any thread.
 
     A node that inhibits walking means the others: one that follows a path keeps a joystick from interfering, and walks
-    itself. `kept`: where they are kept for the time after the death of this node. `own`: name of this node: holds of
+    itself. `kept`: where they are saved for the next process of this node. `own`: name of this node: holds of
     parts that died with it are gone.
     """
 
@@ -329,7 +329,7 @@ class NaoWalker:
         try:
             command = read(message)
             if _is_zero(command) and self._inhibition.against(caller):
-                return  # a stick at rest is no news to those who inhibit walking
+                return  # a stick at rest is not worth a refusal
             order = self._order(topic, caller, command, watched=watched)
         except NaoError as error:
             self._journal.failed(topic, error)
@@ -380,7 +380,7 @@ class NaoWalker:
             serve("uninhibit_walk", Empty, self._serve_uninhibit)
             serve("inhibit_walk", Empty, self._serve_inhibit)
         except AlreadyOffered as error:
-            self._inhibition.drop()  # of a walker before this one: who holds it lets go there
+            self._inhibition.drop()  # of a walker before this one: its clients let go at the other node
             rospy.loginfo("inhibit_walk and uninhibit_walk are left to %s, which offers them already", error.node)
         serve("needs_start_walk_pose_srv", Empty, self._serve_walk_pose)
         serve("read_foot_gait_config_srv", Empty, self._serve_gait)

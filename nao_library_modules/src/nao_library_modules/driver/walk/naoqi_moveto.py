@@ -43,8 +43,8 @@ class WalkGoal:
 class MoveToWalk:
     """The goals of one robot. Any thread may give one; a thread of its own finds the way and starts the walk.
 
-    A robot that walks to an older goal goes on from there, without a stop: NAOqi replaces one moveTo by the next. The
-    lock guards what is asked for; the robot is called without it.
+    A robot that walks to an older goal continues to the new one without a stop: NAOqi replaces one moveTo by the next.
+    The lock guards what is asked for; the robot is called without it.
     """
 
     def __init__(self, robot: Any) -> None:
@@ -137,7 +137,7 @@ class MoveToWalk:
 class NaoqiMoveTo:
     """Walks to poses, in any frame of /tf, with the robot's own planning of steps. A new goal takes over.
 
-    There is no answer: the end is in the log and on /diagnostics. For an answer, use the action `walk_target`.
+    Clients get no answer: the end is in the log and on /diagnostics. For an answer, use the action `walk_target`.
 
     ROS API (relative names):
         Subscribes `move_base_simple/goal` (geometry_msgs/PoseStamped), `move_base_simple/cancel` (std_msgs/Empty).

@@ -292,9 +292,9 @@ class WalkWatchdog:
         self._last = None
 
     def left(self, now: float) -> float | None:
-        """Time until the walk has to stop, 0 or less when it is over; None while there is nothing to watch.
+        """Time until the walk has to stop, 0 or less when it is due; None while nothing is watched.
 
-        If `now` lies before the last command, the clock was set back (a simulation that began anew), and the command
+        If `now` lies before the last command, the clock was set back (a simulation was reset), and the command
         counts as just come.
         """
         if self._last is None:

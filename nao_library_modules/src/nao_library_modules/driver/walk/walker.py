@@ -102,7 +102,7 @@ class Walker:
     def close(self, limit: float, only_own: bool = False) -> None:
         """Stop the walk, wait up to `limit` s of real time until the robot stands, and take no orders any more.
 
-        With `only_own`, a walk goes on unless an order to this object began it.
+        With `only_own`, a walk continues unless an order to this object began it.
         """
         self._robot.connection.remove_listener(self._connection_changed)
         self._closed.set()
@@ -136,7 +136,7 @@ class Walker:
                 return
             try:
                 self._turn()
-            except Exception:  # a mistake in here must not leave a robot that nobody can stop
+            except Exception:  # a mistake in here must not leave a robot that no client can stop
                 log.exception("an order to walk failed")
 
     def _turn(self) -> None:
@@ -160,7 +160,7 @@ class Walker:
 
     def _stop_by_watchdog(self) -> None:
         self.watchdog_stops += 1
-        log.warning("no command on cmd_vel for %g s: the robot is told to stop", self._watchdog.limit)
+        log.warning("no command on cmd_vel for %g s: the robot is stopped", self._watchdog.limit)
         self._watchdog.rest()
         self._stop_for("the end of the commands on cmd_vel")
 
@@ -316,7 +316,7 @@ class Walker:
         elif error is not None:
             order.fail(error)
             if order.replaces and not order.halts and not isinstance(error, WalkEnded):
-                self._stop_for("a command that failed")  # the older walk goes on, and nobody watches it any more
+                self._stop_for("a command that failed")  # the older walk continues, without a watchdog
         else:
             order.succeed()
 
