@@ -80,6 +80,11 @@ def test_all_parts_are_one_report_as_bad_as_the_worst():
     values.update({reports.CHARGE: 0.2, reports.temperature_key("LKneePitch"): 90.0})
     bad = reports.summary(reports.body_reports(joints, values, LIMITS))
     assert (bad.level, bad.message) == (Level.ERROR, "LKneePitch (Too hot), battery (Low)")
+    alarms = ["Discharge Over Current Alarm (14A)", "Discharge Temperature Alarm"]
+    values.update({reports.BATTERY_STATUS: sum(1 << BATTERY_FLAGS.index(each) for each in alarms)})
+    values.update({reports.HEAD_TEMPERATURE: 101.0, reports.temperature_key("LKneePitch"): 40.0})
+    bad = reports.summary(reports.body_reports(joints, values, LIMITS))
+    assert bad.message == f"battery ({', '.join(alarms)}), cpu (Hot)"
 
 
 def test_a_robot_that_does_not_tell_is_unknown_a_head_gets_hot_and_networks_are_told_by_their_kind():

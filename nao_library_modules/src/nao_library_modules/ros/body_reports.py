@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -135,7 +134,7 @@ def summary(reports: Mapping[str, Report]) -> Report:
     values = {part_of(name): reports[name].message for name in told if name in reports}
     if not amiss:
         return Report(Level.OK, "well", values)
-    words = [f"{part_of(name)} ({re.split(': | [(]', reports[name].message)[0]})" for name in amiss]
+    words = [f"{part_of(name)} ({reports[name].state or reports[name].message})" for name in amiss]
     return Report(reports[amiss[0]].level, ", ".join(words), values)
 
 
@@ -148,8 +147,8 @@ def joint_report(joint: str, values: Mapping[str, Any], limits: Thresholds) -> R
     if temperature < limits.warm:
         return Report(Level.OK, f"Normal: {temperature:.1f} C", facts)
     if temperature < limits.hot:
-        return Report(Level.WARN, f"Hot: {temperature:.1f} C", facts)
-    return Report(Level.ERROR, f"Too hot: {temperature:.1f} C", facts)
+        return Report(Level.WARN, f"Hot: {temperature:.1f} C", facts, "Hot")
+    return Report(Level.ERROR, f"Too hot: {temperature:.1f} C", facts, "Too hot")
 
 
 def battery_report(charge: float | None, flags: int | None, limits: Thresholds) -> Report:
@@ -163,7 +162,7 @@ def battery_report(charge: float | None, flags: int | None, limits: Thresholds) 
     percent = f"{100.0 * charge:.1f} %"
     alarms = [name for name in ALARMS if facts[name] == "True"]
     if alarms:
-        return Report(Level.ERROR, f"{', '.join(alarms)} ({percent} left)", facts)
+        return Report(Level.ERROR, f"{', '.join(alarms)} ({percent} left)", facts, ", ".join(alarms))
     if flags is not None and flags >> FULL_BIT & 1:
         return Report(Level.OK, f"Fully charged ({percent})", facts)
     if flags is not None and flags >> CHARGING_BIT & 1:
@@ -171,8 +170,8 @@ def battery_report(charge: float | None, flags: int | None, limits: Thresholds) 
     if 100.0 * charge > limits.low:
         return Report(Level.OK, f"OK ({percent} left)", facts)
     if 100.0 * charge > limits.empty:
-        return Report(Level.WARN, f"Low ({percent} left)", facts)
-    return Report(Level.ERROR, f"Almost empty ({percent} left)", facts)
+        return Report(Level.WARN, f"Low ({percent} left)", facts, "Low")
+    return Report(Level.ERROR, f"Almost empty ({percent} left)", facts, "Almost empty")
 
 
 def current_report(amperes: float | None) -> Report:
@@ -191,7 +190,9 @@ def head_report(temperature: float | None, limits: Thresholds) -> Report:
     message = f"{temperature:.1f} C"
     if temperature < limits.head_warm:
         return Report(Level.OK, message, facts)
-    return Report(Level.WARN if temperature < limits.head_hot else Level.ERROR, message, facts)
+    if temperature < limits.head_hot:
+        return Report(Level.WARN, message, facts, "Hot")
+    return Report(Level.ERROR, message, facts, "Too hot")
 
 
 def network_reports(services: Sequence[Any] | None) -> dict[str, Report]:

@@ -39,6 +39,7 @@ class Report:
     level: Level  # severity
     message: str  # what is the matter, in words
     values: dict[str, str] = field(default_factory=dict)  # facts by name
+    state: str = ""  # the message in a word or two, without numbers, for a summary of several reports
 
 
 class GoalCounter:
