@@ -23,7 +23,6 @@ from .base.driver_node import keep
 
 log = logging.getLogger(__name__)
 
-
 PARTS = {
     "controller": ("nao_controller", "joints.nao_controller.NaoController"),
     "joint_states": ("nao_joint_states", "joints.nao_joint_states.NaoJointStates"),

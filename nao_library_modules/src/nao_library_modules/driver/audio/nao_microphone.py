@@ -27,7 +27,6 @@ from ..base.reconfigure import ReconfigureField, serve
 
 log = logging.getLogger(__name__)
 
-
 # nao_library_msgs/AudioBuffer has the same numbers.
 FRONT_LEFT, FRONT_CENTER, FRONT_RIGHT, REAR_LEFT, REAR_CENTER, REAR_RIGHT = range(6)
 MAPS = {

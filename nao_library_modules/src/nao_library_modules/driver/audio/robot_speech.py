@@ -22,7 +22,6 @@ from ...ros.health import Level, Report
 
 log = logging.getLogger(__name__)
 
-
 SEPARATOR = "/"
 ROBOTS_OWN = -1
 """Volume that leaves the robot's own."""

@@ -22,7 +22,6 @@ from ...base.yaml_values import Budget, load_within
 
 log = logging.getLogger(__name__)
 
-
 Row = Tuple[float, ...]
 
 PLUMB_BOB = "plumb_bob"

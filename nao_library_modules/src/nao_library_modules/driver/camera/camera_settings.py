@@ -18,7 +18,6 @@ from .camera_stream import StreamSettings
 
 log = logging.getLogger(__name__)
 
-
 LEAST_RATE, MOST_RATE = 1.0, 30.0
 OFF_OR_AUTO = {0: "off: the fixed value", 1: "the camera chooses"}
 ALGORITHMS = {0: "average", 1: "weighted average", 2: "for highlights", 3: "for lowlights"}

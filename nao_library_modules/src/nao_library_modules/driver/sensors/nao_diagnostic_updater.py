@@ -25,7 +25,6 @@ from ..base.driver_node import number, publish
 
 log = logging.getLogger(__name__)
 
-
 CONFIG = "RobotConfig/{}"
 KEYS = {
     "head type": CONFIG.format("Head/Type"),

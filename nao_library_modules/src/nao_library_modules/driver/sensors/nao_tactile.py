@@ -29,7 +29,6 @@ from ..base.polling import Polling
 
 log = logging.getLogger(__name__)
 
-
 MEMORY = "ALMemory"
 GRAVITY = 9.81
 """The robot gives forces in kg."""
