@@ -1,4 +1,4 @@
-"""A long call to the robot that ends when it must: on preemption, and when the robot is lost."""
+"""Calls to the robot: a short one with a limit, and a long one that ends on preemption and when the robot is lost."""
 
 from __future__ import annotations
 
@@ -8,12 +8,21 @@ from collections.abc import Callable
 from typing import Any
 
 from naoqi.errors import NaoError
-from naoqi.limits import CANCELLED_LIMIT, STOPPED_LIMIT
+from naoqi.limits import ANSWER_LIMIT, CANCELLED_LIMIT, STOPPED_LIMIT
 
 from ..base.cancellation import CancellationToken
 from .robot import QUICK_ANSWER
 
 log = logging.getLogger(__name__)
+
+
+def ask(robot: Any, module: str, method: str, *arguments: Any, limit: float = ANSWER_LIMIT) -> Any:
+    """Call a method of a NAOqi module and return its answer.
+
+    `robot`: its proxies. `limit`: s that it may take. Raises NaoError if the robot refuses, cannot be
+    asked, or takes longer.
+    """
+    return robot.proxy(module).call_async(method, *arguments).result(timeout=limit)
 
 
 def run_task(call: Any, interrupt: CancellationToken, stop: Callable[[], None]) -> Any:

@@ -27,7 +27,7 @@ from ...base.errors import BadGoal
 from ...base.field_checks import number_parameter
 from ...base.limits import limit
 from ...nao.robot_files import READ, WRITTEN, full_path, is_in
-from ...robot.robot_task import run_task
+from ...robot.robot_task import ask, run_task
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import pose_of, tf_prefix
@@ -173,7 +173,7 @@ class AudioPlayer:
         self._ask(DEVICE, "setOutputVolume", volume)
 
     def _ask(self, module: str, method: str, *arguments: Any, limit: float = ANSWER_LIMIT) -> Any:
-        return self._robot.proxy(module).call_async(method, *arguments).result(timeout=limit)
+        return ask(self._robot, module, method, *arguments, limit=limit)
 
 
 STATES = ("no subscriber", "sounds are located", "sounds cannot be located")

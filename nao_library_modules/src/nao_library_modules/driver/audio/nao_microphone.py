@@ -16,8 +16,9 @@ from rospy.rostime import is_wallclock
 from nao_library_msgs.msg import AudioBuffer
 from naoqi import ALBroker, ALModule
 from naoqi.errors import NaoError, UnknownModule
-from naoqi.limits import ANSWER_LIMIT, STREAM_LIMIT
+from naoqi.limits import STREAM_LIMIT
 
+from ...robot.robot_task import ask
 from ...ros.health import Level, Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
@@ -236,13 +237,13 @@ class Microphone:
 
     def _read_version(self) -> str:
         try:
-            values = self._robot.proxy(MEMORY).call_async("getListData", list(VERSIONS)).result(timeout=ANSWER_LIMIT)
+            values = ask(self._robot, MEMORY, "getListData", list(VERSIONS))
         except UnknownModule:
             return ""
         return next((value for value in values if isinstance(value, str) and value), "")
 
     def _ask(self, method: str, *arguments: Any) -> None:
-        self._robot.proxy(DEVICE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        ask(self._robot, DEVICE, method, *arguments)
 
     def _is_alive(self) -> bool:
         """Whether blocks come. On a simulation that stands still, none are due."""

@@ -20,11 +20,11 @@ from nao_library_actions.msg import (
 )
 from nao_library_msgs.msg import WordRecognized
 from naoqi.errors import NaoError, UnknownModule
-from naoqi.limits import ANSWER_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal
 from ...base.suggestion import of_those
+from ...robot.robot_task import ask
 from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface, node_that_offers
@@ -179,7 +179,7 @@ class NaoSpeech:
         for name, method in KNOWN.items():
             wanted = getattr(settings, name)
             if wanted and wanted != getattr(former, name):
-                known = self._robot.proxy(SPEECH).call_async(method).result(timeout=ANSWER_LIMIT)
+                known = ask(self._robot, SPEECH, method)
                 if wanted not in known:
                     raise NaoError(f"the robot has no {name} {wanted!r}{of_those(wanted, sorted(known))}")
 

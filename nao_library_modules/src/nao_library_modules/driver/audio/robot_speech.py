@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT, LOST_WORD_LIMIT, TEXT_PATIENCE
+from naoqi.limits import LOST_WORD_LIMIT, TEXT_PATIENCE
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import Preempted, RobotLost
 from ...base.limits import limit
 from ...robot.event_relay import EventRelay
-from ...robot.robot_task import end_call
+from ...robot.robot_task import ask, end_call
 from ...ros.health import Level, Report
 
 log = logging.getLogger(__name__)
@@ -196,7 +196,7 @@ class BorrowedVoice:
         return self._ask(METHODS[name][0])
 
     def _ask(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(SPEECH).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, SPEECH, method, *arguments)
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -421,7 +421,7 @@ class RobotSpeech:
 
     def _stop(self) -> None:
         """Silence a robot whose calls cannot be cancelled."""
-        self._robot.proxy(SPEECH).call_async("stopAll").result(timeout=ANSWER_LIMIT)
+        ask(self._robot, SPEECH, "stopAll")
 
     def _give_back(self) -> None:
         if self._robot.connection.state != "connected":

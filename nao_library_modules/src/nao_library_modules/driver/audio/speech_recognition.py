@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT
 
 from ...robot.event_relay import EventRelay
+from ...robot.robot_task import ask
 from ...ros.health import Report
 from ..base.lazy_subscription import LazySubscription
 from .robot_speech import SpeechSettings
@@ -126,7 +126,7 @@ class WordRecognition:
         self._relay.subscribe(HEARD)
 
     def _ask(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(RECOGNITION).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, RECOGNITION, method, *arguments)
 
     def _on_event(self, _name: str, value: Any) -> None:
         heard = read_heard(value)

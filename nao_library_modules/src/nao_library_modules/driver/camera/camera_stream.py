@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from naoqi.errors import NaoError, RobotError, RobotUnreachable
-from naoqi.limits import ANSWER_LIMIT, FIRST_PICTURE_LIMIT, STREAM_LIMIT
+from naoqi.limits import FIRST_PICTURE_LIMIT, STREAM_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import Preempted
 from ...nao.camera_facts import CAMERA_NAMES
 from ...robot.image_clock import ImageClock
 from ...robot.robot import wait_for_calls
+from ...robot.robot_task import ask
 from ...ros.health import Level, Report
 from ..base.lazy_subscription import CLOSE_LIMIT, LazySubscription
 from ..base.polling import RateMeter
@@ -97,7 +98,7 @@ class CameraSubscriber:
         return len(leftovers)
 
     def _ask(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(DEVICE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, DEVICE, method, *arguments)
 
 
 FAILURE_PAUSE = 0.5

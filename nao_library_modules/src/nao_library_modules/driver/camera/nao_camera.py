@@ -13,10 +13,10 @@ from sensor_msgs.srv import SetCameraInfo, SetCameraInfoResponse
 from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT
 
 from ...base.suggestion import did_you_mean
 from ...nao.camera_facts import CAMERA_NAMES, CAMERAS, SIZES, TOP
+from ...robot.robot_task import ask
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.ros_clock import RosClock
@@ -139,7 +139,7 @@ class CameraTopics:
     # --- the robot ------------------------------------------------------------------------------------------------
 
     def _ask(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(DEVICE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, DEVICE, method, *arguments)
 
     def _prepare(self) -> None:
         """Make robot and parameters agree; called in the thread of the lazy subscription, before pictures come.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT, MOVE_LIMIT
+from naoqi.limits import MOVE_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
@@ -17,7 +17,7 @@ from ...base.field_checks import number_parameter, require_within
 from ...base.limits import limit
 from ...functions.joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
 from ...nao.joint_names import MOTION, JointNames
-from ...robot.robot_task import run_task
+from ...robot.robot_task import ask, run_task
 
 log = logging.getLogger(__name__)
 
@@ -175,10 +175,10 @@ class JointController:
         return False
 
     def _quick(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(MOTION).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, MOTION, method, *arguments)
 
     def _service(self, module: str, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(module).call_async(method, *arguments).result(timeout=MOVE_LIMIT)
+        return ask(self._robot, module, method, *arguments, limit=MOVE_LIMIT)
 
 
 class InitialStiffness:

@@ -23,6 +23,7 @@ from ...base.paths import config_file
 from ...base.places import ORIGIN, Place
 from ...base.rotations import Quaternion, Vector, about, from_roll_pitch_yaw, inverse, rotate
 from ...nao.joint_names import MOTION
+from ...robot.robot_task import ask
 
 MEMORY = "ALMemory"
 DEVICE = "Device/SubDeviceList/{}/Value"
@@ -92,7 +93,7 @@ class JointSensors:
 
     def read_stiffnesses(self) -> tuple[float, ...]:
         """Stiffness of each joint, 0 to 1; NaN where the robot gives none. Raises NaoError if it cannot be asked."""
-        values = self._robot.proxy(MEMORY).call_async("getListData", self._stiffness_keys).result(timeout=ANSWER_LIMIT)
+        values = ask(self._robot, MEMORY, "getListData", self._stiffness_keys)
         return tuple(_number(value) for value in values)
 
     def _ask_torso(self) -> Any:

@@ -11,9 +11,10 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty, SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from naoqi.errors import NaoError, UnknownModule
-from naoqi.limits import ANSWER_LIMIT, MOVE_LIMIT
+from naoqi.limits import MOVE_LIMIT
 
 from ...robot.event_relay import EventRelay
+from ...robot.robot_task import ask
 from ...ros.health import Level, Report
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import publish
@@ -62,7 +63,7 @@ class AutonomousLife:
 
     def set_state(self, state: str) -> None:
         """Change the state, and wait until it is reached."""
-        self._robot.proxy(LIFE).call_async("setState", state).result(timeout=MOVE_LIMIT)
+        ask(self._robot, LIFE, "setState", state, limit=MOVE_LIMIT)
 
     def set_enabled(self, ability: Ability, enabled: bool) -> None:
         try:
@@ -100,7 +101,7 @@ class AutonomousLife:
             self._publish(self._state)
 
     def _ask(self, module: str, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(module).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, module, method, *arguments)
 
 
 class NaoAlife:

@@ -9,12 +9,12 @@ from typing import Any
 from nao_library_actions.msg import RunBehaviorAction, RunBehaviorResult
 from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsResponse
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT, CLEAN_UP_LIMIT
+from naoqi.limits import CLEAN_UP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.errors import BadGoal, Preempted
 from ...base.suggestion import did_you_mean
-from ...robot.robot_task import run_task
+from ...robot.robot_task import ask, run_task
 from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
@@ -64,7 +64,7 @@ class Behaviors:
 
     def _require_stiffness(self) -> None:
         """NAOqi plays animations on a limp robot, which then does not move and does not say so."""
-        stiffnesses = self._robot.proxy("ALMotion").call_async("getStiffnesses", "Body").result(timeout=ANSWER_LIMIT)
+        stiffnesses = ask(self._robot, "ALMotion", "getStiffnesses", "Body")
         if not any(stiffnesses):
             raise NaoError("the robot is limp and would not move: wakeUp first")
 
@@ -77,12 +77,12 @@ class Behaviors:
 
     def _stop(self, name: str) -> None:
         try:
-            self._robot.proxy(MODULE).call_async("stopBehavior", name).result(timeout=CLEAN_UP_LIMIT)
+            ask(self._robot, MODULE, "stopBehavior", name, limit=CLEAN_UP_LIMIT)
         except NaoError as error:
             log.warning("%s may still run: %s", name, error)
 
     def _ask(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(MODULE).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, MODULE, method, *arguments)
 
 
 ROBOT = frozenset({"the robot"})

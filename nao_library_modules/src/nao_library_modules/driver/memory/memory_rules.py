@@ -16,6 +16,7 @@ from ...base.errors import BadGoal
 from ...base.field_checks import require_zero_or
 from ...base.limits import limit
 from ...base.suggestion import did_you_mean
+from ...robot.robot_task import ask
 
 FIRST = "key_"
 """Before a name that does not begin with a letter, which ROS asks for."""
@@ -151,7 +152,7 @@ class MemoryAccess:
         self._robot = robot
 
     def ask(self, method: str, *arguments: Any) -> Any:
-        return self._robot.proxy(MEMORY).call_async(method, *arguments).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, MEMORY, method, *arguments)
 
     def values(self, keys: Sequence[str]) -> list[Any]:
         """Values of keys, in order; None for one without."""

@@ -13,7 +13,7 @@ from geometry_msgs.msg import Pose2D, Twist, Vector3
 from std_srvs.srv import Empty
 
 from naoqi.errors import NaoError, RobotError
-from naoqi.limits import ANSWER_LIMIT, STOP_LIMIT
+from naoqi.limits import STOP_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.clock import WallClock
@@ -22,7 +22,7 @@ from ...nao.joint_names import MOTION, MOVE_FAILED
 from ...nao.stiff_legs import ask_for_stiff_legs
 from ...nao.walk_speed import top_speeds
 from ...owners.line import SERVICE
-from ...robot.robot_task import run_task
+from ...robot.robot_task import ask, run_task
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import LazyTopic
 from ..base.polling import Rate
@@ -138,7 +138,7 @@ class WalkTopics:
         self._commands.publish(Twist(Vector3(x, y, 0.0), Vector3(0.0, 0.0, yaw)))
 
     def walking(self) -> bool:
-        return bool(self._robot.proxy(MOTION).call_async("moveIsActive").result(timeout=ANSWER_LIMIT))
+        return bool(ask(self._robot, MOTION, "moveIsActive"))
 
     def why_stopped(self) -> str:
         """Cause of the robot's event MoveFailed since `prepare`, an obstacle for example; empty without one."""
@@ -182,13 +182,13 @@ class WalkTopics:
     def _last_failure(self) -> list:
         """Value of the event: cause, whether the walk had begun, place of an obstacle. Empty before the first one."""
         try:
-            value = self._robot.proxy(MEMORY).call_async("getData", MOVE_FAILED).result(timeout=ANSWER_LIMIT)
+            value = ask(self._robot, MEMORY, "getData", MOVE_FAILED)
         except RobotError:
             return []  # nothing has failed yet, or the robot has no such event
         return list(value) if isinstance(value, (list, tuple)) else []
 
     def _stop_robot(self) -> None:
-        self._robot.proxy(MOTION).call_async("stopMove").result(timeout=STOP_LIMIT)
+        ask(self._robot, MOTION, "stopMove", limit=STOP_LIMIT)
 
     @staticmethod
     def _call_if_there(service: rospy.ServiceProxy) -> None:

@@ -13,11 +13,11 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from nao_library_msgs.msg import ConnectionState, RobotInfo, StringStamped
 from nao_library_msgs.srv import GetRobotInfo, GetRobotInfoResponse
 from naoqi.errors import NaoError, UnknownMethod, UnknownModule
-from naoqi.limits import ANSWER_LIMIT
 
 from ...base.answers import json_of
 from ...base.cancellation import CancellationToken
 from ...nao.joint_names import JointNames
+from ...robot.robot_task import ask
 from ...ros.body_reports import Thresholds, body_reports, keys_of, network_reports, part_of
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
@@ -191,13 +191,13 @@ class NaoDiagnosticUpdater:
         keys = keys_of(joints)
         reports = body_reports(joints, dict(zip(keys, self._read(keys))), self._limits)
         try:
-            networks = self._robot.proxy(NETWORKS).call_async("services").result(timeout=ANSWER_LIMIT)
+            networks = ask(self._robot, NETWORKS, "services")
         except (UnknownModule, UnknownMethod):
             networks = None
         return {**reports, **network_reports(networks)}
 
     def _read(self, keys: list[str]) -> list[Any]:
-        return self._robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
+        return ask(self._robot, MEMORY, "getListData", keys)
 
     def _publish(self, reports: Mapping[str, Report], problem: str = "") -> None:
         message = DiagnosticArray()

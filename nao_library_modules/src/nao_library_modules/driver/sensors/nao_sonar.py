@@ -10,9 +10,9 @@ import rospy
 from sensor_msgs.msg import Range
 
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT
 
 from ...nao.body_devices import FARTHEST, NEAREST, SONAR_CONE, SONARS, echo_of
+from ...robot.robot_task import ask
 from ...ros.health import Level, Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
@@ -70,12 +70,12 @@ class Sonars:
         self._measuring.close()
 
     def _ask(self, method: str) -> None:
-        self._robot.proxy(SONAR).call_async(method, self._subscriber).result(timeout=ANSWER_LIMIT)
+        ask(self._robot, SONAR, method, self._subscriber)
 
     def _read(self) -> None:
         if not self._measuring.running:
             return  # the memory holds an old measurement, of another subscriber
-        values = self._robot.proxy(MEMORY).call_async("getListData", list(SONARS.values())).result(timeout=ANSWER_LIMIT)
+        values = ask(self._robot, MEMORY, "getListData", list(SONARS.values()))
         if len(values) != len(SONARS):
             raise NaoError(f"the robot's memory answers {values!r} for {', '.join(SONARS.values())}")
         self._sink({side: range_of(value) for side, value in zip(SONARS, values)})

@@ -14,11 +14,11 @@ from std_msgs.msg import Bool
 
 from nao_library_msgs.msg import Bumper, ChestButton, Fsr, HandTouch, HeadTouch, TactileTouch
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT
 
 from ...nao.body_devices import FOOT_CONTACT, SIDES, sensor_key, weight_keys
 from ...nao.touch_names import BY_EVENT
 from ...robot.event_relay import EventRelay
+from ...robot.robot_task import ask
 from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
 from ...ros.robot_frames import tf_prefix
@@ -67,7 +67,7 @@ def read_foot(values: Sequence[Any]) -> FootPressure:
 def read_feet(robot: Any) -> dict[str, FootPressure]:
     """Both feet, by side, in one call; raises NaoError if the robot cannot be asked."""
     keys = [key for side in SIDES for key in keys_of(side)]
-    values = robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
+    values = ask(robot, MEMORY, "getListData", keys)
     count = len(keys) // len(SIDES)
     return {side: read_foot(values[place * count : (place + 1) * count]) for place, side in enumerate(SIDES)}
 
@@ -176,7 +176,7 @@ class TouchSensors:
 
     def _read(self, keys_of: Mapping[TouchSensor, Sequence[str]]) -> None:
         keys = [key for keys in keys_of.values() for key in keys]
-        answer = self._robot.proxy(MEMORY).call_async("getListData", keys).result(timeout=ANSWER_LIMIT)
+        answer = ask(self._robot, MEMORY, "getListData", keys)
         values = dict(zip(keys, answer))
         for sensor, keys in keys_of.items():
             known = [values[key] for key in keys if isinstance(values[key], (bool, int, float))]

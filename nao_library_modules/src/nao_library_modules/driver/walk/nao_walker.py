@@ -20,13 +20,13 @@ from std_srvs.srv import Empty
 from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import CmdPoseService, CmdVelService, SetArmsEnabled, StepTargetService
 from naoqi.errors import NaoError
-from naoqi.limits import ANSWER_LIMIT
 
 from ...base.cancellation import CancellationToken
 from ...base.kept import Kept
 from ...functions.joint_trajectory import KeyFrames
 from ...nao.joint_names import MOTION, MOVE_FAILED
 from ...robot.event_relay import EventRelay
+from ...robot.robot_task import ask
 from ...ros.health import Level, Report
 from ...ros.node_interface import AlreadyOffered, NodeInterface
 from ...ros.ros_clock import RosClock
@@ -417,7 +417,7 @@ class NaoWalker:
 
     def _serve_arms(self, _: str, request: Any) -> None:
         arms = request.left_arm, request.right_arm
-        self._robot.proxy(MOTION).call_async("setMoveArmsEnabled", *arms).result(timeout=ANSWER_LIMIT)
+        ask(self._robot, MOTION, "setMoveArmsEnabled", *arms)
 
     def _gait(self) -> list[list[Any]]:
         if not self._node.param("~use_foot_gait_config", False):
@@ -432,7 +432,7 @@ class NaoWalker:
             protect = self._node.param("~enable_foot_contact_protection", None)
             if protect is not None:
                 config = [[CONTACT_PROTECTION, bool(protect)]]
-                self._robot.proxy(MOTION).call_async("setMotionConfig", config).result(timeout=ANSWER_LIMIT)
+                ask(self._robot, MOTION, "setMotionConfig", config)
             self._init_stiffness.apply()
         except NaoError as error:
             rospy.logerr("the robot does not take the parameters of the walk: %s", error)
@@ -455,7 +455,7 @@ class NaoWalker:
         active = None
         if self._robot.connection.state == "connected":
             try:
-                active = self._robot.proxy(MOTION).call_async(IS_ACTIVE).result(timeout=ANSWER_LIMIT)
+                active = ask(self._robot, MOTION, IS_ACTIVE)
                 self._journal.succeeded(IS_ACTIVE)
             except NaoError as error:
                 self._journal.failed(IS_ACTIVE, error)

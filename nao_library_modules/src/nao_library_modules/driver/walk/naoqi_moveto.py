@@ -18,6 +18,7 @@ from naoqi.limits import STOP_LIMIT
 from ...base.places import FOOTPRINT, ODOM, Place
 from ...nao.joint_names import MOTION
 from ...nao.stiff_legs import ask_for_stiff_legs
+from ...robot.robot_task import ask
 from ...ros.health import Level, Report
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import frame_parameter
@@ -112,7 +113,7 @@ class MoveToWalk:
         call, self._newest = self._newest, None
         if call is None or call.done():
             return
-        self._robot.proxy(MOTION).call_async("stopMove").result(timeout=STOP_LIMIT)
+        ask(self._robot, MOTION, "stopMove", limit=STOP_LIMIT)
         self._report(Level.OK, "the robot was stopped")
 
     def _ended(self, goal: WalkGoal, call: Any) -> None:
