@@ -23,16 +23,11 @@ def console_time() -> float:
     return time.monotonic()
 
 
-def late_by(message: Mapping[str, Any]) -> float:
-    """How old a message is that comes too late, s; 0: it is in time, or has no stamp."""
+def refusal_of_late(message: Mapping[str, Any]) -> str:
+    """Why a message is not carried out, for people; empty: it is in time, or has no stamp."""
     stamp = message.get(STAMP)
     if not isinstance(stamp, (int, float)) or isinstance(stamp, bool) or not math.isfinite(stamp):
-        return 0.0
-    age = console_time() - stamp
-    return age if age > LATE else 0.0
-
-
-def refusal_of_late(message: Mapping[str, Any]) -> str:
-    """Why a message is not carried out, for people; empty: it is in time."""
-    age = late_by(message)
-    return f"it came {age:.0f} s late: look again, and press once more" if age else ""
+        return ""
+    if console_time() - stamp <= LATE:
+        return ""
+    return f"it came more than {LATE:g} s late, as the connection was interrupted: look, and press again if still wanted"

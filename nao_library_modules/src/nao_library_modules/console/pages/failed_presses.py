@@ -17,6 +17,7 @@ from ..robots.presses import FailedPress, Press, Presses
 from ..robots.runs import NOT_SENT
 
 LONGEST_LABEL = 100
+UNSENT = "the page had no connection to the console when it was pressed"
 MOST_UNSENT = 50
 """Presses of which a page tells at once that it could not send them."""
 
@@ -49,8 +50,7 @@ def unsent_presses(
         streams = (robot.events,) if robot is not None and session.operator else ()
         via = "key" if via == "key" else "click"
         press = Press(label, session.name, page, namespace_of(of or name), group, via, streams)
-        reason = f"the page had no connection to the console when it was pressed, {age:.0f} s before this"
-        yield press, reason, {"age": age, "keep": not each.get("seen")}
+        yield press, UNSENT, {"age": age, "keep": not each.get("seen")}
 
 
 class FailedLines:
