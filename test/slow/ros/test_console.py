@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -19,7 +20,6 @@ from nao_library_actions.msg import (
     NaoAudioOutActionResult,
     NaoBehaviorActionGoal,
     NaoBehaviorActionResult,
-    PerformDesignatorActionGoal,
 )
 from nao_library_msgs.srv import SetMemory
 from nao_sim_bridge.testing import wait_until
@@ -272,23 +272,24 @@ HANGING = """
 import threading, actionlib, rospy
 from nao_library_actions.msg import PerformDesignatorAction
 rospy.init_node("hanging", anonymous=True)
-hang = lambda _: threading.Event().wait()
+hang = lambda _: print("it hangs", flush=True) or threading.Event().wait()
 actionlib.SimpleActionServer("perform_designator", PerformDesignatorAction, hang, auto_start=False).start()
+print("it is there", flush=True)
 rospy.spin()
 """
 
 
-def test_a_goal_whose_server_dies_is_lost_and_says_what_died(browser, heard):
-    server = start_program(sys.executable, "-c", HANGING)
+def test_a_goal_whose_server_dies_is_lost_and_says_what_died(browser):
+    server = start_program(sys.executable, "-c", HANGING, stdout=subprocess.PIPE, text=True)
     try:
-        goals = heard("perform_designator/goal", PerformDesignatorActionGoal)
+        assert any("it is there" in line for line in server.stdout)
         browser.open("/wizard")
         browser.click("nao-wizard-buttons button", "Look to the left")
-        goals.wait()
+        assert any("it hangs" in line for line in server.stdout)
         browser.one("nao-wizard-buttons button[data-state=runs]", "Look to the left")
     finally:
         server.kill()
-        server.wait(LIMIT)
+        server.communicate(timeout=LIMIT)
     browser.one("nao-wizard-buttons button[data-failed]", "lost")
     browser.one(".nao-failed", "the server /perform_designator died")
     see_all(browser)
