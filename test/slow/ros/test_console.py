@@ -392,7 +392,7 @@ def test_a_protocol_that_is_not_saved_is_offered_again_and_its_mistakes_stand_be
     browser.reads("One trial of ten steps")
     browser.click(".q-expansion-item", "Protocol as YAML")
     browser.click(".cm-content")
-    browser.keys("nonsense: 3", Keys.ENTER)
+    browser.keys(Keys.CONTROL, Keys.HOME, Keys.NULL, "nonsense: 3", Keys.ENTER)
     kept(browser, "nonsense")
     browser.click("button", "Check")
     browser.until(lambda: browser.all(".nao-wrong", "nonsense"), "the mistake beside its line")
