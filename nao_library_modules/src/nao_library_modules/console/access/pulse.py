@@ -30,4 +30,6 @@ def refusal_of_late(message: Mapping[str, Any]) -> str:
         return ""
     if console_time() - stamp <= LATE:
         return ""
-    return f"it came more than {LATE:g} s late, as the connection was interrupted: look, and press again if still wanted"
+    return (
+        f"it came more than {LATE:g} s late, as the connection was interrupted: look, and press again if still wanted"
+    )
