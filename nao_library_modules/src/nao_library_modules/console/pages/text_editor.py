@@ -82,7 +82,9 @@ class YamlEditor:
         self._list = ui.column().classes("w-full gap-0 max-h-40 shrink-0 overflow-auto no-wrap")
         offers = offers or ui.column().classes("w-full")
         theme = "vscodeDark" if page.visitor.dark else "vscodeLight"
-        self.code = ui.codemirror(language="YAML", theme=theme, indent="  ", on_change=lambda: self.tell(""))
+        self.code = ui.codemirror(
+            language="YAML", theme=theme, indent="  ", line_wrapping=True, on_change=lambda: self.tell("")
+        )
         self.code.classes("w-full border rounded").style(f"height: {height}")
         self.code.props["aria-label"] = label
 
