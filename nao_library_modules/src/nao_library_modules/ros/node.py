@@ -17,7 +17,7 @@ import rospy
 
 from naoqi.errors import NaoError
 from naoqi.limits import DEFAULT_TIMING, SERVER_PATIENCE, Timing
-from naoqi.registry import close_all as close_connections
+from naoqi.robot_connection import close_all as close_connections
 
 from ..base.field_checks import number_parameter
 from ..base.limits import limit
