@@ -29,6 +29,7 @@ FUNCTION = MODULE.with_name("add_a_function.py")
 
 class OwnFunction(RobotTestCase):
     server = ("NaoLights", NaoLedAction)
+    respawned = ("NaoLights",)
 
     def test_a_server_of_ones_own_takes_the_place_of_ours_and_ours_comes_back_afterwards(self):
         own = subprocess.Popen([sys.executable, str(FUNCTION), "--pport", os.environ["NAO_PORT"]])

@@ -106,10 +106,13 @@ class RosStack:
         """Process id of the ROS master."""
         return self._master.pid
 
-    def deaths(self):
-        """Names of the nodes that have ended since the stack was started."""
+    def deaths(self, respawned=()):
+        """Names of the nodes that have ended since the stack was started, but for those that were to be respawned."""
         self._nodes.update(_children(self.stack.pid))
-        return [name for pid, name in self._nodes.items() if not _alive(pid)]
+        dead = {pid: name for pid, name in self._nodes.items() if not _alive(pid)}
+        for pid in dead:
+            del self._nodes[pid]
+        return [name for name in dead.values() if name not in respawned]
 
     def close(self):
         rospy.signal_shutdown("the tests are over")

@@ -13,10 +13,13 @@ def running(request, stack):
 
 @pytest.fixture(autouse=True)
 def intact(request, stack):
-    """Names the case that ends a node, and starts the stack again for the next."""
+    """Names the case that ends a node, and starts the stack again for the next.
+
+    `respawned` of a class: names of nodes that its cases end, and that roslaunch starts again.
+    """
     stack.ensure(getattr(request.cls, "world", "empty"))
     yield
-    dead = stack.deaths()
+    dead = stack.deaths(getattr(request.cls, "respawned", ()))
     if dead:
         stack.broken = True
         pytest.fail(f"nodes ended in this case or the one before: {', '.join(dead)}", pytrace=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,7 @@ from nao_library_actions.msg import (
     NaoBehaviorActionGoal,
     NaoBehaviorActionResult,
 )
+from nao_library_modules.console.access.pulse import LATE
 from nao_library_msgs.srv import SetMemory
 from nao_sim_bridge.testing import wait_until
 
@@ -238,6 +240,9 @@ def test_what_is_pressed_while_the_console_does_not_answer_is_said_and_never_sen
 
     with stopped(program.process.pid):
         browser.until(refused, "that it is not sent")
+        pressed = time.monotonic()
+        # What the page sent before it knew comes late then.
+        wait_until(lambda: time.monotonic() > pressed + LATE + 1.0, LIMIT, "the time after which a press is late")
     browser.until(
         lambda: not browser.all(".nao-unsent p") and browser.all(".nao-failed", "not sent"), "what was pressed"
     )
