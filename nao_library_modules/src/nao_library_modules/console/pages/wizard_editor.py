@@ -14,6 +14,9 @@ from ..wizard.reader import read_layout
 from .frame import PageContext
 from .text_editor import YamlEditor, mistakes, problems_of
 
+HEIGHT = "calc(100vh - var(--nao-bar) - var(--nao-strip) - 14rem)"
+"""Of the text, in CSS: what the dialog has beside its buttons and notes."""
+
 
 class WizardEditor:
     """A dialog of one page. Its text is checked as a file, and against what the robot's servers tell of themselves."""
@@ -28,7 +31,7 @@ class WizardEditor:
         with ui.dialog().props('maximized persistent aria-label="Edit the buttons"') as self._dialog, ui.card().classes(
             "no-wrap"
         ):
-            with ui.row().classes("w-full items-center"):
+            with ui.row().classes("nao-editor-bar w-full items-center"):
                 ui.label(str(file.path)).classes("text-subtitle1")
                 ui.space()
                 ui.button("Check", icon="rule", on_click=self._check).props("no-caps outline")
@@ -57,7 +60,7 @@ class WizardEditor:
         self._over.set_visibility(False)
         self._place.clear()
         with self._place:
-            self._editor = YamlEditor(self._page, "Text of the file", "buttons", self._taken, "calc(100vh - 15rem)")
+            self._editor = YamlEditor(self._page, "Text of the file", "buttons", self._taken, HEIGHT)
         self._editor.open(str(self._file.path), saved.text)
         await self._check()
 
