@@ -400,7 +400,7 @@ def test_a_protocol_that_is_not_saved_is_offered_again_and_its_mistakes_stand_be
     browser.keys(Keys.CONTROL, Keys.HOME, Keys.NULL, "nonsense: 3", Keys.ENTER)
     kept(browser, "nonsense")
     browser.click("button", "Check")
-    browser.until(lambda: browser.all(".nao-wrong", "nonsense"), "the mistake beside its line")
+    browser.until(lambda: browser.all(".cm-line:has(.nao-wrong)", "nonsense"), "the mistake beside its line")
     browser.reads("cannot be run")
     assert "Nothing wrong" not in browser.text()
     browser.open("/study", protocol="ten_steps")
@@ -416,11 +416,11 @@ def test_buttons_that_were_edited_are_offered_when_the_editor_is_opened_again(br
     browser.click("button", "Edit")
     browser.click(".cm-content")
     browser.keys("# typed in vain?")
-    browser.click("button", "Close")
+    browser.click(".nao-close")
     browser.click("button", "Edit")
     browser.click(".nao-draft button", "Show the draft")
     browser.until(lambda: "# typed in vain?" in browser.script(CODE), "the draft")
-    browser.click("button", "Close")
+    browser.click(".nao-close")
     browser.script("localStorage.clear()")
 
 
