@@ -68,8 +68,9 @@ class FailedLines:
         loop, client = asyncio.get_running_loop(), context.client
 
         def in_page() -> None:
-            with client:
-                self._show()
+            if not self._page.gone:
+                with client:
+                    self._show()
 
         self._page.on_leave(self._presses.subscribe(lambda: loop.call_soon_threadsafe(in_page)))
         self._show()
