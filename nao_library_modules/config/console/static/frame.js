@@ -79,6 +79,7 @@ function show() {
     window.dispatchEvent(new CustomEvent("nao-console-lost"));
     if (state === "gone") reconnectPage();
   }
+  if (before && !state) window.dispatchEvent(new CustomEvent("nao-console-back"));
   setText(".nao-told", TROUBLE[state] ?? "");
   const reaches = state !== "gone" && state !== "out";
   setText(".nao-stop-state", !reaches ? "No connection" : sent ? "Sent…" : STATES[beat?.state] ?? "");

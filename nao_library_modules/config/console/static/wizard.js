@@ -148,6 +148,7 @@ class WizardLink extends EventTarget {
     window.addEventListener("keyup", (event) => this.up(event), { ...until, capture: true });
     window.addEventListener("nao-stop", () => this.stopOthers(), until);
     window.addEventListener("nao-console-lost", () => this.socket.close(), until);
+    window.addEventListener("nao-console-back", () => this.openNow(), until);
     window.addEventListener("blur", () => this.letGo(), until);
     window.addEventListener("pagehide", () => this.letGo(), until);
     document.addEventListener("visibilitychange", () => document.hidden && this.letGo(), until);
@@ -189,6 +190,13 @@ class WizardLink extends EventTarget {
       this.retry = Math.min(2 * this.retry, LONGEST_RETRY);
     };
     this.socket = socket;
+  }
+
+  openNow() {
+    if (this.socket.readyState !== WebSocket.CLOSED) return;
+    clearTimeout(this.timer);
+    this.retry = FIRST_RETRY;
+    this.open();
   }
 
   get connected() {

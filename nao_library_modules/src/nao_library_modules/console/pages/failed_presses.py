@@ -7,8 +7,9 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from fastapi import Request
+from fastapi import HTTPException, Request
 from nicegui import context, ui
+from starlette.requests import ClientDisconnect
 
 from ..access.guard import session_of
 from ..access.sessions import Session
@@ -28,7 +29,13 @@ def build(console: Any) -> None:
     @console.app.post("/console/unsent")
     async def unsent(request: Request) -> None:
         session = session_of(request)
-        for press, reason, more in unsent_presses(await request.json(), session, console.robots.known):
+        try:
+            told = await request.json()
+        except ValueError as error:
+            raise HTTPException(400, f"presses are told as JSON: {error}") from None
+        except ClientDisconnect:  # the page is left, and tells it again from the next one
+            return
+        for press, reason, more in unsent_presses(told, session, console.robots.known):
             console.presses.report(press, NOT_SENT, reason, **more)
 
 

@@ -306,9 +306,11 @@ class _DriveSocket:
         teller = asyncio.create_task(self._tell(wizard))
         try:
             while True:
-                self._take(wizard, await socket.receive_text())
-        except WebSocketDisconnect:
-            pass
+                try:
+                    text = await socket.receive_text()
+                except (WebSocketDisconnect, RuntimeError):  # Starlette's to who reads behind a send that failed
+                    break
+                self._take(wizard, text)
         finally:
             teller.cancel()
             for end in ends:
