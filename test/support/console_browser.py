@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 from urllib.parse import urlencode, urlsplit
 
+import rosgraph
+import rosnode
 from ros_stack import start_program
 from selenium import webdriver
 from selenium.common.exceptions import WebDriverException
@@ -68,9 +70,12 @@ class ConsoleProgram:
         self.base = f"http://127.0.0.1:{self.port}"
 
     def kill(self):
-        """As if the computer took it away."""
+        """As if the computer took it away. The master forgets its node, which nobody else would tell it."""
         self.process.kill()
         self.process.wait(LIMIT)
+        name = f"/nao_console_{self.process.pid}_"
+        gone = [each for each in rosnode.get_node_names() if each.startswith(name)]
+        rosnode.cleanup_master_blacklist(rosgraph.Master("/tests"), gone)
 
     def close(self):
         if self.process.poll() is None:
@@ -201,6 +206,15 @@ class ConsoleBrowser:
         self.driver.execute_cdp_cmd("Network.enable", {})
         conditions = {"offline": not there, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1}
         self.driver.execute_cdp_cmd("Network.emulateNetworkConditions", conditions)
+
+    def leave(self):
+        """Stop the robot and leave the page; nothing is left of what was typed there."""
+        if self.driver.current_url.startswith(self.program.base):
+            self.driver.execute_async_script("fetch('/console/stop?robot=/', {method: 'POST'}).finally(arguments[0])")
+        self.driver.get("about:blank")
+        self.driver.execute_cdp_cmd(
+            "Storage.clearDataForOrigin", {"origin": self.program.base, "storageTypes": "local_storage"}
+        )
 
     def complaints(self):
         """What the browser has logged as an error."""

@@ -128,10 +128,13 @@ class StopLine:
         self._count = 0
 
     def stop(self, robot="/"):
-        """Stop a robot; the answer."""
+        """Stop a robot; the answer, which comes between beats of the console."""
         self._count += 1
         self._socket.send(json.dumps({"robot": robot, "id": str(self._count)}))
-        return json.loads(self._socket.recv(LIMIT))
+        while True:
+            answer = json.loads(self._socket.recv(LIMIT))
+            if answer.get("id") == str(self._count):
+                return answer
 
     def close(self):
         self._socket.close()

@@ -97,7 +97,9 @@ class Watch:
             frames = traceback.extract_stack()
             ours = [frame for frame in frames if CONSOLE in frame.filename]
             if ours and not any(map(_is_harmless, frames)):
-                self._tell(f"{what}: " + " < ".join(f"{Path(f.filename).name}:{f.lineno} {f.name}" for f in ours[::-1]))
+                last = [] if frames[-3] in ours else [frames[-3]]  # behind those of this watch
+                told = [f"{Path(frame.filename).name}:{frame.lineno} {frame.name}" for frame in last + ours[::-1]]
+                self._tell(f"{what}: " + " < ".join(told))
         finally:
             self._inside.loop = True
 

@@ -87,8 +87,7 @@ def heard():
 def standing_still(stack, browser):
     """Whatever a case has left going ends."""
     yield
-    browser.script("fetch('/console/stop?robot=/', {method: 'POST'})")
-    browser.driver.get("about:blank")
+    browser.leave()
 
 
 def texts(message):
@@ -161,7 +160,7 @@ let state = context.UNSIGNALED, begun = 0, frames = 0;
 Object.assign(context, { fenceSync: () => ({}), deleteSync() {} });
 Object.assign(context, { isContextLost: () => false, getSyncParameter: () => state });
 const view = document.querySelector("nao-robot-view"), { renderer } = view, { render } = renderer;
-renderer.render = (...all) => { begun += 1; render(...all); };
+renderer.render = (...all) => { begun += 1; render.apply(renderer, all); };
 const look = () => {
   view.dirty = true;
   frames += 1;
@@ -320,6 +319,7 @@ def test_escape_ends_everything_on_every_page(browser, heard):
     )
     browser.open("/wizard")
     browser.one("nao-wizard-buttons button")
+    browser.click("button", "Arm again")
     browser.script("document.activeElement.blur()")
     browser.keys("i")
     goal = goals.wait()
@@ -397,7 +397,8 @@ def test_a_protocol_that_is_not_saved_is_offered_again_and_its_mistakes_stand_be
     browser.reads("One trial of ten steps")
     browser.click(".q-expansion-item", "Protocol as YAML")
     browser.click(".cm-content")
-    browser.keys(Keys.CONTROL, Keys.HOME, Keys.NULL, "nonsense: 3", Keys.ENTER)
+    chain = ActionChains(browser.driver).key_down(Keys.CONTROL).send_keys(Keys.HOME).key_up(Keys.CONTROL)
+    chain.send_keys("nonsense: 3", Keys.ENTER).perform()
     kept(browser, "nonsense")
     browser.click("button", "Check")
     browser.until(lambda: browser.all(".cm-line:has(.nao-wrong)", "nonsense"), "the mistake beside its line")
@@ -420,8 +421,6 @@ def test_buttons_that_were_edited_are_offered_when_the_editor_is_opened_again(br
     browser.click("button", "Edit")
     browser.click(".nao-draft button", "Show the draft")
     browser.until(lambda: "# typed in vain?" in browser.script(CODE), "the draft")
-    browser.click(".nao-close")
-    browser.script("localStorage.clear()")
 
 
 def test_a_text_that_was_not_said_is_offered_again(browser):
@@ -432,7 +431,6 @@ def test_a_text_that_was_not_said_is_offered_again(browser):
     browser.click(".nao-draft button", "Show the draft")
     said = "return document.querySelector(\"input[aria-label='Say']\").value"
     browser.until(lambda: browser.script(said) == "Half a sentence", "the draft")
-    browser.script("localStorage.clear()")
 
 
 # --- behaviours and functions -----------------------------------------------------------------------------------------

@@ -158,6 +158,7 @@ def test_a_page_whose_console_hangs_says_so_and_sends_nothing_late(program, brow
             wait_until(lambda: time.monotonic() > pressed + LATE + 1.0, LIMIT, "the time after which a press is late")
         browser.until(lambda: browser.script("return document.body.dataset.console") == "", "the console")
         browser.until(lambda: browser.all(".nao-holder", "controls"), "who holds the controls")
+        browser.until(lambda: not browser.all("nao-wizard-buttons .told", "no connection"), "the buttons")
         browser.script("document.activeElement.blur()")
         browser.keys("3")
         wait_until(lambda: goals, LIMIT, "what is pressed now")
