@@ -103,6 +103,7 @@ class ConsoleBrowser:
             options.add_argument(option)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self.driver = webdriver.Chrome(options=options, service=Service(DRIVER))
+        self.driver.command_executor._client_config.timeout = LIMIT  # 120 s by itself
 
     def enter(self, url=""):
         """Show the token, as who opens the printed address."""

@@ -157,7 +157,8 @@ class ActionServer(actionlib.ActionServer):
         self._newest = self._last_end = -math.inf  # when the last goal came, and when a result was published last
         self._status_waits_since = math.inf  # when there was a first status that waits
         self._pending: deque[tuple[float, Any, Any]] = deque()  # when the goal came, its status, feedback to publish
-        self._later: threading.Timer | None = None
+        self._next_look = math.inf  # when to look at what waits, by time.monotonic
+        self._later: threading.Thread | None = None  # which looks, as long as anything waits
         super().__init__(*arguments, **options)
 
     def initialize(self) -> None:
@@ -239,17 +240,22 @@ class ActionServer(actionlib.ActionServer):
 
     def _look_again(self, moment: float) -> None:
         """Look at what waits once more, at a moment of `time.monotonic`."""
-        if self._later is None:
-            self._later = threading.Timer(max(LOOK_AGAIN, moment - time.monotonic()), self._publish_late)
-            self._later.daemon = True
+        self._next_look = min(self._next_look, moment)
+        if self._later is None or not self._later.is_alive():
+            self._later = threading.Thread(target=self._publish_late, name="late status and feedback", daemon=True)
             self._later.start()
 
     def _publish_late(self) -> None:
-        with self.lock:
-            self._later = None
-            self._publish_pending_feedback()
-            if self._status_waits_since < math.inf:
-                self.publish_status()
+        while True:
+            time.sleep(max(LOOK_AGAIN, self._next_look - time.monotonic()))
+            with self.lock:
+                self._next_look = math.inf
+                self._publish_pending_feedback()
+                if self._status_waits_since < math.inf:
+                    self.publish_status()
+                if self._next_look == math.inf:
+                    self._later = None
+                    return
 
 
 def unless_closed(publish: Callable[..., None], *arguments: Any) -> None:
