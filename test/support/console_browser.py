@@ -82,7 +82,7 @@ class ConsoleProgram:
             self.process.send_signal(signal.SIGINT)
             self.process.wait(LIMIT)
         found = self.watched.read_text() if self.watched.exists() else ""
-        assert not found, f"in an event loop of the console:\n{found}"
+        assert not found, f"in an event loop of the console:\n{found}\n{self.log.read_text()[-4000:]}"
 
     def _answers(self):
         assert self.process.poll() is None, self.log.read_text()
