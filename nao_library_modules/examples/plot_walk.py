@@ -63,11 +63,16 @@ def walk(body: ALProxy, memory: ALProxy, goal: tuple[float, float, float]) -> li
 def watch(body: ALProxy, memory: ALProxy, seconds: float) -> list[Sample]:
     """Look for so long, s, whatever the robot does."""
     samples = []
-    end = time.monotonic() + seconds
-    while time.monotonic() < end or not samples:
+    end = robot_time(memory) + seconds
+    while robot_time(memory) < end or not samples:
         samples.append(look(body, memory))
         time.sleep(PERIOD / 1000.0)  # the pace of looking; there is nothing to wait for
     return samples
+
+
+def robot_time(memory: ALProxy) -> float:
+    """The robot's own clock, s: a simulated one may go slower than this computer's."""
+    return memory.getData("DCM/Time") / 1000.0
 
 
 def main() -> int:
@@ -76,7 +81,7 @@ def main() -> int:
     parser.add_argument("--ip", default="127.0.0.1", help="address of the robot (127.0.0.1)")
     parser.add_argument("--port", type=int, default=9559, help="port of its NAOqi (9559)")
     parser.add_argument("--goal", nargs=3, type=float, default=GOAL, metavar=("X", "Y", "THETA"), help="m, m, rad")
-    parser.add_argument("--watch", type=float, metavar="SECONDS", help="do not move the robot, look for so long")
+    parser.add_argument("--watch", type=float, metavar="SECONDS", help="do not move the robot, look for so long, in its time")
     parser.add_argument("--from", type=Path, dest="old", metavar="FILE", help="draw this record, without a robot")
     parser.add_argument("--record", type=Path, metavar="FILE", help="keep the record there (JSON)")
     parser.add_argument("--output", type=Path, default=Path("walk.png"), help="picture to write (walk.png)")

@@ -214,6 +214,19 @@ def test_what_was_recorded_until_it_was_cut_short_comes_to_where_the_user_is(
     assert len(sent.goals) == 2 * (1 + ended) + 1, "where nothing was begun nothing is stopped"
 
 
+def test_a_goal_that_ctrl_c_ended_is_one_document_with_its_state(run, graph, sent):
+    graph()
+    sent.lasting, sent.interrupted = ("rasta",), True
+    result = run("call", "NaoLights", "rasta", "duration:=60", "--json")
+    assert result.exit_code == 130 and json.loads(result.stdout)["state"] == "preempted"
+
+
+def test_what_steps_of_a_behaviour_answered_is_printed(capsys):
+    step = {"path": "5", "what": "nao_audio_in.listen", "results": [{"values": ["yes", "0.995"]}]}
+    say_result({"results": [], "steps": [step, {**step, "path": "6", "results": []}]})
+    assert capsys.readouterr().out == "5 nao_audio_in.listen: yes, 0.995\n"
+
+
 @pytest.mark.parametrize("interrupted, more, status", [(True, (), 0), (True, ("--for", "60"), 130), (False, (), 1)])
 def test_where_a_motion_is_that_was_cut_short_is_told(run, graph, sent, interrupted, more, status):
     graph()

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import logging
+import signal
 import socket
+import sys
 import threading
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from nao_library_modules.ros import master_api
+from nao_library_modules.ros import master_api, node
 from nao_library_modules.ros.master_api import MasterCheck, node_runs
 
 
@@ -19,9 +21,11 @@ class Master:
     def __init__(self):
         self._server = SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
         self.uri = f"http://127.0.0.1:{self._server.server_address[1]}/"
-        self.pid, self.nodes = 1, {}
+        self.pid, self.nodes, self.parameters = 1, {}, {}
         self._server.register_function(lambda caller: (1, "", self.pid), "getPid")
         self._server.register_function(self._look_up, "lookupNode")
+        self._server.register_function(self._get, "getParam")
+        self._server.register_function(self._set, "setParam")
         threading.Thread(target=self._server.serve_forever, args=(0.01,), daemon=True).start()
 
     def close(self):
@@ -30,6 +34,13 @@ class Master:
 
     def _look_up(self, _caller, name):
         return (1, "", self.nodes[name]) if name in self.nodes else (-1, "unknown node", "")
+
+    def _get(self, _caller, name):
+        return (1, "", self.parameters[name]) if name in self.parameters else (-1, "not set", 0)
+
+    def _set(self, _caller, name, value):
+        self.parameters[name] = value
+        return 1, "", 0
 
 
 @pytest.fixture
@@ -108,3 +119,24 @@ def test_a_node_runs_if_it_lives_or_is_busy_and_not_if_it_died_or_is_unknown_or_
     assert not node_runs("/lives", but=master.uri)
     monkeypatch.setenv("ROS_MASTER_URI", ended)
     assert not node_runs("/lives")
+
+
+def test_a_launched_program_that_was_replaced_waits_for_its_name_and_any_other_takes_it(master, monkeypatch):
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    monkeypatch.setattr(sys, "argv", ["/opt/ours", "__name:=lights", "__log:=ours.log"])
+    monkeypatch.setenv("ROS_NAMESPACE", "/robot")
+    name = node.launched_name("NaoLights")
+    master.nodes[name] = master.uri
+    node.note_replaced(name)
+    monkeypatch.setattr(sys, "argv", ["/opt/theirs", *sys.argv[1:]])
+    node.wait_for_name(name)
+    monkeypatch.setattr(sys, "argv", ["/opt/ours", *sys.argv[1:]])
+    looks = []
+    monkeypatch.setattr(node.time, "sleep", lambda _: looks.append(1) or master.nodes.clear())
+    try:
+        node.wait_for_name(name)
+        node.wait_for_name(name)
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    assert name == "/robot/lights" and looks == [1] and master.parameters == {"/robot/lights/replaced": []}

@@ -48,7 +48,13 @@ def run_functions(settings: CliSettings, server: str, functions: Sequence[Any]) 
         CommandInterrupted: Somebody pressed Ctrl-C; the goal is over then.
         StackMissing: The server is not there or went away.
     """
-    end = GoalRun(settings, server).run(functions)
+    run = GoalRun(settings, server)
+    try:
+        end = run.run(functions)
+    except CommandInterrupted:
+        if settings.json and run.last is not None:
+            show(settings, run.last)
+        raise
     if not end.succeeded:
         fail(settings, end)
     return end
@@ -119,7 +125,7 @@ class GoalRun:
         if not found.wait(SERVER_LIMIT):
             raise StackMissing(f"the server {self._name} does not answer")
         handle: Any = None
-        with Progress(not self._settings.json, self._called) as progress:
+        with Progress(self._called) as progress:
             try:
                 with interrupt_held():  # a goal that is sent and of which nobody knows could not be cancelled
                     handle = client.send_goal(

@@ -92,6 +92,10 @@ def say_result(result: Mapping[str, Any], end: str = "", failed: bool = False) -
             click.echo(f"{answer['function']}: {', '.join(answer['values'])}")
         elif text:
             click.echo(text)
+    for step in result.get("steps", []):
+        values = [value for answer in step["results"] for value in answer["values"]]
+        if values:
+            click.echo(f"{step['path']} {step['what']}: {', '.join(values)}")
     own = {name: value for name, value in result.items() if name not in LEFT_OUT and filled(value)}
     if failed:
         done = any(not answer.get("error") for answer in told)

@@ -40,14 +40,13 @@ def progress_text(fields: Mapping[str, Any], called: Mapping[str, str] = NO_NAME
 class Progress:
     """Shown from the beginning of a `with` block to its end.
 
-    Feedback comes from a thread of ROS, the wheel turns in one of its own; the lock guards what they print. `shown`:
-    False: nothing is printed. `called`: function -> what it is called here, where its name says nothing to people.
+    Feedback comes from a thread of ROS, the wheel turns in one of its own; the lock guards what they print. `called`:
+    function -> what it is called here, where its name says nothing to people.
     """
 
-    def __init__(self, shown: bool, called: Mapping[str, str] = NO_NAMES) -> None:
+    def __init__(self, called: Mapping[str, str] = NO_NAMES) -> None:
         self._called = called
-        self._shown = shown
-        self._live = shown and sys.stderr.isatty()
+        self._live = sys.stderr.isatty()
         self._lock = threading.Lock()
         self._ended = threading.Event()
         self._text = ""
@@ -62,15 +61,14 @@ class Progress:
             self._text = text
             if self._live:
                 self._draw()
-            elif self._shown:
+            else:
                 click.echo(text, err=True)
 
     def note(self, text: str) -> None:
         """Show a line that stays."""
-        if self._shown:
-            with self._lock:
-                self._wipe()
-                click.echo(text, err=True)
+        with self._lock:
+            self._wipe()
+            click.echo(text, err=True)
 
     def __enter__(self) -> Progress:
         if self._live:

@@ -9,7 +9,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import rosgraph
@@ -17,7 +17,6 @@ import rospy
 
 from naoqi.errors import NaoError
 from naoqi.limits import DEFAULT_TIMING, SERVER_PATIENCE, Timing
-from naoqi.robot_connection import close_all as close_connections
 
 from ..base.field_checks import number_parameter
 from ..base.limits import limit
@@ -25,7 +24,7 @@ from ..owners.host import watch_owners
 from ..owners.line import OwnerLine
 from ..processes.closing import exit_in_time
 from .goal_tracker import GoalTracker
-from .master_api import MasterCheck, node_runs
+from .master_api import GONE, Api, MasterCheck, Refused, node_runs
 from .server_node import forward_logs
 from .startup_grace import require_start_patience
 
@@ -42,6 +41,8 @@ LAUNCHED = "__log:="
 """How an argument begins that roslaunch gives to its nodes, and nobody else does."""
 NAME_PERIOD = 1.0
 """s between two looks whether the node's name is free."""
+REPLACED = "replaced"
+"""Private parameter of a node: programs that had its name until another node took it."""
 SERVER = "NaoLights"
 """Whose parameters tell which robot the nodes of a namespace are for."""
 
@@ -173,7 +174,8 @@ class NodeProcess:
     """This process as a node: it ends in time, and its log has what the libraries log.
 
     The master shuts a node down whose name another one takes, such as a server of a user's in place of a launched one.
-    A process that roslaunch started waits then until the other one has ended, and ends: roslaunch starts it again.
+    A process that roslaunch started notes that in a parameter of that name, and ends; started again, the same program
+    waits until no other node has the name. So the user's server that was killed has the name again when it comes back.
 
     Attributes:
         options: What `robot_parser` gives for the arguments.
@@ -181,32 +183,61 @@ class NodeProcess:
 
     def __init__(self, name: str, description: str, argv: Sequence[str] | None) -> None:
         self.options = robot_parser(description).parse_args(rospy.myargv(argv)[1:])
-        self._exit: threading.Timer | None = None
         # Before rospy's own hook, which hangs where Ctrl-C comes while the node talks to the master.
         rospy.core.add_preshutdown_hook(self._on_shutdown)
         with being_made(name):
+            wait_for_name(launched_name(name))
             rospy.init_node(name)
         forward_logs(*FORWARDED_LOGGERS)
 
     def spin(self) -> None:
-        """Wait until the node has ended; in a launched process, also until no other node has its name. Main thread."""
+        """Wait until the node has ended. Main thread."""
         name, own = rospy.get_name(), rospy.get_node_uri()
         rospy.spin()
-        if not any(argument.startswith(LAUNCHED) for argument in sys.argv) or not node_runs(name, but=own):
-            return
-        # Not to /rosout: the topics are closed.
-        text = f"another node took the name {name}: this one is started again when that one has ended"
-        print(text, file=sys.stderr, flush=True)
-        for number in (signal.SIGINT, signal.SIGTERM):  # rospy's handlers only end the node
-            signal.signal(number, signal.SIG_DFL)
-        if self._exit is not None:
-            self._exit.cancel()
-        close_connections()
-        while node_runs(name, but=own):
-            time.sleep(NAME_PERIOD)
+        if launched_name(name) and node_runs(name, but=own):
+            # Not to /rosout: the topics are closed.
+            text = f"another node took the name {name}: this one is started again when that one has ended"
+            print(text, file=sys.stderr, flush=True)
+            note_replaced(name)
 
     def _on_shutdown(self, _reason: str) -> None:
-        self._exit = exit_in_time()
+        exit_in_time()
+
+
+def launched_name(name: str) -> str:
+    """Full name of the node that this process is for roslaunch, `name` by default; empty: it was started otherwise."""
+    if not any(argument.startswith(LAUNCHED) for argument in sys.argv):
+        return ""
+    called = rosgraph.names.load_mappings(sys.argv).get("__name", name)
+    return rosgraph.names.ns_join(rosgraph.names.get_ros_namespace(), called)
+
+
+def note_replaced(name: str) -> None:
+    """Note for the next start of this program that another node took its name."""
+    master = Api(rosgraph.get_master_uri(), name)
+    with suppress(Refused, *GONE):
+        master.ask("setParam", f"{name}/{REPLACED}", sorted({*_replaced(name), sys.argv[0]}))
+
+
+def wait_for_name(name: str) -> None:
+    """Wait until no other node has this full name, if one took it from this program before. Ctrl-C ends the process."""
+    replaced = _replaced(name) if name else []
+    if sys.argv[0] not in replaced:
+        return
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_DFL)
+    while node_runs(name):
+        time.sleep(NAME_PERIOD)
+    replaced.remove(sys.argv[0])
+    with suppress(Refused, *GONE):
+        Api(rosgraph.get_master_uri(), name).ask("setParam", f"{name}/{REPLACED}", replaced)
+
+
+def _replaced(name: str) -> list[str]:
+    try:
+        return list(Api(rosgraph.get_master_uri(), name).ask("getParam", f"{name}/{REPLACED}"))
+    except (Refused, *GONE):
+        return []
 
 
 @contextmanager
