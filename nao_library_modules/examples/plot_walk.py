@@ -81,7 +81,9 @@ def main() -> int:
     parser.add_argument("--ip", default="127.0.0.1", help="address of the robot (127.0.0.1)")
     parser.add_argument("--port", type=int, default=9559, help="port of its NAOqi (9559)")
     parser.add_argument("--goal", nargs=3, type=float, default=GOAL, metavar=("X", "Y", "THETA"), help="m, m, rad")
-    parser.add_argument("--watch", type=float, metavar="SECONDS", help="do not move the robot, look for so long, in its time")
+    parser.add_argument(
+        "--watch", type=float, metavar="SECONDS", help="do not move the robot: look so long, in its time"
+    )
     parser.add_argument("--from", type=Path, dest="old", metavar="FILE", help="draw this record, without a robot")
     parser.add_argument("--record", type=Path, metavar="FILE", help="keep the record there (JSON)")
     parser.add_argument("--output", type=Path, default=Path("walk.png"), help="picture to write (walk.png)")
