@@ -238,6 +238,7 @@ Reason = Tuple[str, str]
 
 CONNECT_REASONS: Sequence[Tuple[str, Reason]] = (
     ("refused", ("connection refused", "that NAOqi (or the simulator) runs there and listens on this port")),
+    ("disconnected", ("closed by the robot", "that NAOqi (or the simulator) runs there")),
     ("not found", ("the name of the host is not known", "the spelling, or use the IP address of the robot")),
     ("unreachable", ("no route to the host", "that robot and computer are on the same network")),
     ("no route", ("no route to the host", "that robot and computer are on the same network")),

@@ -5,6 +5,7 @@ import sys
 from types import SimpleNamespace
 
 import pytest
+import rospy
 from actionlib.msg import TestAction
 
 from nao_library_modules.base.document_names import names_of
@@ -39,6 +40,7 @@ def test_a_name_imports_no_module_that_is_no_message(name, tmp_path, monkeypatch
     monkeypatch.syspath_prepend(str(tmp_path))
     assert installed_message(name) is None and "greeter" not in sys.modules
     monkeypatch.setattr(sys, "argv", ["/opt/nao_behavior_server"])
+    monkeypatch.setattr(rospy.core, "is_initialized", lambda: False)
     with pytest.raises(BadGoal, match="nao_behavior_server does not find the messages of greet.*start it again"):
         described_type("greet", SimpleNamespace(action=name, message=name))
 
