@@ -9,7 +9,7 @@ import pytest
 from told_robot import ADDRESS, ToldRobot, reported, status, wait_for, watched
 
 from nao_library_modules.console.view.body_watch import FALLEN, FAMILY, LATE, POSTURE, state_of, state_text
-from nao_library_modules.console.view.diagnosis import ASKED, REACHED, SIMULATION, Diagnosis
+from nao_library_modules.console.view.diagnosis import ASKED, REACHED, SILENT_FOR, SIMULATION, Diagnosis
 from nao_library_modules.console.view.latched import Latched
 from nao_library_modules.console.view.senses import SENTENCE, Senses
 from nao_library_modules.ros.health import connection_report, recordings_report
@@ -196,6 +196,16 @@ def test_the_reached_speed_is_measured_between_looks_at_the_same_asked_speed():
     meter = side.SpeedMeter()
     looks = [(0.0, 0.0, 1.0), (1.0, 0.8, 1.0), (2.0, 1.0, None), (3.0, 1.0, 1.0), (4.0, 2.0, 1.0), (5.0, 4.0, 2.0)]
     assert [meter.reached(*look) for look in looks] == [None, 0.8, None, None, 1.0, None]
+
+
+def test_a_server_that_waited_in_vain_takes_back_that_the_robot_has_answered():
+    diagnosis = Diagnosis()
+    for silent, now in ((0.0, 1.0), (0.0, 2.0), (1.9, 3.0)):
+        values = {"state": "silent" if silent else "connected", SILENT_FOR: str(silent)}
+        diagnosis.take([status("NaoLights: NaoLights robot", **values)], ADDRESS, now)
+    assert diagnosis.answered == pytest.approx(1.1)
+    diagnosis.take([status("NaoMotion: NaoMotion robot", state="connected", **{SILENT_FOR: "0.0"})], ADDRESS, 3.5)
+    assert diagnosis.answered == 3.5
 
 
 def test_what_servers_record_is_read_of_the_robot_that_they_serve():

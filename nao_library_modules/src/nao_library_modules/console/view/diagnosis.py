@@ -44,9 +44,13 @@ class Diagnosis:
     """
 
     def __init__(self) -> None:
-        self.answered: float | None = None
+        self._answered: dict[str, float] = {}  # name of a report -> last answer, as the newest of that name has it
         self.speed: SimulatedSpeed | None = None
         self.recordings: Mapping[str, ServerRecordings] = {}
+
+    @property
+    def answered(self) -> float | None:
+        return max(self._answered.values(), default=None)
 
     def take(self, statuses: Iterable[Any], address: str, now: float) -> None:
         """Take the reports of a message. `address`: of the robot, `ip:port`; empty: not known."""
@@ -60,7 +64,8 @@ class Diagnosis:
                 continue
             silent = _number(values.get(SILENT_FOR))
             if not math.isnan(silent) and values.get("state") in ("connected", "silent"):
-                self.answered = max(self.answered or -math.inf, now - silent)
+                # One that has waited in vain takes back what it has reported before.
+                self._answered = {**self._answered, status.name: now - silent}
             if RECORDINGS in values:
                 server = status.name.rpartition(": ")[2].rpartition(" ")[0]
                 running = ServerRecordings(frozenset(json.loads(values[RECORDINGS])), now)
