@@ -9,8 +9,8 @@ from nicegui import ui
 
 from ..view.alarms import Alarm
 
-PERIOD = 1.0
-"""s between two updates."""
+PERIOD = 0.2
+"""s between two looks for changes."""
 NONE = "No alarms"
 
 

@@ -1,4 +1,4 @@
-"""The alarms of one robot, evaluated once a second while a page is open or a trial runs."""
+"""The alarms of one robot, evaluated twice a second while a page is open or a trial runs."""
 
 from __future__ import annotations
 
@@ -19,8 +19,10 @@ from .diagnosis import ServerRecordings
 
 log = logging.getLogger(__name__)
 
-PERIOD = 1.0
+PERIOD = 0.5
 """s of this computer between two evaluations."""
+REPORT_PERIOD = 1.0
+"""s between two reports of the simulator."""
 BEGAN, ENDED = "began", "ended"
 """What events of an alarm have as `what`."""
 
@@ -115,7 +117,7 @@ class AlarmWatch:
             limp=status.limp,
             should_stand=stance.stood and not stance.lies,
             fallen=stance.fallen if stance.family or stance.fallen else None,
-            speed=None if speed is None or now - speed.heard > 3.0 * PERIOD else (speed.asked, speed.reached),
+            speed=None if speed is None or now - speed.heard > 3.0 * REPORT_PERIOD else (speed.asked, speed.reached),
             stopped={kind: why for trial in trials for kind, why in trial.stopped.items()},
             log=next((trial.log for trial in trials if trial.log), ""),
             free=free_bytes(self._folder),
