@@ -217,7 +217,9 @@ class _StudyPage:
             problems = problems_of(error)
             self._editor.mark(problems)
             self._tell_problems([f"{name}, as it is saved, cannot be run: {mistakes(len(problems))}", *problems])
-        else:
+        if self._problems.is_deleted:
+            return  # a trial has begun meanwhile, or the page was left
+        if self.protocol is not None:
             record = self.protocol.record
             self._bag.value, self._video.value, self._sound.value = bool(record.bag), bool(record.video), record.sound
             self._problems.clear()
