@@ -108,7 +108,7 @@ class RosStack:
 
     def deaths(self, respawned=()):
         """Names of the nodes that have ended since the stack was started, but for those that were to be respawned."""
-        self._nodes.update(_children(self.stack.pid))
+        self._nodes.update(children(self.stack.pid))
         dead = {pid: name for pid, name in self._nodes.items() if not _alive(pid)}
         for pid in dead:
             del self._nodes[pid]
@@ -120,7 +120,7 @@ class RosStack:
         self._master.stop()
 
 
-def _children(parent):
+def children(parent):
     """Process id -> name of node, of all programs that a roslaunch has started."""
     found = {}
     for folder in Path("/proc").glob("[0-9]*"):
