@@ -15,7 +15,7 @@ from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_modules.console.access.pulse import console_time
 from nao_library_modules.console.access.sessions import Session
 from nao_library_modules.console.access.users import OPERATOR
-from nao_library_modules.console.pages.failed_presses import unsent_presses
+from nao_library_modules.console.pages.failed_presses import BROKEN, unsent_presses
 from nao_library_modules.console.pages.frame import PageContext
 from nao_library_modules.console.robots.commands import CommandGoal
 from nao_library_modules.console.robots.events import EventStream
@@ -228,6 +228,24 @@ def test_what_a_page_could_not_send_is_in_the_log_and_told_until_it_was_seen(pre
     assert (first.data["button"], first.data["age"], first.data["via"], first.by) == ("Hello", 12.3, "key", "eva")
     assert (second.data["button"], second.data["of"]) == ("Nod", "/nao2/")
     assert [each.press.place for each in presses.unseen("eva")] == [("/nao1/", "Words", "Hello")]
+
+
+def test_a_press_that_may_be_lost_is_done_or_told_as_not_sent_and_never_both(presses):
+    """Its page does not know whether it has arrived, and tells of it; both come in any order."""
+    page = SimpleNamespace(console=SimpleNamespace(presses=presses), handled=[])
+    page._handle_event = page.handled.append
+
+    def arrives(press_id):
+        PageContext._take_event(page, {"id": 3, "listener_id": "x", "args": [], "press_id": press_id})
+
+    def is_told(press_id):
+        told = [{"label": "Note", "press_id": press_id, "doubt": True}]
+        return [reason for _, reason, _ in unsent_presses(told, Session("eva", OPERATOR), {}.get, presses.is_new)]
+
+    arrives("first")
+    assert is_told("first") == [] and is_told("second") == [BROKEN] and is_told("second") == []
+    arrives("second")
+    assert [message["press_id"] for message in page.handled] == ["first"]
 
 
 @pytest.mark.parametrize("told", [None, {}, "x", [3], [None], [{"age": "x"}], [{"age": float("nan"), "label": {}}]])

@@ -1,7 +1,7 @@
 // What every page has: the stop, on a line of its own that is open already and by a request as well, what comes first
 // counts; and the console's pulse, by which a page knows whether what it shows is true. See console/stop_line.py.
 
-import { pressOf, refuse, tell as tellUnsent } from "./presses.js";
+import { arrived, doubt, pressOf, refuse, sending, tell as tellUnsent } from "./presses.js";
 
 const PATH = "/console/stop";
 const AGAIN = 700; // ms until a line that broke is opened again
@@ -60,6 +60,7 @@ function take(message) {
   beat = message;
   heard = performance.now();
   loggedOut = false;
+  arrived();
   offsets.push(message.beat - heard / 1000);
   if (offsets.length > BEATS) offsets.shift();
   show();
@@ -76,6 +77,7 @@ function show() {
   state = troubleNow();
   document.body.dataset.console = state;
   if (state && !before) {
+    doubt();
     window.dispatchEvent(new CustomEvent("nao-console-lost"));
     if (state === "gone") reconnectPage();
   }
@@ -115,7 +117,8 @@ function guardPresses(socket) {
     const waited = press && early.length ? performance.now() - early.shift() : 0;
     if (socket.connected && !state && waited < LATE) {
       const at = consoleTime() - waited / 1000; // NaN, and no stamp then, before the console's clock is known
-      return emit.call(socket, name, { ...message, label: press?.label, at }, ...rest);
+      const press_id = press && !press.silent ? sending({ label: press.label, via: press.via }) : undefined;
+      return emit.call(socket, name, { ...message, label: press?.label, at, press_id }, ...rest);
     }
     const { silent, ...refused } = press ?? { silent: true };
     if (!silent) refuse(refused);

@@ -1,12 +1,16 @@
 // A press is for the moment in which it is made: one that cannot reach the console now is refused, and never sent later.
 // It is said in a line until somebody has looked, and the console is told as soon as it can be: see pages/failed_presses.py.
+// One that was sent when the connection broke may be lost on its way: it is told as well, and the console leaves out those
+// that it has, by their `press_id`.
 
 const PATH = "/console/unsent", STORE = "nao-unsent";
 const AGAIN = 2000; // ms until the console is tried again
 const PRESSES = ["click", "key", "keydown", "keyup"]; // types of NiceGUI's events
 const LONGEST_LABEL = 100;
+const ARRIVES = 1000; // ms after which the console has a press, if its pulse goes on
 
 const header = () => document.querySelector("[data-robot]");
+const sent = new Map(); // press_id -> press that the console may not have yet
 let telling = false;
 
 const load = () => JSON.parse(sessionStorage.getItem(STORE) ?? "[]");
@@ -25,17 +29,42 @@ function make(name, properties, ...children) {
 function draw(unsent) {
   document.querySelector(".nao-unsent")?.replaceChildren(...unsent.map((press) => {
     const clock = new Date(press.time).toLocaleTimeString("en-GB");
-    const text = `${clock}  ${press.label}: ${header().dataset.notSent}: there is no connection to the console`;
+    const what = `${press.doubt ? "perhaps " : ""}${header().dataset.notSent}`;
+    const text = `${clock}  ${press.label}: ${what}: there is no connection to the console`;
     const seen = () => keep(load().map((each) => (each.time === press.time ? { ...each, seen: true } : each)));
     const button = make("button", { type: "button", textContent: "Seen", onclick: seen });
     return make("p", {}, make("span", { textContent: text }), button);
   }));
 }
 
+function described(press) {
+  const press_id = `${Date.now()}-${Math.random()}`;
+  return { ...press, press_id, page: location.pathname, robot: header().dataset.robot, time: Date.now() };
+}
+
 // Refuse a press: {label, via}, and {group, of} of a button of the wizard's page.
 export function refuse(press) {
-  const robot = header().dataset.robot;
-  keep([...load(), { ...press, page: location.pathname, robot, time: Date.now() }]);
+  keep([...load(), described(press)]);
+  tell();
+}
+
+// A press is sent with this id.
+export function sending(press) {
+  const made = described(press);
+  sent.set(made.press_id, made);
+  return made.press_id;
+}
+
+// The console's pulse is there: it has what was sent a while ago.
+export function arrived() {
+  for (const [id, press] of sent) if (Date.now() - press.time > ARRIVES) sent.delete(id);
+}
+
+// The console does not answer: whether it has what was sent last, nobody knows.
+export function doubt() {
+  if (!sent.size) return;
+  keep([...load(), ...[...sent.values()].map((press) => ({ ...press, doubt: true }))]);
+  sent.clear();
   tell();
 }
 

@@ -2,7 +2,7 @@
 // All of it goes over one WebSocket a page, /console/drive; console/wizard/session.py tells the messages.
 
 import { consoleTime, trouble } from "./frame.js";
-import { refuse } from "./presses.js";
+import { refuse, sending } from "./presses.js";
 
 const PERIOD = 100; // ms between two velocities while one is held
 const DEAD_ZONE = 0.15; // of a gamepad's sticks
@@ -204,9 +204,10 @@ class WizardLink extends EventTarget {
   }
 
   // `ends`: it stops something, and is sent whatever the page knows of the console.
+  // `message`: or a function that makes it, where it is sent.
   send(message, ends = message.stop || message.walk?.every((part) => part === 0)) {
     if (!this.connected || (trouble() && !ends)) return false;
-    this.socket.send(JSON.stringify({ ...message, at: consoleTime() }));
+    this.socket.send(JSON.stringify({ ...(message instanceof Function ? message() : message), at: consoleTime() }));
     return true;
   }
 
@@ -247,8 +248,10 @@ class WizardLink extends EventTarget {
     const button = this.layout.groups.flatMap((group) => group.buttons).find((each) => each.id === id);
     const group = this.layout.groups.find((each) => each.buttons.includes(button)).title;
     const press = { label: button.label, group, via };
-    if (this.send({ ...press, press: id, revision: this.layout.revision }, button.stops)) return;
-    refuse({ ...press, of: button.robot });
+    const of = button.robot;
+    const made = () => ({ ...press, press: id, press_id: sending({ ...press, of }), revision: this.layout.revision });
+    if (this.send(made, button.stops)) return;
+    refuse({ ...press, of });
     this.unsent.add(id);
     this.tell("states", {});
   }

@@ -19,6 +19,7 @@ from ..robots.runs import NOT_SENT
 
 LONGEST_LABEL = 100
 UNSENT = "the page had no connection to the console when it was pressed"
+BROKEN = "the connection to the console broke before it arrived"
 MOST_UNSENT = 50
 """Presses of which a page tells at once that it could not send them."""
 
@@ -35,29 +36,32 @@ def build(console: Any) -> None:
             raise HTTPException(400, f"presses are told as JSON: {error}") from None
         except ClientDisconnect:  # the page is left, and tells it again from the next one
             return
-        for press, reason, more in unsent_presses(told, session, console.robots.known):
+        for press, reason, more in unsent_presses(told, session, console.robots.known, console.presses.is_new):
             console.presses.report(press, NOT_SENT, reason, **more)
 
 
 def unsent_presses(
-    told: Any, session: Session, known: Callable[[str], Any]
+    told: Any, session: Session, known: Callable[[str], Any], is_new: Callable[[str], bool] = lambda press_id: True
 ) -> Iterator[tuple[Press, str, Mapping[str, Any]]]:
     """Presses, the reason, and what else `Presses.report` takes, of what a browser tells, which may be anything.
 
-    `known`: finds the robot of a name, or gives None.
+    `known`: finds the robot of a name, or gives None. `is_new`: whether nothing was heard yet of the press of an id.
     """
     for each in told[:MOST_UNSENT] if isinstance(told, list) else ():
         if not isinstance(each, dict):
             continue
-        label, group, page, via, name, of = (
-            str(each.get(field) or "")[:LONGEST_LABEL] for field in ("label", "group", "page", "via", "robot", "of")
+        label, group, page, via, name, of, press_id = (
+            str(each.get(field) or "")[:LONGEST_LABEL]
+            for field in ("label", "group", "page", "via", "robot", "of", "press_id")
         )
+        if not is_new(press_id):
+            continue
         robot, age = known(name), each.get("age")
         age = round(age, 1) if isinstance(age, (int, float)) and math.isfinite(age) else 0.0
         streams = (robot.events,) if robot is not None and session.operator else ()
         via = "key" if via == "key" else "click"
         press = Press(label, session.name, page, namespace_of(of or name), group, via, streams)
-        yield press, UNSENT, {"age": age, "keep": not each.get("seen")}
+        yield press, BROKEN if each.get("doubt") else UNSENT, {"age": age, "keep": not each.get("seen")}
 
 
 class FailedLines:

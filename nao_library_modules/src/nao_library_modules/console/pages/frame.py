@@ -156,7 +156,10 @@ class PageContext:
         return Press(button, self.visitor.name, self._path, self.robot.namespace, streams=streams)
 
     def _take_event(self, message: dict[str, Any]) -> None:
-        """Pass on what the browser reports of an element, unless it is a press that comes late."""
+        """Pass on what the browser reports of an element, unless it comes late, or was told as not sent."""
+        press_id = message.get("press_id")
+        if press_id and not self.console.presses.is_new(str(press_id)):
+            return
         refusal = refusal_of_late(message)
         if refusal:
             self.failed(str(message.get("label", ""))[: failed_presses.LONGEST_LABEL], refusal)

@@ -18,6 +18,8 @@ MOST = 50
 FAILED = "failed"
 """Kind of the event that a press has failed."""
 LONGEST_REASON = 2000
+MOST_IDS = 1000
+"""Ids of presses that are known; the oldest goes for a new one."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,22 @@ class Presses:
         self._numbers = itertools.count(1)
         self._failed: dict[str, dict[int, FailedPress]] = {}  # by user, the newest last
         self._listeners: dict[object, Callable[[], None]] = {}
+        self._ids: dict[str, None] = {}  # the newest last
+
+    def is_new(self, press_id: str) -> bool:
+        """Whether nothing was heard yet of a press: it may arrive, and be told as not sent, in any order.
+
+        `press_id`: of the page that it is on; empty: it has none, and is new.
+        """
+        if not press_id:
+            return True
+        with self._lock:
+            if press_id in self._ids:
+                return False
+            self._ids[press_id] = None
+            if len(self._ids) > MOST_IDS:
+                del self._ids[next(iter(self._ids))]
+            return True
 
     def follow(self, press: Press, run: Run) -> None:
         """Report how the goal of a press ends."""

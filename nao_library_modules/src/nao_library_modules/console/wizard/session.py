@@ -195,6 +195,8 @@ class WizardSession:
         ends = bool(found) and getattr(found[0][1].action, "stops", False)
         if self._left and not ends:
             return
+        if not self._desk.presses.is_new(str(message.get("press_id") or "")) and not ends:
+            return  # it was told as not sent
         logged = self._rights.operator()  # what observers try is theirs to see
         label, group = (str(message.get(name, ""))[:LONGEST_LABEL] for name in ("label", "group"))
         via, streams = ("key" if message.get("via") == "key" else "click"), ((self.robot.events,) if logged else ())
