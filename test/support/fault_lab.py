@@ -66,15 +66,17 @@ rospy.spin()
 """
 WATCH = """
 const [css, text] = arguments;
-window.shown = window.pressed = null;
+const now = () => Date.now() / 1000;
+sessionStorage.shown = sessionStorage.pressed = "";  // which outlive a page that is loaded again
 const shows = (each) => each.checkVisibility() && each.textContent.includes(text);
-const look = () => (window.shown ??= [...document.querySelectorAll(css)].some(shows) ? Date.now() / 1000 : null);
+const look = () => (sessionStorage.shown ||= [...document.querySelectorAll(css)].some(shows) ? now() : "");
 const all = { subtree: true, childList: true, characterData: true, attributes: true };
 new MutationObserver(look).observe(document, all);
 for (const kind of ["pointerdown", "keydown"])
-  addEventListener(kind, () => (window.pressed ??= Date.now() / 1000), { capture: true });
+  addEventListener(kind, () => (sessionStorage.pressed ||= now()), { capture: true });
 look();
 """
+SHOWN = "return [Number(sessionStorage.shown), Number(sessionStorage.pressed)]"
 ALARMS = "return [...document.querySelectorAll('[data-alarm]')].map((each) => each.dataset.alarm)"
 
 
@@ -115,6 +117,7 @@ class FaultLab:
         while self._killed:
             rospy.wait_for_service(f"{self._killed.pop()}/describe", LIMIT)
         self.module("NaoSimulation").setSpeed(1.0)
+        self.robot.press([])
         self.robot.reset()
         self._wait_for_family("Crouching")
         self.browser.open("/wizard")
@@ -171,11 +174,11 @@ class FaultLab:
         `act`: may return when it was made, else it is made at once. `after`: s until it can be known.
         """
         self.browser.script(WATCH, css, text)
-        assert self.browser.script("return window.shown") is None, f"{text} is there before"
+        assert not self.browser.script(SHOWN)[0], f"{text} is there before"
         began = time.time()
         made = act()
-        self.browser.until(lambda: self.browser.script("return window.shown"), f"{css} {text}")
-        shown, pressed = self.browser.script("return [window.shown, window.pressed]")
+        self.browser.until(lambda: self.browser.script(SHOWN)[0], f"{css} {text}")
+        shown, pressed = self.browser.script(SHOWN)
         self.since = made if isinstance(made, float) else pressed or began
         self.seconds = shown - self.since - after
 
@@ -257,8 +260,7 @@ class FaultLab:
         return time.time()
 
     def touch_head(self):
-        self.robot.press(["Head/Touch/Front"])
-        self.robot.press([])
+        self.robot.press(["Head/Touch/Front"])  # until the next row
 
     def kill_bag(self):
         os.kill(self.logged("trial", what="recording began", recording="bag")["data"]["pid"], signal.SIGKILL)

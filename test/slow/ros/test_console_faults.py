@@ -156,14 +156,14 @@ ACTS = {
     "button": ("/wizard", lambda lab: lab.browser.click(BUTTON, "call"), f"{BUTTON}[data-state=runs]", "call"),
     "walk": ("/wizard", FaultLab.hold_key, "nao-wizard-drive .walks", ""),
     "note": ("", lambda lab: lab.browser.keys(Keys.ENTER), ".nao-main", "look %s"),
-    "choice": ("", lambda lab: lab.browser.click("button", "two"), ".nao-main", "1.1: done, two"),
+    "choice": ("", lambda lab: lab.browser.click("button", "one"), ".nao-main", "1.1: done, one"),
 }
 """What somebody does without network: the page, how, and where the page has which text when it is done."""
 DONE = {
     "button": ("sent", {"server": "NaoLights"}),
     "walk": ("walked", {}),
     "note": ("note", {"text": "look"}),
-    "choice": ("trial", {"what": "step ended", "answer": "two"}),
+    "choice": ("trial", {"what": "step ended", "answer": "one"}),
 }
 """Events of the log that it is done."""
 
@@ -185,7 +185,7 @@ def offline(seconds, what):
         elif what == "note":
             browser.type("input[aria-label='Note']", f"look {name}")
         else:
-            browser.one("button", "two")
+            browser.one("button", "one")
         if walks and is_long:
             lab.hold_key()
             lab.logged("walked")
@@ -198,7 +198,7 @@ def offline(seconds, what):
             wait_until(lambda: time.monotonic() > began + seconds, LIMIT, "the network")
             browser.online(True)
 
-        lab.shows(css, text.replace("%s", name), lose, 0.0 if walks else seconds)
+        lab.shows(css, text.replace("%s", name), lose, 0.0 if is_long else seconds)
         browser.until(lambda: browser.script(CONNECTED), "the page")
         if walks:
             lab.let_go()
