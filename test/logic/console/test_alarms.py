@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ from nao_library_modules.console.study.protocol import WantedRecordings
 from nao_library_modules.console.study.recordings import BEGUN_AFTER, GONE_AFTER, TrialRecordings
 from nao_library_modules.console.study.studies import Studies
 from nao_library_modules.console.study.table import table_of
+from nao_library_modules.console.study.trial_watch import watch_trial
 from nao_library_modules.console.view import alarm_watch as watch_module
 from nao_library_modules.console.view.alarm_watch import AlarmWatch, TrialFacts
 from nao_library_modules.console.view.alarms import (
@@ -263,7 +265,7 @@ class BothRobots(PlayedRobot, ToldRobot):
 def watched_trial(folder, robot):
     trial = Trial(folder, robot)
     watch = watch_of(robot, folder)
-    trial.studies = Studies(trial.files, alarms=lambda _: watch)
+    trial.studies = Studies(trial.files, watch=partial(watch_trial, watch))
     return trial, watch
 
 
@@ -311,7 +313,7 @@ def test_a_state_that_is_not_told_in_time_is_logged_as_far_as_it_is_known(tmp_pa
     robot = BothRobots()
     trial = Trial(tmp_path, robot)
     watch = LookedAt(robot, watched(robot), tmp_path, robot.clock)
-    trial.studies = Studies(trial.files, alarms=lambda _: watch)
+    trial.studies = Studies(trial.files, watch=partial(watch_trial, watch))
     trial.begin().at("2.1")
     watch.look()
     robot.report(*reported(charge=0.1))

@@ -91,7 +91,7 @@ def test_a_description_that_will_not_do(text, words):
 
 def test_a_pose_is_144_bytes_for_26_joints():
     frame = wire.pose_frame(12.5, (1, 2, 3, 0, 0, 0, 1), [0.25] * 26)
-    assert len(frame) == 144 and frame[:4] == bytes([wire.POSE, wire.PLACED, 26, 0])
+    assert len(frame) == 144 and frame[:4] == bytes([wire.POSE_FRAME, wire.PLACED, 26, 0])
     assert struct.unpack_from("<7fd2f", frame, 4) == (1, 2, 3, 0, 0, 0, 1, 12.5, 0.25, 0.25)
 
 

@@ -8,7 +8,7 @@ import time
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-NAME = "pages"
+THREAD = "pages"
 """Of the thread."""
 LOOK_PERIOD = 0.25
 """s between two signs of life of the loop."""
@@ -27,7 +27,7 @@ class PageLoop:
         self._loop = asyncio.new_event_loop()
         self._lived = time.monotonic()
         self._loop.call_soon(self._live)
-        threading.Thread(target=self._loop.run_forever, name=NAME, daemon=True).start()
+        threading.Thread(target=self._loop.run_forever, name=THREAD, daemon=True).start()
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         """Have one connection answered."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
@@ -12,7 +12,8 @@ from ...base.errors import cut
 from ...base.suggestion import did_you_mean
 from ...behaviors.language.errors import BehaviorError, Problem
 from ...behaviors.language.expressions import text_of
-from ...behaviors.language.yaml_text import Mapping, line_in, line_of, load
+from ...behaviors.language.yaml_text import Mapping as FileMapping
+from ...behaviors.language.yaml_text import line_in, line_of, load
 
 LONGEST = 400_000
 """Characters of a text that pages and files of the console take: some 8 s of reading."""
@@ -58,7 +59,7 @@ class FileReader:
         allowed: Iterable[str],
         needed: Sequence[str] = (),
         place_of: Callable[[str], str] = lambda key: "",
-    ) -> Mapping:
+    ) -> FileMapping:
         """A mapping with the keys `allowed`; what it is not is noted, and unknown keys are left out.
 
         `place_of`: text to append to an unknown key that belongs elsewhere, else empty.
@@ -66,7 +67,7 @@ class FileReader:
         known = list(allowed)
         if not isinstance(value, dict):
             self.note(where, f"a mapping with {', '.join(known)} is wanted, not {value!r}"[:300], line_of(value))
-            return Mapping()
+            return FileMapping()
         for key in value:
             if key not in known:
                 hint = place_of(str(key)) or did_you_mean(str(key), known)
@@ -76,7 +77,7 @@ class FileReader:
         for key in needed:
             if value.get(key) is None:
                 self.note(where, f"{key} is missing", line_of(value))
-        kept = Mapping((key, entry) for key, entry in value.items() if key in known)
+        kept = FileMapping((key, entry) for key, entry in value.items() if key in known)
         kept.line, kept.lines = line_of(value), getattr(value, "lines", {})
         return kept
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-MODULES = ("robot_page", "wizard_page", "study", "behaviors_page", "functions_page")
+MODULES = ("robot_page", "wizard_page", "trial_page", "results_page", "behaviors_page", "functions_page")
 
 
 def _builder(module: str) -> Callable[[Any], None]:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, Callable
 
 from fastapi import HTTPException, Request
 from nicegui import context, ui
@@ -24,7 +24,7 @@ MOST_UNSENT = 50
 """Presses of which a page tells at once that it could not send them."""
 
 
-def build(console: Any) -> None:
+def build_unsent(console: Any) -> None:
     """Register where a page tells what was pressed while it had no connection: POST `/console/unsent`."""
 
     @console.app.post("/console/unsent")

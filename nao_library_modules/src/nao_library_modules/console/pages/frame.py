@@ -40,7 +40,7 @@ Callback = Callable[[], Union[None, Awaitable[None]]]
 def build(console: Any) -> None:
     """Register what all pages need: static files, and where they tell what they could not send."""
     console.app.mount(STATIC, StaticFiles(directory=config_file("console/static")), name="console_static")
-    failed_presses.build(console)
+    failed_presses.build_unsent(console)
 
 
 class PageContext:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Awaitable
-from typing import Any, Callable
+from collections.abc import Awaitable, Callable
+from typing import Any
 
 from fastapi import HTTPException, WebSocket, WebSocketDisconnect
 from fastapi.responses import FileResponse, Response
@@ -16,7 +16,7 @@ from ...base.suggestion import did_you_mean
 from ..access.guard import session_of
 from ..view.background import in_background
 from ..view.broadcast import FrameInbox
-from ..view.camera_feed import NAMES
+from ..view.camera_feed import CAMERA_VIEWS
 from ..view.live_view import watched_traces
 from ..view.robot_model import RobotModel, mesh_path, read_model
 
@@ -29,7 +29,7 @@ NOT_FOUND, LOGGED_OUT, WRONG = 4404, 4403, 4400
 CACHED = {"cache-control": "max-age=3600"}
 
 
-def build(console: Any) -> None:
+def build_live_routes(console: Any) -> None:
     """Register the routes.
 
     GET `/console/model?robot=NAME`: its description as JSON; `/console/meshes/PACKAGE/PATH`: meshes of descriptions
@@ -86,7 +86,7 @@ def build(console: Any) -> None:
             return
         feed = console.views.of(client).cameras.get(camera)
         if feed is None:
-            await _end(socket, NOT_FOUND, f"there is no camera {camera[:20]!r}{did_you_mean(camera, NAMES)}")
+            await _end(socket, NOT_FOUND, f"there is no camera {camera[:20]!r}{did_you_mean(camera, CAMERA_VIEWS)}")
             return
         inbox = await feed.attach()
 

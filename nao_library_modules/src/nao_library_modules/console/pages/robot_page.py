@@ -16,9 +16,8 @@ from ..robots.events import ConsoleEvent
 from ..robots.runs import Run
 from ..view.background import in_background
 from ..view.body_status import ERROR, OK, BodyStatus
-from ..view.camera_feed import NAMES
-from ..view.traces import MOST
-from ..view.traces import NAMES as TRACE_NAMES
+from ..view.camera_feed import CAMERA_VIEWS
+from ..view.traces import MOST_TRACES, TRACE_NAMES
 from ..view.views import RobotViews
 from . import live_routes
 from .frame import STATIC, PageContext, framed, page_at
@@ -28,7 +27,7 @@ PERIOD, SLOW_PERIOD = 0.4, 1.0
 """s between two looks at events and goals, and at the body."""
 SHOWN = 150
 """Events on the page, at most."""
-KINDS = {
+EVENT_KINDS = {
     "": "everything",
     "touched": "touches",
     "heard": "what it hears",
@@ -51,7 +50,7 @@ SENSOR_TRACES = tuple(f"{kind}:{name}" for kind, names in TRACE_NAMES.items() fo
 
 def build(console: Any) -> None:
     """Register the page, at the root, and the routes behind it."""
-    live_routes.build(console)
+    live_routes.build_live_routes(console)
 
     @page_at(console, "/")
     def robot_page(request: Request) -> None:
@@ -87,7 +86,7 @@ class RobotPage:
 
     def _build_cameras(self) -> None:
         with _card("What it sees"), ui.row().classes("w-full nao-cameras"):
-            for name in NAMES:
+            for name in CAMERA_VIEWS:
                 with ui.column().classes("nao-camera"):
                     camera = ui.element("nao-camera").classes("w-full")
                     camera.props["robot"], camera.props["camera"] = self._robot.name, name
@@ -191,7 +190,7 @@ class EventPanel:
         self._fresh: Deque[ConsoleEvent] = deque(maxlen=SHOWN)  # events come in any thread
         self._rows: Deque[ui.label] = deque()
         with _card("What happens"):
-            self._kind = ui.select(KINDS, value="", on_change=self._reload, label="Show").props("dense outlined")
+            self._kind = ui.select(EVENT_KINDS, value="", on_change=self._reload, label="Show").props("dense outlined")
             self._list = ui.column().classes("w-full nao-events").props('role="log" tabindex="0" aria-label="Events"')
         page.on_leave(page.robot.events.subscribe(self._fresh.append))
         page.on_leave(views.senses.acquire())
@@ -257,8 +256,8 @@ class PlotPanel:
     def _add(self, trace: str | None) -> None:
         if not trace or trace in self._plots:
             return
-        if len(self._plots) >= MOST:
-            self._page.notify(f"{MOST} plots at most: close one", "warning")
+        if len(self._plots) >= MOST_TRACES:
+            self._page.notify(f"{MOST_TRACES} plots at most: close one", "warning")
             return
         with self._list, ui.element("div").classes("nao-plot") as holder:
             plot = ui.element("nao-plot")

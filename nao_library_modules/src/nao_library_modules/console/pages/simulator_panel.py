@@ -17,7 +17,7 @@ from ..view.simulator import CONTENTS, KINDS
 from ..view.views import RobotViews
 from .frame import PageContext
 
-PERIOD = 3.0
+SIMULATOR_PERIOD = 3.0
 """s between two looks whether there is a simulator."""
 TOUCH, PUSH = 0.5, 0.2
 """s that a touch and a push last."""
@@ -43,7 +43,7 @@ class SimulatorPanel:
         self._holder = ui.column().classes("w-full")
         self._holder.set_visibility(False)
         self._built = False
-        page.every(PERIOD, self._look)
+        page.every(SIMULATOR_PERIOD, self._look)
 
     async def _look(self) -> None:
         there = await in_background(lambda: self._simulator.there)

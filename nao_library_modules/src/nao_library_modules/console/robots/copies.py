@@ -64,7 +64,7 @@ def as_command(command: RobotCommand, namespace: str) -> str:
     words = ["nao", "call", command.server]
     for number, (name, fields) in enumerate(command.chain):
         words += [*([","] if number else []), name]
-        words += [f"{field}:={_typed(value)}" for field, value in fields.items()]
+        words += [f"{field}:={_argument(value)}" for field, value in fields.items()]
     if namespace.strip("/"):
         words += ["--robot", namespace.strip("/")]
     return " ".join(map(shlex.quote, words))
@@ -88,10 +88,10 @@ def _types(server: str, described: Any) -> ServerType:
         return described_type(server, described)
 
 
-def _typed(value: Any) -> str:
+def _argument(value: Any) -> str:
     """A value as `nao call` reads it."""
     if isinstance(value, list):
-        texts = [_typed(each) for each in value]
+        texts = [_argument(each) for each in value]
         nested = any(isinstance(each, (list, dict)) for each in value)
         if nested or any("," in text or text != text.strip() or not text for text in texts) or _is_bracketed(texts):
             return dump_line(value)

@@ -16,6 +16,7 @@ FRESH, PATIENCE = 1.0, 0.5
 FIRST_PATIENCE = 10.0
 """s for which the first answer is waited: without any, each robot would be told to be none."""
 CANCEL, CANCEL_TYPE = "/cancel", "actionlib_msgs/GoalID"
+"""End of the names of topics by which goals are cancelled, and their type."""
 
 
 class MasterLook:

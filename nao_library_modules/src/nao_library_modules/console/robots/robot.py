@@ -42,7 +42,7 @@ WALK_HOLD = 0.4
 """s that a velocity holds; who wants more sends it again."""
 CONSOLE = "console"
 """Who sends goals in nobody's name."""
-CANCEL, STOP_WALK = "/cancel", "stop_walk_srv"
+STOP_WALK = "stop_walk_srv"
 
 
 class RobotClient:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import Callable
+from collections.abc import Callable
 
 LOOK_PERIOD = 0.01
 """s of this computer between two looks."""

@@ -6,7 +6,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from .files import StudyFiles
+from .runner import TrialRunner
 from .studies import Studies
+from .trial_watch import watch_trial
 
 if TYPE_CHECKING:
     from ..view.views import Views
@@ -37,4 +39,7 @@ def studies_of(files: StudyFiles, views: Views) -> Studies:
 
         return end
 
-    return Studies(files, listen, lambda robot: views.of(robot).alarms)
+    def watch(runner: TrialRunner, recordings: Any) -> Callable[[], None]:
+        return watch_trial(views.of(runner.robot).alarms, runner, recordings)
+
+    return Studies(files, listen, watch)

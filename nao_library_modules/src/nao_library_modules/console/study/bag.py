@@ -22,7 +22,7 @@ from ..robots.waits import within
 
 LONGEST = "4h"
 """Of a bag whose console does not come back."""
-LIMIT = 30.0
+BAG_LIMIT = 30.0
 """s of this computer that the recorder has for its end."""
 BEGIN_LIMIT = 15.0
 """s of this computer that it has until it reads all topics."""
@@ -84,9 +84,9 @@ class BagRecorder:
     def wait_for_end(self) -> None:
         """Wait until its process is over. Raises NaoError if that takes too long."""
         try:
-            self._process.wait(LIMIT)
+            self._process.wait(BAG_LIMIT)
         except subprocess.TimeoutExpired:
-            raise NaoError(f"rosbag (process {self.pid}) has not ended within {LIMIT:g} s") from None
+            raise NaoError(f"rosbag (process {self.pid}) has not ended within {BAG_LIMIT:g} s") from None
 
     def _missing(self) -> list[str]:
         """Topics that somebody publishes and that it does not get yet."""
@@ -124,8 +124,8 @@ def end_bag(file: Path, about: Mapping[str, Any], recorder: BagRecorder | None =
         os.kill(int(about["pid"]), signal.SIGINT)
     if recorder is not None and recorder.pid == about["pid"]:
         recorder.wait_for_end()
-    elif not within(LIMIT, lambda: not is_bag(file, about)):
-        raise NaoError(f"rosbag (process {about['pid']}) has not ended within {LIMIT:g} s")
+    elif not within(BAG_LIMIT, lambda: not is_bag(file, about)):
+        raise NaoError(f"rosbag (process {about['pid']}) has not ended within {BAG_LIMIT:g} s")
     if not file.exists():
         raise NaoError("rosbag left no whole file: see rosbag.log")
 

@@ -14,7 +14,6 @@ from naoqi.errors import NaoError
 
 from ...base.whole_file import FileTrouble, move_whole
 from ..robots.commands import call
-from ..view.diagnosis import ServerRecordings
 from . import state as told
 from .bag import ACTIVE, BagRecorder, end_bag, is_bag
 from .protocol import WantedRecordings
@@ -71,13 +70,13 @@ class TrialRecordings:
                 runner.deviation(f"the {kind} could not be ended: {error}")
 
     def stopped(
-        self, running: Mapping[str, Mapping[str, Any]], reports: Mapping[str, ServerRecordings], now: float
+        self, running: Mapping[str, Mapping[str, Any]], reports: Mapping[str, Any], now: float
     ) -> dict[str, str]:
         """Recordings that have ended unasked -> reason.
 
         Args:
             running: Those of the trial, from its log.
-            reports: Those of the servers, by name.
+            reports: Those of the servers, by name: `names` of what each records, and when that was `heard`.
             now: Time by the clock of the reports, s.
         """
         if self._ending:

@@ -20,7 +20,6 @@ from ...base.paths import config_file
 from ...base.suggestion import of_those
 from ...base.whole_file import FileTrouble
 from ..timeline.stored import SERVICE
-from ..view.alarm_watch import AlarmWatch
 from .ahead import EARS
 from .conditions import filled
 from .errors import StudyError
@@ -34,7 +33,6 @@ from .reader import hash_of
 from .recordings import TrialRecordings
 from .runner import TrialRunner
 from .state import ABORTED, ENDED, TrialState
-from .trial_watch import TrialWatch
 
 log = logging.getLogger(__name__)
 
@@ -46,18 +44,18 @@ class Studies:
     """Studies in a folder. Its functions may be called from any thread.
 
     `files`: of the studies. `senses`: holds what adds touches, words and faces to the events of a robot while a trial
-    runs; returns what ends that. `alarms`: the watch of a robot, whose state and alarms are in the logs; None: nobody
-    looks.
+    runs; returns what ends that. `watch`: adds the state and the alarms of the robot to the log of a trial that
+    begins; returns what ends that.
     """
 
     def __init__(
         self,
         files: StudyFiles,
         senses: Callable[[Any], Callable[[], None]] = lambda _: lambda: None,
-        alarms: Callable[[Any], AlarmWatch | None] = lambda _: None,
+        watch: Callable[[TrialRunner, TrialRecordings], Callable[[], None]] = lambda *_: lambda: None,
     ) -> None:
         self.files = files
-        self._senses, self._alarms = senses, alarms
+        self._senses, self._watch = senses, watch
         self._lock = threading.Lock()  # pages take it ten times a second: never held while anything is waited for
         self._runners: dict[str, TrialRunner] = {}
         self._beginning: set[str] = set()  # namespaces of robots
@@ -269,11 +267,7 @@ class Studies:
             self._runners[robot.namespace] = runner
         if listener is not None:
             runner.on_change(listener)
-        watch = self._alarms(robot)
-        if watch is not None:
-            watching = TrialWatch(runner, watch, recordings)
-            leave.append(watching.end)
-            watching.begin()
+        leave.append(self._watch(runner, recordings))
         runner.start(by)
         self._tell()
         return runner

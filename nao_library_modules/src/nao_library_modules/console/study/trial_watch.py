@@ -80,3 +80,10 @@ class TrialWatch:
             return TrialFacts()
         stopped = self._recordings.stopped(dict(runner.state.recordings), recordings, now)
         return TrialFacts(stopped, runner.log.trouble)
+
+
+def watch_trial(watch: AlarmWatch, runner: TrialRunner, recordings: Any) -> Callable[[], None]:
+    """Have the state and the alarms of a robot in the log of a trial; returns what ends that."""
+    watching = TrialWatch(runner, watch, recordings)
+    watching.begin()
+    return watching.end

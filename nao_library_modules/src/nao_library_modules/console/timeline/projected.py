@@ -26,7 +26,7 @@ LOOK_PERIOD = 0.2
 """s between two looks whether somebody wants it ended."""
 LAUNCH = {"driver": "false", "speed": "0"}
 """The action servers alone, as fast as possible."""
-CLIENT = f"{__package__}.projection_client"
+CLIENT = f"{__package__}.projection"
 
 
 class NotProjected(NaoError):

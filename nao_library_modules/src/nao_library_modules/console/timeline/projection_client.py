@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import Any, Mapping
+from collections.abc import Mapping
+from typing import Any
 
-LIMIT = 60.0
+SERVER_LIMIT = 60.0
 """s of this computer until the server must be there."""
 FIELDS = ("path", "what", "state", "began", "ended", "error")
 
@@ -23,7 +24,7 @@ def run(goal: Mapping[str, Any]) -> dict[str, Any]:
     rospy.init_node("projection", anonymous=True, disable_rosout=True)
     client = actionlib.SimpleActionClient("NaoBehavior", NaoBehaviorAction)
     # Simulated time passes faster than this computer's: the limit is counted in both.
-    if not client.wait_for_server(rospy.Duration(100 * LIMIT)):
+    if not client.wait_for_server(rospy.Duration(100 * SERVER_LIMIT)):
         raise SystemExit("the server NaoBehavior does not come up")
     client.send_goal(NaoBehaviorGoal([BehaviorFunction(function="runBehavior", **goal)]))
     client.wait_for_result()

@@ -9,15 +9,13 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from .body_watch import SILENCE
+
 LOWEST_BATTERY, BATTERY_MARGIN = 20.0, 2.0
 """Percent: of the 60 to 90 minutes of a full battery 12 to 18 are left, enough to end a trial. The driver warns from 30
 on, while nothing has to be done yet. So much more ends the alarm, for charges flicker."""
-SILENCE = 2.0
-"""s without an answer: servers report the connection once a second."""
 PATIENCE = 10.0
 """s for the first report of a driver."""
-LATE = 1.5
-"""Periods after which the values of a report are old: one report may be late."""
 LOST = 3.0
 """Periods after which the reports count as ended."""
 SLOWEST, SPEED_MARGIN, SLOW_FOR = 0.95, 0.02, 3.0

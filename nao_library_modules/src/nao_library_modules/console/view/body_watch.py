@@ -8,11 +8,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from .alarms import LATE, SILENCE
 from .background import Subscriptions, Takers
 from .body_status import BodyStatus, read_status
 from .diagnosis import Diagnosis
-from .latched import REACHED, Latched
+from .latched import CONNECTED, Latched
 from .memory_topics import TEXT, MemoryTopics
 from .sense_texts import Perception, felt
 from .stance import Stance
@@ -20,6 +19,10 @@ from .stance import Stance
 POSTURE, FAMILY, FALLEN = "PostureChanged", "PostureFamilyChanged", "robotHasFallen"
 REPORT_PERIOD = 2.0
 """s between two reports of the body, as the driver has it without a setting."""
+SILENCE = 2.0
+"""s without an answer: servers report the connection once a second."""
+LATE = 1.5
+"""Periods after which the values of a report are old: one report may be late."""
 LONGEST_PERIOD = 30.0
 """s: reports that are further apart had ended in between."""
 
@@ -135,7 +138,7 @@ class BodyWatch:
     def _on_connection(self, message: Any) -> None:
         self.connection, self.address, self.problem = message.state, message.address, message.last_error
         self._fall.recovery.connection_is(message.state)
-        if message.state not in REACHED:
+        if message.state not in CONNECTED:
             self.stance.forget_family()
 
     def _on_contact(self, message: Any) -> None:

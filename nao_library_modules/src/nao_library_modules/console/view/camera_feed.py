@@ -11,7 +11,7 @@ from .background import in_background
 from .broadcast import Broadcast, FrameInbox
 from .wire import picture_frame
 
-NAMES = tuple(CAMERAS.values())
+CAMERA_VIEWS = tuple(CAMERAS.values())
 PICTURE = "picture"
 
 

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-REACHED = frozenset({"connected", "silent"})
+CONNECTED = frozenset({"connected", "silent"})
 """States of nao_library_msgs/ConnectionState in which the robot is known to be the one of before."""
 SETTLED = 10.0
 """s of this computer after a connection is back, within which topics send their present state."""
@@ -38,7 +38,7 @@ class Recovery:
 
     def connection_is(self, state: str) -> None:
         """The connection to the robot changes. `state`: of nao_library_msgs/ConnectionState."""
-        if state not in REACHED:
+        if state not in CONNECTED:
             self._until = math.inf
         elif self._until == math.inf:
             self._until = self._clock() + SETTLED

@@ -14,7 +14,7 @@ from .broadcast import Broadcast, FrameInbox
 from .memory_topics import MemoryTopics
 from .senses import Senses
 from .simulator import Simulator
-from .traces import MOST, Traces
+from .traces import MOST_TRACES, Traces
 from .wire import Base, lights_frame, pose_frame, same_pose, samples_frame, text_frame
 
 PERIOD = 0.05
@@ -81,7 +81,7 @@ class LiveView:
 
     async def watch(self, inbox: FrameInbox, names: Sequence[str]) -> None:
         """Send a page these traces, and no others: the last minute of each that is known, then what comes."""
-        wanted = list(dict.fromkeys(names))[:MOST]
+        wanted = list(dict.fromkeys(names))[:MOST_TRACES]
         async with self._changing:
             if inbox not in self._watched:
                 return

@@ -31,12 +31,12 @@ SPAN = 60.0
 """s that are kept."""
 CLOSEST = 0.045
 """s between two readings of a trace, at least."""
-MOST = 12
+MOST_TRACES = 12
 """Traces of one page, at most."""
 LONGEST_NAME = 200
 JOINT_FIELDS = {"velocity": "velocity", "effort": "effort"}
 SIDES, AXES, TILTS = ("left", "right"), ("x", "y", "z"), ("roll", "pitch")
-NAMES = {
+TRACE_NAMES = {
     **{kind: () for kind in (*JOINT_FIELDS, "stiffness", "memory")},
     **{kind: SIDES for kind in ("sonar", "foot")},
     **{kind: AXES for kind in ("gyro", "acceleration")},
@@ -52,10 +52,12 @@ def split_trace(name: Any) -> tuple[str, str]:
     kind, _, what = str(name)[: LONGEST_NAME + 1].partition(":")
     if len(str(name)) > LONGEST_NAME or not what:
         raise NaoError(f"{str(name)[:60]!r} is no trace: KIND:NAME, such as sonar:left")
-    if kind not in NAMES:
-        raise NaoError(f"{kind!r} is no kind of trace{did_you_mean(kind, NAMES)}; there are {', '.join(NAMES)}")
-    if NAMES[kind] and what not in NAMES[kind]:
-        raise NaoError(f"{kind}:{what}: there are {', '.join(f'{kind}:{name}' for name in NAMES[kind])}")
+    if kind not in TRACE_NAMES:
+        raise NaoError(
+            f"{kind!r} is no kind of trace{did_you_mean(kind, TRACE_NAMES)}; there are {', '.join(TRACE_NAMES)}"
+        )
+    if TRACE_NAMES[kind] and what not in TRACE_NAMES[kind]:
+        raise NaoError(f"{kind}:{what}: there are {', '.join(f'{kind}:{name}' for name in TRACE_NAMES[kind])}")
     return kind, what
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from .alarm_watch import AlarmWatch
 from .body_watch import BodyWatch
-from .camera_feed import NAMES, CameraFeed
+from .camera_feed import CAMERA_VIEWS, CameraFeed
 from .live_view import LiveView
 from .memory_topics import MemoryTopics
 from .senses import Senses
@@ -50,7 +50,7 @@ class Views:
                 senses, body = Senses(robot, memory), BodyWatch(robot, memory)
                 alarms = AlarmWatch(robot, body, self._folder)
                 live = LiveView(robot, senses, memory, simulator)
-                cameras = {name: CameraFeed(robot, name) for name in NAMES}
+                cameras = {name: CameraFeed(robot, name) for name in CAMERA_VIEWS}
                 found = RobotViews(robot, senses, body, alarms, simulator, live, cameras)
                 self._robots[robot.namespace] = found
             return found

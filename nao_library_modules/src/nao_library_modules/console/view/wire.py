@@ -17,7 +17,7 @@ import struct
 from collections.abc import Iterable, Sequence
 from typing import Any, Tuple
 
-POSE, LIGHTS, SAMPLES, PICTURE = 1, 2, 3, 4
+POSE_FRAME, LIGHTS_FRAME, SAMPLES_FRAME, PICTURE_FRAME = 1, 2, 3, 4
 PLACED = 1
 """Flag of a pose: it is known where the base is; else the robot stands on its feet at the origin."""
 JPEG, PNG = 0, 1
@@ -34,7 +34,7 @@ STAMP_AT = HEAD.size + 28
 
 def pose_frame(stamp: float, base: Base | None, joints: Sequence[float]) -> bytes:
     """A pose; `base` is None where the robot's place is not known. Joints are in rad, or m."""
-    head = HEAD.pack(POSE, 0 if base is None else PLACED, len(joints))
+    head = HEAD.pack(POSE_FRAME, 0 if base is None else PLACED, len(joints))
     return head + BASE.pack(*(base or UNPLACED), stamp) + struct.pack(f"<{len(joints)}f", *joints)
 
 
@@ -47,17 +47,17 @@ def same_pose(first: bytes, second: bytes) -> bool:
 def lights_frame(colours: Iterable[Sequence[float]]) -> bytes:
     """Colours, each red, green and blue in 0..1."""
     parts = bytes(min(max(round(255 * part), 0), 255) for colour in colours for part in colour)
-    return HEAD.pack(LIGHTS, 0, len(parts) // 3) + parts
+    return HEAD.pack(LIGHTS_FRAME, 0, len(parts) // 3) + parts
 
 
 def samples_frame(samples: Sequence[tuple[int, float, float]]) -> bytes:
     """Readings of traces: index of the trace, value, and ROS time in s."""
-    return HEAD.pack(SAMPLES, 0, len(samples)) + b"".join(SAMPLE.pack(*sample) for sample in samples)
+    return HEAD.pack(SAMPLES_FRAME, 0, len(samples)) + b"".join(SAMPLE.pack(*sample) for sample in samples)
 
 
 def picture_frame(stamp: float, picture: bytes, png: bool = False) -> bytes:
     """A compressed picture as it came, and when it was taken, ROS time in s."""
-    return SHOT.pack(PICTURE, PNG if png else JPEG, 0, 0, stamp) + picture
+    return SHOT.pack(PICTURE_FRAME, PNG if png else JPEG, 0, 0, stamp) + picture
 
 
 def text_frame(kind: str, **values: Any) -> str:

@@ -13,7 +13,6 @@ from ...study.errors import StudyError
 from ...study.files import StudyFiles, TrialFolder
 from ...study.log import read_events
 from ...study.state import RESUMED, TrialState
-from ...study.studies import Studies
 from ...view.background import in_background
 from ..frame import framed, page_at
 from .links import study_links
@@ -76,9 +75,9 @@ def _goals(events: list[dict[str, Any]], ended: float) -> list[dict[str, Any]]:
     return list(goals.values())
 
 
-def build(console: Any, studies: Studies) -> None:
+def build_replay(console: Any) -> None:
     """Add the page, its data, and the media."""
-    files: StudyFiles = studies.files
+    files: StudyFiles = console.studies.files
 
     def replay(trial: str) -> str:
         return json.dumps(replay_of(files.trial(trial)), ensure_ascii=False)

@@ -16,6 +16,7 @@ from ...study.studies import Studies
 from ...study.table import ConditionSummary, StudyTable, summaries_of, table_of
 from ..frame import framed, page_at
 from .links import study_links
+from .replay_page import build_replay
 
 MOST_ROWS = 20
 """Rows of a table on the page at once."""
@@ -29,8 +30,10 @@ COLOURS = ("#1565c0", "#e65100", "#2e7d32", "#8e24aa", "#c62828", "#00838f", "#f
 GREY = "#9e9e9e"
 
 
-def build(console: Any, studies: Studies) -> None:
+def build(console: Any) -> None:
     """Add the page."""
+    studies: Studies = console.studies
+    build_replay(console)
 
     @page_at(console, "/study/results")
     async def show(request: Request, study: str = "") -> None:

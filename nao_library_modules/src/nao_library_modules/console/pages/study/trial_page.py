@@ -64,8 +64,9 @@ STATUS_COLOURS = {RUNNING: "positive", PAUSED: "warning", HELD: "negative"}
 SHORTCUTS = {"p": "pause or continue", "n": "next", "r": "repeat", "m": "write a note", "1..9": "a choice"}
 
 
-def build(console: Any, studies: Studies) -> None:
+def build(console: Any) -> None:
     """Add the page."""
+    studies: Studies = console.studies
 
     @page_at(console, "/study")
     async def show(request: Request) -> None:
