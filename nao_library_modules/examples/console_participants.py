@@ -26,14 +26,13 @@ from geometry_msgs.msg import Point
 
 from nao_library_actions.msg import NaoAudioInActionFeedback
 from nao_library_modules.base.errors import NaoError
-from nao_library_modules.console.study.alone import studies_alone
-from nao_library_modules.console.study.errors import StudyError
-from nao_library_modules.console.study.files import StudyFiles
-from nao_library_modules.console.study.protocol import ChoiceStep, SenseStep, WhileStep
-from nao_library_modules.console.study.reader import read_protocol_file
-from nao_library_modules.console.study.state import FAILED, FINISHED, HELD
-from nao_library_modules.console.study.table import summaries_of, table_of
+from nao_library_modules.console.watched_studies import studies_alone
 from nao_library_modules.nao.touch_names import sensors_of
+from nao_library_modules.studies.protocol import ChoiceStep, SenseStep, StudyError, WhileStep
+from nao_library_modules.studies.protocol_reader import read_protocol_file
+from nao_library_modules.studies.study_files import StudyFiles
+from nao_library_modules.studies.study_table import summaries_of, table_of
+from nao_library_modules.studies.trial_log import FAILED, FINISHED, HELD
 from nao_library_modules.whole_file import require_new, write_whole
 from nao_library_msgs.srv import PersonSays, TouchSensors
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from logged_trial import LoggedTrial
 
-from nao_library_modules.console.study import studies as module
+from nao_library_modules.studies import studies as module
 
 DISK = Path(os.environ["SMALL_DISK"])
 MOMENTS = int(os.environ.get("MOMENTS", "3"))

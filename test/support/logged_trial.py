@@ -6,9 +6,8 @@ import random
 
 from played_study import Trial
 
-from nao_library_modules.console.study.log import read_events
-from nao_library_modules.console.study.state import TrialState
-from nao_library_modules.console.study.table import table_of
+from nao_library_modules.studies.study_table import table_of
+from nao_library_modules.studies.trial_log import TrialState, read_events
 
 ROUNDS = 4
 CHOICES = ("red", "green", "blue")

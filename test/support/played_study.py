@@ -6,11 +6,11 @@ import threading
 from dataclasses import dataclass, field
 from typing import Any
 
-from nao_library_modules.console.robots.errors import Stopped
-from nao_library_modules.console.robots.events import EventStream
-from nao_library_modules.console.study.files import StudyFiles
-from nao_library_modules.console.study.reader import read_protocol
-from nao_library_modules.console.study.studies import Studies
+from nao_library_modules.studies.commands import Stopped
+from nao_library_modules.studies.protocol_reader import read_protocol
+from nao_library_modules.studies.robot_events import EventStream
+from nao_library_modules.studies.studies import Studies
+from nao_library_modules.studies.study_files import StudyFiles
 
 LIMIT = 60.0
 """s of this computer that anything may take."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 import threading
 from types import SimpleNamespace
 
-from nao_library_modules.console.robots.events import EventStream
-from nao_library_modules.console.view.body_watch import FALLEN, FAMILY, POSTURE, BodyWatch
-from nao_library_modules.console.view.latched import SETTLED
-from nao_library_modules.console.view.senses import SENTENCE
+from nao_library_modules.console.view.robot_state import FALLEN, FAMILY, POSTURE, BodyWatch
+from nao_library_modules.console.view.senses import SENTENCE, SETTLED
 from nao_library_modules.ros.body_reports import Thresholds, body_reports
+from nao_library_modules.studies.robot_events import EventStream
 
 ADDRESS = "127.0.0.1:9559"
 LIMIT = 60.0

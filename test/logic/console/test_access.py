@@ -12,14 +12,25 @@ from types import SimpleNamespace
 import pytest
 
 from nao_library_modules.console.access.connections import address_group
-from nao_library_modules.console.access.controls import Controls
 from nao_library_modules.console.access.guard import COOKIE, LARGEST, SESSION, Guard
-from nao_library_modules.console.access.logins import MOST_WAITING, Logins
-from nao_library_modules.console.access.session_file import LONGEST, SessionFile
-from nao_library_modules.console.access.sessions import TRIES, TRY_PERIOD, Session, Sessions
-from nao_library_modules.console.access.users import OBSERVER, OPERATOR, add_user, hashed, read_users
+from nao_library_modules.console.access.sessions import (
+    LONGEST,
+    MOST_WAITING,
+    OBSERVER,
+    OPERATOR,
+    TRIES,
+    TRY_PERIOD,
+    Controls,
+    Logins,
+    Session,
+    SessionFile,
+    Sessions,
+    add_user,
+    hashed,
+    read_users,
+)
 from nao_library_modules.console.app import ConsoleSettings
-from nao_library_modules.console.files.yaml_file import ConsoleFileError
+from nao_library_modules.studies.commands import ConsoleFileError
 from naoqi.errors import NaoError
 
 HERE = "127.0.0.1:8080"

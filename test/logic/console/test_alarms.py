@@ -12,16 +12,7 @@ from played_study import PlayedRobot, Trial
 from told_robot import ToldRobot, reported, status, watched
 
 from nao_library_modules.console.pages.robot_page import aged
-from nao_library_modules.console.study import recordings as recordings_module
-from nao_library_modules.console.study import studies as module
-from nao_library_modules.console.study.log import read_events
-from nao_library_modules.console.study.protocol import WantedRecordings
-from nao_library_modules.console.study.recordings import BEGUN_AFTER, GONE_AFTER, TrialRecordings
-from nao_library_modules.console.study.studies import Studies
-from nao_library_modules.console.study.table import table_of
-from nao_library_modules.console.study.trial_watch import watch_trial
-from nao_library_modules.console.view import alarm_watch as watch_module
-from nao_library_modules.console.view.alarm_watch import AlarmWatch, TrialFacts
+from nao_library_modules.console.view import alarms as watch_module
 from nao_library_modules.console.view.alarms import (
     BATTERY_MARGIN,
     CODES,
@@ -33,10 +24,27 @@ from nao_library_modules.console.view.alarms import (
     SILENCE,
     SLOW_FOR,
     AlarmBook,
+    AlarmWatch,
     Facts,
+    TrialFacts,
 )
-from nao_library_modules.console.view.body_watch import FALLEN, FAMILY, BodyWatch
-from nao_library_modules.console.view.diagnosis import ASKED, REACHED, SIMULATION, ServerRecordings
+from nao_library_modules.console.view.robot_state import (
+    ASKED,
+    FALLEN,
+    FAMILY,
+    REACHED,
+    SIMULATION,
+    BodyWatch,
+    ServerRecordings,
+)
+from nao_library_modules.console.watched_studies import watch_trial
+from nao_library_modules.studies import studies as module
+from nao_library_modules.studies import trial_recordings as recordings_module
+from nao_library_modules.studies.protocol import WantedRecordings
+from nao_library_modules.studies.studies import Studies
+from nao_library_modules.studies.study_table import table_of
+from nao_library_modules.studies.trial_log import read_events
+from nao_library_modules.studies.trial_recordings import BEGUN_AFTER, GONE_AFTER, TrialRecordings
 
 DOCUMENT = Path(__file__).resolve().parents[3] / "docs" / "console.md"
 WELL = {
@@ -309,7 +317,7 @@ def test_the_table_of_trials_has_the_state_at_the_begin_and_how_many_alarms_bega
 
 
 def test_a_state_that_is_not_told_in_time_is_logged_as_far_as_it_is_known(tmp_path, monkeypatch):
-    monkeypatch.setattr("nao_library_modules.console.study.trial_watch.PATIENCE", -1.0)
+    monkeypatch.setattr("nao_library_modules.console.watched_studies.PATIENCE", -1.0)
     robot = BothRobots()
     trial = Trial(tmp_path, robot)
     watch = LookedAt(robot, watched(robot), tmp_path, robot.clock)

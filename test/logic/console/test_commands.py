@@ -7,10 +7,10 @@ import math
 import pytest
 
 from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.console.files.yaml_file import FileReader
-from nao_library_modules.console.robots import commands
 from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_modules.functions.server_types import server_type
+from nao_library_modules.studies import commands
+from nao_library_modules.studies.commands import FileReader
 from nao_library_msgs.srv import DescribeFunctionsRequest
 from naoqi.errors import NaoError
 

@@ -8,8 +8,8 @@ import pytest
 import rospy
 from actionlib_msgs.msg import GoalID
 
-from nao_library_modules.console.robots.foreign_stops import hear_stops
-from nao_library_modules.console.robots.robot import RobotClient
+from nao_library_modules.console.robots.robot_client import RobotClient
+from nao_library_modules.console.robots.robot_goals import hear_stops
 
 
 @pytest.fixture

@@ -10,9 +10,11 @@ import pytest
 
 from nao_library_modules.behaviors import read
 from nao_library_modules.cli.chain_text import build_message, read_chain
-from nao_library_modules.console.robots.copies import as_command, as_python, as_yaml
 from nao_library_modules.console.robots.forms import (
     FormField,
+    as_command,
+    as_python,
+    as_yaml,
     form_of,
     form_of_behavior,
     text_of_value,

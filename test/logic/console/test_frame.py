@@ -7,7 +7,7 @@ import re
 from console_overlays import OVERLAYS, overlays_in_code, paths_in_code
 
 from nao_library_modules.base.paths import config_file
-from nao_library_modules.console.access.pulse import PERIOD
+from nao_library_modules.console.access.connections import PERIOD
 
 TOLD_WITHIN = 2.0
 """s, after which a page says that its console does not answer."""

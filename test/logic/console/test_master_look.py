@@ -8,8 +8,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 import rospy
 
-from nao_library_modules.console.robots import master as master_look
-from nao_library_modules.console.robots.robots import Robots
+from nao_library_modules.console.robots import robot_client as master_look
+from nao_library_modules.console.robots.robot_client import Robots
 
 LIMIT = 60.0
 

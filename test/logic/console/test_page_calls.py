@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import nao_library_modules.console.pages as pages
-from nao_library_modules.console.access.pulse import LATE, console_time
+from nao_library_modules.console.access.connections import LATE, console_time
 from nao_library_modules.console.pages.frame import PageContext
 
 FILES = sorted(Path(pages.__file__).parent.rglob("*.py"))

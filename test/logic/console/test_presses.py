@@ -12,28 +12,27 @@ from fake_goals import FakeActionClient
 from played_study import Trial
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules.console.access.pulse import console_time
-from nao_library_modules.console.access.sessions import Session
-from nao_library_modules.console.access.users import OPERATOR
-from nao_library_modules.console.pages.failed_presses import BROKEN, unsent_presses
-from nao_library_modules.console.pages.frame import PageContext
-from nao_library_modules.console.robots.commands import CommandGoal
-from nao_library_modules.console.robots.events import EventStream
-from nao_library_modules.console.robots.presses import MOST, Press, Presses
-from nao_library_modules.console.robots.robot import RobotClient
-from nao_library_modules.console.robots.runs import (
+from nao_library_modules.console.access.connections import console_time
+from nao_library_modules.console.access.sessions import OPERATOR, Session
+from nao_library_modules.console.pages.frame import BROKEN, PageContext, unsent_presses
+from nao_library_modules.console.robots.robot_client import RobotClient
+from nao_library_modules.console.robots.robot_goals import (
     ABORTED,
     ENDS,
     GOAL_ENDS,
     LOST,
+    MOST,
     NOT_SENT,
     PREEMPTED,
     SUCCEEDED,
+    Press,
+    Presses,
     end_of,
 )
-from nao_library_modules.console.study.log import read_events
-from nao_library_modules.console.wizard.reader import read_layout
-from nao_library_modules.console.wizard.wire import layout_message
+from nao_library_modules.console.wizard.layout import layout_message, read_layout
+from nao_library_modules.studies.commands import CommandGoal
+from nao_library_modules.studies.robot_events import EventStream
+from nao_library_modules.studies.trial_log import read_events
 
 ACCEPTED = "This goal has been accepted by the simple action server"
 LIMIT = 60.0
@@ -70,7 +69,7 @@ def robot(monkeypatch):
         listeners[0].peer_unsubscribe("goal", 0)
 
     server.dies = dies
-    monkeypatch.setattr("nao_library_modules.console.robots.robot.actionlib.ActionClient", lambda *_: server)
+    monkeypatch.setattr("nao_library_modules.console.robots.robot_client.actionlib.ActionClient", lambda *_: server)
     monkeypatch.setattr(made, "_owner_line", lambda server: None)
     made.server = server
     return made

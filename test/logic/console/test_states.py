@@ -8,10 +8,20 @@ from types import SimpleNamespace
 import pytest
 from told_robot import ADDRESS, ToldRobot, reported, status, wait_for, watched
 
-from nao_library_modules.console.view.body_watch import FALLEN, FAMILY, LATE, POSTURE, state_of, state_text
-from nao_library_modules.console.view.diagnosis import ASKED, REACHED, SILENT_FOR, SIMULATION, Diagnosis
-from nao_library_modules.console.view.latched import Latched
-from nao_library_modules.console.view.senses import SENTENCE, Senses
+from nao_library_modules.console.view.robot_state import (
+    ASKED,
+    FALLEN,
+    FAMILY,
+    LATE,
+    POSTURE,
+    REACHED,
+    SILENT_FOR,
+    SIMULATION,
+    Diagnosis,
+    state_of,
+    state_text,
+)
+from nao_library_modules.console.view.senses import SENTENCE, Latched, Senses
 from nao_library_modules.ros.health import connection_report, recordings_report
 from nao_sim_bridge.ros import side
 from naoqi.limits import DEFAULT_TIMING

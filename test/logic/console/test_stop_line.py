@@ -19,17 +19,14 @@ from nao_library_modules.console.access.connections import (
     STRANGERS,
     Connections,
     CountedListener,
+    console_time,
 )
 from nao_library_modules.console.access.guard import COOKIE, Guard
-from nao_library_modules.console.access.pulse import console_time
-from nao_library_modules.console.access.sessions import Sessions
-from nao_library_modules.console.access.users import OBSERVER, OPERATOR
-from nao_library_modules.console.page_loop import PageLoop
-from nao_library_modules.console.robots.errors import NotThere
-from nao_library_modules.console.robots.last_stop import STOPPED, STOPPING, LastStop
-from nao_library_modules.console.robots.runs import Run
-from nao_library_modules.console.stop_line import PATH, StopLine
+from nao_library_modules.console.access.sessions import OBSERVER, OPERATOR, Sessions
+from nao_library_modules.console.app import PATH, PageLoop, StopLine
+from nao_library_modules.console.robots.robot_goals import STOPPED, STOPPING, LastStop, Run
 from nao_library_modules.console.view.background import Lane
+from nao_library_modules.studies.commands import NotThere
 
 LIMIT = 60.0
 HERE = "127.0.0.1:8080"

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import pytest
 
 from nao_library_modules.behaviors.language.errors import NoSuchBehavior
-from nao_library_modules.console.robots.errors import NotThere
-from nao_library_modules.console.timeline.projected import read_run
-from nao_library_modules.console.timeline.stored import ALONE, StoredBehaviors, problems_in
+from nao_library_modules.console.timeline.projection import read_run
+from nao_library_modules.studies.command_check import ALONE, StoredBehaviors, problems_in
+from nao_library_modules.studies.commands import NotThere
 from nao_library_msgs.msg import BehaviorInfo, BehaviorProblem
 
 BOX = "help: A box.\ndo: [{wait: 1.0}]\n"
@@ -51,7 +51,7 @@ def test_one_that_is_not_there_is_told_with_those_that_are():
 
 
 def test_without_a_server_the_library_is_there_and_checks_say_so(tmp_path, monkeypatch):
-    monkeypatch.setattr("nao_library_modules.console.timeline.stored.FOLDER", str(tmp_path))
+    monkeypatch.setattr("nao_library_modules.studies.command_check.FOLDER", str(tmp_path))
     stored = StoredBehaviors(nobody, nobody)
     assert "hello" in [info.name for info in stored.infos()]
     assert stored.text("hello")[1]

@@ -8,8 +8,8 @@ import sys
 import pytest
 
 from nao_library_modules.base.errors import NaoError
-from nao_library_modules.console.study import bag as module
-from nao_library_modules.console.study.bag import BagRecorder, end_bag, is_bag
+from nao_library_modules.studies import trial_recordings as module
+from nao_library_modules.studies.trial_recordings import BagRecorder, end_bag, is_bag
 
 RECORDER = f"""#!{sys.executable}
 import os, signal, sys, threading

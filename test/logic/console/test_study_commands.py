@@ -14,12 +14,12 @@ from scripted_disk import ScriptedDisk
 
 from nao_library_modules.cli.app import nao
 from nao_library_modules.cli.commands import study_commands
-from nao_library_modules.console.study import log as log_module
-from nao_library_modules.console.study import runner as runner_module
-from nao_library_modules.console.study import studies as module
-from nao_library_modules.console.study.files import StudyFiles
-from nao_library_modules.console.study.log import read_events
-from nao_library_modules.console.study.studies import Studies
+from nao_library_modules.studies import studies as module
+from nao_library_modules.studies import trial_log as log_module
+from nao_library_modules.studies import trial_runner as runner_module
+from nao_library_modules.studies.studies import Studies
+from nao_library_modules.studies.study_files import StudyFiles
+from nao_library_modules.studies.trial_log import read_events
 
 
 @pytest.fixture

@@ -15,13 +15,12 @@ from played_study import LIMIT, Trial
 from scripted_disk import ScriptedDisk
 
 from nao_library_modules.base.whole_file import FileTrouble
-from nao_library_modules.console.study import log as log_module
-from nao_library_modules.console.study import runner as runner_module
-from nao_library_modules.console.study import studies as module
-from nao_library_modules.console.study.files import PARTICIPANTS, StudyFiles
-from nao_library_modules.console.study.log import EVENTS, TABLE, TrialLog, read_events
-from nao_library_modules.console.study.state import TrialState
-from nao_library_modules.console.study.table import table_of
+from nao_library_modules.studies import studies as module
+from nao_library_modules.studies import trial_log as log_module
+from nao_library_modules.studies import trial_runner as runner_module
+from nao_library_modules.studies.study_files import PARTICIPANTS, StudyFiles
+from nao_library_modules.studies.study_table import table_of
+from nao_library_modules.studies.trial_log import EVENTS, TABLE, TrialLog, TrialState, read_events
 from nao_sim_bridge.testing import wait_until
 from naoqi.errors import NaoError
 
@@ -316,7 +315,7 @@ def test_a_number_is_given_when_it_is_on_the_disk_and_not_before(tmp_path, monke
 ENROL = """
 import sys
 from pathlib import Path
-from nao_library_modules.console.study.files import StudyFiles
+from nao_library_modules.studies.study_files import StudyFiles
 files = StudyFiles(Path(sys.argv[1]))
 sys.stdin.read()
 for i in range(10):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nao_library_modules.console.study.files import PARTICIPANTS, StudyFiles
+from nao_library_modules.studies.study_files import PARTICIPANTS, StudyFiles
 from naoqi.errors import NaoError
 
 

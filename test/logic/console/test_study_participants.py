@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from played_study import LIMIT, PlayedRobot, Trial
 
-from nao_library_modules.console.study import studies as module
+from nao_library_modules.studies import studies as module
 
 PROGRAM = Path(__file__).parents[3] / "nao_library_modules/examples/console_participants.py"
 

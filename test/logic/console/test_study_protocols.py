@@ -9,11 +9,10 @@ import pytest
 from played_study import PROTOCOL
 
 from nao_library_modules.base.paths import config_file
-from nao_library_modules.console.files.yaml_file import ConsoleFileError
-from nao_library_modules.console.study.conditions import StudyCondition
-from nao_library_modules.console.study.course import following, rounds_of, step_at
-from nao_library_modules.console.study.order import balanced_rows, order_of
-from nao_library_modules.console.study.reader import read_protocol, read_protocol_file
+from nao_library_modules.studies.commands import ConsoleFileError
+from nao_library_modules.studies.protocol import StudyCondition
+from nao_library_modules.studies.protocol_reader import read_protocol, read_protocol_file
+from nao_library_modules.studies.schedule import balanced_rows, following, order_of, rounds_of, step_at
 
 SHIPPED = sorted(config_file("console/protocols").glob("*.yaml"))
 TOUCH = "- {wait: touch, sensors: [head], label: head}"

@@ -11,13 +11,13 @@ from click.testing import CliRunner
 from played_study import PROTOCOL, Trial
 
 from nao_library_modules.cli.app import nao
-from nao_library_modules.console.study import participants as pseudonyms
-from nao_library_modules.console.study import studies as module
-from nao_library_modules.console.study.errors import StudyError
-from nao_library_modules.console.study.log import read_events
-from nao_library_modules.console.study.participants import Participant, participants_of, schedule_of
-from nao_library_modules.console.study.reader import read_protocol
-from nao_library_modules.console.study.table import summaries_of, table_of
+from nao_library_modules.studies import studies as module
+from nao_library_modules.studies import study_files as pseudonyms
+from nao_library_modules.studies.protocol import StudyError
+from nao_library_modules.studies.protocol_reader import read_protocol
+from nao_library_modules.studies.study_files import Participant, participants_of, schedule_of
+from nao_library_modules.studies.study_table import summaries_of, table_of
+from nao_library_modules.studies.trial_log import read_events
 
 STUDY = "two_by_two"
 

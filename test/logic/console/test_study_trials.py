@@ -16,14 +16,13 @@ import played_study
 import pytest
 from played_study import LIMIT, PROTOCOL, PlayedRobot, Trial
 
-from nao_library_modules.console.study import recordings
-from nao_library_modules.console.study import studies as module
-from nao_library_modules.console.study.errors import StudyError
-from nao_library_modules.console.study.happenings import Touches
-from nao_library_modules.console.study.log import DELAY, EVENTS, TABLE, TrialLog, guarded, read_events
-from nao_library_modules.console.study.state import TrialState
-from nao_library_modules.console.study.studies import Studies
-from nao_library_modules.console.study.table import summaries_of, table_of
+from nao_library_modules.studies import studies as module
+from nao_library_modules.studies import trial_recordings
+from nao_library_modules.studies.protocol import StudyError
+from nao_library_modules.studies.robot_events import Touches
+from nao_library_modules.studies.studies import Studies
+from nao_library_modules.studies.study_table import summaries_of, table_of
+from nao_library_modules.studies.trial_log import DELAY, EVENTS, TABLE, TrialLog, TrialState, guarded, read_events
 
 
 @pytest.fixture(autouse=True)
@@ -502,7 +501,7 @@ KILLED = """
     from pathlib import Path
     sys.path.append({support!r})
     from played_study import Trial
-    from nao_library_modules.console.study import studies as module
+    from nao_library_modules.studies import studies as module
     module.settings = lambda namespace: {{}}
     trial = Trial(Path({folder!r})).begin().at("2.1")
     trial.touch(0.25)
@@ -539,7 +538,9 @@ def test_a_trial_that_a_program_runs_is_not_interrupted_and_cannot_be_given_up(t
 
 def test_a_trial_that_was_left_is_given_up_with_its_recording(trial, monkeypatch):
     ended = []
-    monkeypatch.setattr(recordings, "end_bag", lambda file, about, own: ended.append((file.name, about["pid"], own)))
+    monkeypatch.setattr(
+        trial_recordings, "end_bag", lambda file, about, own: ended.append((file.name, about["pid"], own))
+    )
     trial.begin().at("2.1")
     events = trial.robot.events.last()
     trial.runner.abort()

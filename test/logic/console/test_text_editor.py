@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from nao_library_modules.behaviors.language.errors import Problem
-from nao_library_modules.console.files.yaml_file import ConsoleFileError
 from nao_library_modules.console.pages.text_editor import marks_of, mistakes, problems_of
 from nao_library_modules.console.timeline.document import BehaviorDocument
+from nao_library_modules.studies.commands import ConsoleFileError
 from naoqi.errors import NaoError
 
 TEXT = "a: 1\n\U0001f916: 2\nc: 3"

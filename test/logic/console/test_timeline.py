@@ -11,8 +11,7 @@ from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors import BehaviorStore
 from nao_library_modules.behaviors.language.servers import FunctionTables
 from nao_library_modules.console.timeline.document import BehaviorDocument, EditRefused
-from nao_library_modules.console.timeline.run_view import RunView
-from nao_library_modules.console.timeline.tracks import BY_ORDER, BY_TIME, FIXED, tracks_of
+from nao_library_modules.console.timeline.tracks import BY_ORDER, BY_TIME, FIXED, RunView, tracks_of
 
 TEXT = """\
     help: A test.   # kept

@@ -12,16 +12,24 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.console.robots.events import EventStream
-from nao_library_modules.console.view import wire
+from nao_library_modules.console.view import live_view
 from nao_library_modules.console.view.background import Subscriptions, in_background
-from nao_library_modules.console.view.body_status import BodyStatus, read_status
-from nao_library_modules.console.view.broadcast import MOST_QUEUED, Broadcast, FrameInbox
-from nao_library_modules.console.view.live_view import watched_traces
+from nao_library_modules.console.view.live_view import (
+    CLOSEST,
+    MOST_QUEUED,
+    SPAN,
+    Broadcast,
+    FrameInbox,
+    Trace,
+    listed_value,
+    split_trace,
+    watched_traces,
+)
 from nao_library_modules.console.view.robot_model import mesh_path, read_model
-from nao_library_modules.console.view.sense_texts import AGAIN, Sightings, clicked, felt, heard, said, touched
-from nao_library_modules.console.view.traces import CLOSEST, SPAN, Trace, listed_value, split_trace
+from nao_library_modules.console.view.robot_state import BodyStatus, read_status
+from nao_library_modules.console.view.senses import AGAIN, Sightings, clicked, felt, heard, said, touched
 from nao_library_modules.nao.touch_names import SENSORS
+from nao_library_modules.studies.robot_events import EventStream
 from naoqi.errors import NaoError
 
 PACKAGE = Path(__file__).resolve().parents[3] / "nao_sim_bridge"
@@ -90,22 +98,22 @@ def test_a_description_that_will_not_do(text, words):
 
 
 def test_a_pose_is_144_bytes_for_26_joints():
-    frame = wire.pose_frame(12.5, (1, 2, 3, 0, 0, 0, 1), [0.25] * 26)
-    assert len(frame) == 144 and frame[:4] == bytes([wire.POSE_FRAME, wire.PLACED, 26, 0])
+    frame = live_view.pose_frame(12.5, (1, 2, 3, 0, 0, 0, 1), [0.25] * 26)
+    assert len(frame) == 144 and frame[:4] == bytes([live_view.POSE_FRAME, live_view.PLACED, 26, 0])
     assert struct.unpack_from("<7fd2f", frame, 4) == (1, 2, 3, 0, 0, 0, 1, 12.5, 0.25, 0.25)
 
 
 def test_poses_are_the_same_whatever_their_stamps():
-    first, later, other = (wire.pose_frame(stamp, None, [angle]) for stamp, angle in ((1, 0), (2, 0), (1, 0.1)))
-    assert wire.same_pose(first, later) and not wire.same_pose(first, other)
+    first, later, other = (live_view.pose_frame(stamp, None, [angle]) for stamp, angle in ((1, 0), (2, 0), (1, 0.1)))
+    assert live_view.same_pose(first, later) and not live_view.same_pose(first, other)
 
 
 def test_a_light_is_three_bytes():
-    assert wire.lights_frame([(1.0, 0.5, 0.0), (2.0, -1.0, 0.0)]) == bytes([2, 0, 2, 0, 255, 128, 0, 255, 0, 0])
+    assert live_view.lights_frame([(1.0, 0.5, 0.0), (2.0, -1.0, 0.0)]) == bytes([2, 0, 2, 0, 255, 128, 0, 255, 0, 0])
 
 
 def test_a_picture_begins_after_16_bytes():
-    frame = wire.picture_frame(1.5, b"jpeg")
+    frame = live_view.picture_frame(1.5, b"jpeg")
     assert frame[16:] == b"jpeg" and struct.unpack_from("<d", frame, 8) == (1.5,)
 
 

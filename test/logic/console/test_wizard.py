@@ -15,26 +15,29 @@ from click.testing import CliRunner
 from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.cli.app import nao
-from nao_library_modules.console.access.pulse import LATE, console_time
-from nao_library_modules.console.files.yaml_file import ConsoleFileError
+from nao_library_modules.console.access.connections import LATE, console_time
 from nao_library_modules.console.pages.wizard_page import WizardParts
-from nao_library_modules.console.robots.errors import NotThere, Stopped
-from nao_library_modules.console.robots.events import EventStream
-from nao_library_modules.console.robots.presses import Press, Presses
-from nao_library_modules.console.wizard.check import doubts
-from nao_library_modules.console.wizard.desk import WizardDesk
-from nao_library_modules.console.wizard.errors import EditConflict, PressRefused
-from nao_library_modules.console.wizard.head_pointer import HeadPointer
-from nao_library_modules.console.wizard.key_names import BadKey, key_of
-from nao_library_modules.console.wizard.layout_file import CurrentLayout, LayoutFile
-from nao_library_modules.console.wizard.model import BUTTON_WORDS, hex_colour, text_colour
-from nao_library_modules.console.wizard.pointing import CameraLens, dragged, head_limits, looked_at
-from nao_library_modules.console.wizard.reader import read_layout
-from nao_library_modules.console.wizard.session import PageRights, WizardSession, read_message
-from nao_library_modules.console.wizard.texts import filled_text, names_in
-from nao_library_modules.console.wizard.wire import layout_message
+from nao_library_modules.console.robots.robot_goals import Press, Presses
+from nao_library_modules.console.wizard.desk import PageRights, WizardDesk, WizardSession, read_message
+from nao_library_modules.console.wizard.head_pointer import CameraLens, HeadPointer, dragged, head_limits, looked_at
+from nao_library_modules.console.wizard.layout import (
+    BUTTON_WORDS,
+    BadKey,
+    EditConflict,
+    PressRefused,
+    filled_text,
+    hex_colour,
+    key_of,
+    layout_message,
+    names_in,
+    read_layout,
+    text_colour,
+)
+from nao_library_modules.console.wizard.layout_file import CurrentLayout, LayoutFile, doubts
 from nao_library_modules.functions.describe_offline import offline_servers
 from nao_library_modules.nao.gaze import load_head
+from nao_library_modules.studies.commands import ConsoleFileError, NotThere, Stopped
+from nao_library_modules.studies.robot_events import EventStream
 from nao_library_msgs.srv import DescribeFunctionsRequest
 
 SHIPPED = config_file("console/console.yaml")

@@ -22,7 +22,7 @@ from nao_library_actions.msg import (
     NaoBehaviorActionGoal,
     NaoBehaviorActionResult,
 )
-from nao_library_modules.console.access.pulse import LATE
+from nao_library_modules.console.access.connections import LATE
 from nao_library_msgs.srv import SetMemory
 from nao_sim_bridge.testing import wait_until
 

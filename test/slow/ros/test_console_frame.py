@@ -13,7 +13,7 @@ from console_overlays import OVERLAYS, paths_in_code
 from selenium.webdriver.common.keys import Keys
 
 from nao_library_actions.msg import NaoAudioOutActionGoal
-from nao_library_modules.console.access.pulse import LATE
+from nao_library_modules.console.access.connections import LATE
 from nao_sim_bridge.testing import wait_until
 
 READY = {

@@ -14,9 +14,9 @@ from selenium.webdriver.common.keys import Keys
 
 from nao_library_actions.msg import NaoAudioInAction
 from nao_library_modules.base.paths import config_file
-from nao_library_modules.console.study.files import StudyFiles
-from nao_library_modules.console.study.log import EVENTS
-from nao_library_modules.console.study.studies import Studies
+from nao_library_modules.studies.studies import Studies
+from nao_library_modules.studies.study_files import StudyFiles
+from nao_library_modules.studies.trial_log import EVENTS
 from nao_library_msgs.srv import PersonSays
 from nao_sim_bridge.testing import RobotTestCase, wait_until
 

@@ -19,7 +19,7 @@ from launch_lines import launch_lines, missing, without_launch_lines
 from programs import Program, at_port, shell
 from samples import PAGES, ROOT, samples
 
-from nao_library_modules.console.wizard.reader import read_layout
+from nao_library_modules.console.wizard.layout import read_layout
 from nao_sim_bridge.testing import wait_until
 from nao_sim_bridge.world.reader import load_world
 

@@ -10,15 +10,15 @@ from ..errors import StackMissing
 from ..settings import CliSettings
 
 if TYPE_CHECKING:
-    from ...console.timeline.command_check import CommandCheck
+    from ...studies.command_check import CommandCheck
 
 
 def command_check(settings: CliSettings) -> CommandCheck:
     """What checks commands against the servers that run, or, where none does, against the code."""
     from nao_library_msgs.srv import ListBehaviorsRequest
 
-    from ...console.robots.errors import NotThere
-    from ...console.timeline.command_check import CommandCheck
+    from ...studies.command_check import CommandCheck
+    from ...studies.commands import NotThere
 
     stack = settings.stack
 

@@ -45,8 +45,8 @@ def console_command(
     **options: Any,
 ) -> None:
     """Serve the console: prints its address, ends with Ctrl-C."""
-    from ...console.access.users import OBSERVER, OPERATOR
-    from ...console.access.users import add_user as write_user
+    from ...console.access.sessions import OBSERVER, OPERATOR
+    from ...console.access.sessions import add_user as write_user
 
     try:
         if checked is not None:
@@ -59,7 +59,7 @@ def console_command(
             write_user(users, add_user, OBSERVER if observer else OPERATOR, password)
             click.echo(f"{add_user} is in {users}")
             return
-        from ...console.node import serve_console
+        from ...console.app import serve_console
 
         serve_console(users=users, **{name: value for name, value in options.items() if value is not None})
     except NaoError as error:
@@ -71,9 +71,8 @@ def _check(settings: CliSettings, path: Path) -> None:
 
     Raises CommandFailed if there is anything.
     """
-    from ...console.files.yaml_file import ConsoleFileError
-    from ...console.wizard.check import layout_problems
-    from ...console.wizard.layout_file import LayoutFile
+    from ...console.wizard.layout_file import LayoutFile, layout_problems
+    from ...studies.commands import ConsoleFileError
 
     try:
         layout = LayoutFile(path, path).layout()

@@ -23,11 +23,11 @@ from ..settings import CliSettings, NaoCommand, NaoGroup, settings_of
 from .command_check import command_check
 
 if TYPE_CHECKING:
-    from ...console.study.files import StudyFiles, TrialFolder
-    from ...console.study.protocol import StudyProtocol, WantedRecordings
-    from ...console.study.runner import TrialRunner
-    from ...console.study.state import TrialState
-    from ...console.study.studies import Studies
+    from ...studies.protocol import StudyProtocol, WantedRecordings
+    from ...studies.studies import Studies
+    from ...studies.study_files import StudyFiles, TrialFolder
+    from ...studies.trial_log import TrialState
+    from ...studies.trial_runner import TrialRunner
 
 FOLDER = "~/.ros/nao_studies"
 END = ".yaml"
@@ -85,8 +85,8 @@ def check(context: click.Context, protocol: str, folder: Path) -> None:
     Servers and stored behaviours are those that run. Where none does, the code tells what this package's servers can
     do, and the behaviours are those of the usual folder.
     """
-    from ...console.study.checking import ProtocolCheck
-    from ...console.study.order import order_of
+    from ...studies.protocol_check import ProtocolCheck
+    from ...studies.schedule import order_of
 
     read = _protocol(_files(folder), protocol)
     problems = ProtocolCheck(command_check(settings_of(context))).problems(read)
@@ -135,7 +135,7 @@ def run(
 
     Number, order and conditions of the participant are told before. Ctrl-C aborts the trial. What was logged stays.
     """
-    from ...console.study.participants import schedule_of
+    from ...studies.study_files import schedule_of
 
     settings = settings_of(context)
     files = _files(folder)
@@ -167,7 +167,7 @@ def run(
 @click.pass_context
 def order(context: click.Context, protocol: str, participant: str, folder: Path) -> None:
     """Number, order and conditions of a participant, also of one who has not begun. Nothing is written."""
-    from ...console.study.participants import schedule_of
+    from ...studies.study_files import schedule_of
 
     files = _files(folder)
     read = _protocol(files, protocol)
@@ -187,7 +187,7 @@ def order(context: click.Context, protocol: str, participant: str, folder: Path)
 @click.pass_context
 def rename(context: click.Context, study: str, old: str, new: str, folder: Path) -> None:
     """Correct a mistyped pseudonym in all trials of a participant; number, order and answers stay."""
-    from ...console.study.participants import correct_pseudonym
+    from ...studies.study_files import correct_pseudonym
 
     number = _told(lambda: correct_pseudonym(_files(folder), study, old, new, "nao"))
     if settings_of(context).json:
@@ -203,7 +203,7 @@ def rename(context: click.Context, study: str, old: str, new: str, folder: Path)
 @click.pass_context
 def take_participant_back(context: click.Context, study: str, participant: str, folder: Path) -> None:
     """Take back a participant who has played nothing: the number is free again."""
-    from ...console.study.participants import take_back
+    from ...studies.study_files import take_back
 
     number = _told(lambda: take_back(_files(folder), study, participant, "nao"))
     if settings_of(context).json:
@@ -234,8 +234,8 @@ def resume(context: click.Context, trial: str, choose: tuple[str, ...], folder: 
 @click.pass_context
 def abort(context: click.Context, trial: str, folder: Path) -> None:
     """Give up a trial whose program was gone, and end the recordings that it has left. What was logged stays."""
-    from ...console.study.recordings import BAG
-    from ...console.study.studies import Studies
+    from ...studies.studies import Studies
+    from ...studies.trial_recordings import BAG
 
     settings = settings_of(context)
     files = _files(folder)
@@ -279,8 +279,8 @@ def study_table(
 
     STUDY is the name of one in the folder of the studies, or its own folder.
     """
-    from ...console.study.files import StudyFiles
-    from ...console.study.table import summaries_of, table_of
+    from ...studies.study_files import StudyFiles
+    from ...studies.study_table import summaries_of, table_of
 
     places = {end: wanted_file(each, overwrite, ("csv",)) for end, each in (("", file), ("_trials", trials))}
     path = Path(study).expanduser().absolute()
@@ -337,14 +337,14 @@ def _status(trial: TrialFolder, state: TrialState) -> str:
 
 
 def _files(folder: Path) -> StudyFiles:
-    from ...console.study.files import StudyFiles
+    from ...studies.study_files import StudyFiles
 
     return StudyFiles(folder)
 
 
 def _protocol(files: StudyFiles, name: str) -> StudyProtocol:
     """A protocol by its name or its file."""
-    from ...console.study.reader import read_protocol_file
+    from ...studies.protocol_reader import read_protocol_file
 
     if name.endswith(END) or "/" in name:
         return _told(lambda: read_protocol_file(Path(name).expanduser()))
@@ -356,7 +356,7 @@ def _protocol(files: StudyFiles, name: str) -> StudyProtocol:
 
 def _told(act: Callable[[], Any]) -> Any:
     """What a function answers; its errors are those of the command, each mistake of a file on a line of its own."""
-    from ...console.files.yaml_file import ConsoleFileError
+    from ...studies.commands import ConsoleFileError
 
     try:
         return act()
@@ -368,7 +368,7 @@ def _told(act: Callable[[], Any]) -> Any:
 
 def _studies(settings: CliSettings, files: StudyFiles) -> tuple[Studies, Any]:
     """The studies, and the robot that is meant."""
-    from ...console.study.alone import studies_alone
+    from ...console.watched_studies import studies_alone
     from ..goals import start_node
 
     namespace = settings.stack.namespace
@@ -377,7 +377,7 @@ def _studies(settings: CliSettings, files: StudyFiles) -> tuple[Studies, Any]:
 
 
 def _recordings(protocol: StudyProtocol, text: str | None) -> WantedRecordings | None:
-    from ...console.study.protocol import BAG_TOPICS, WantedRecordings
+    from ...studies.protocol import BAG_TOPICS, WantedRecordings
 
     if text is None:
         return None
@@ -402,7 +402,7 @@ def _assigned(texts: Sequence[str], form: str) -> dict[str, str]:
 
 
 def _done(studies: Studies, protocol: StudyProtocol, participant: str) -> bool:
-    from ...console.study.errors import StudyError
+    from ...studies.protocol import StudyError
 
     try:
         studies.position_of(protocol, participant)
@@ -418,9 +418,8 @@ def _play(
 
     `troubles`: what was wrong with its log is added.
     """
-    from ...console.study.errors import StudyError
-    from ...console.study.protocol import ChoiceStep, SenseStep
-    from ...console.study.state import FINISHED, HELD, PAUSED
+    from ...studies.protocol import ChoiceStep, SenseStep, StudyError
+    from ...studies.trial_log import FINISHED, HELD, PAUSED
 
     changes: queue.SimpleQueue[Any] = queue.SimpleQueue()
     log_teller = _LogTeller()

@@ -1,12 +1,18 @@
-"""How many connections there may be: few of strangers, and for a short while; enough for all pages of a visitor."""
+"""Connections of browsers: how many there may be, and how late a message may come.
+
+Strangers have few, and for a short while; a visitor has enough for all pages. Pages hear the console's pulse, and stamp
+what they send with its clock. A press that waited in a network that was cut, or for a console that hung, comes late: it
+is refused. Stop never is.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import ipaddress
+import math
 import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Tuple
@@ -194,3 +200,28 @@ def _has_asked(connection: Any) -> bool:
 
 def _is_open(connection: Any) -> bool:
     return connection.fileno() != -1
+
+
+PERIOD = 0.5
+"""s between two beats."""
+LATE = 3.0
+"""s from a press to its arrival at most."""
+STAMP = "at"
+"""Field of a message: when it was made, as `console_time`."""
+
+
+def console_time() -> float:
+    """Time of the clock that beats tell and messages are stamped with, s."""
+    return time.monotonic()
+
+
+def refusal_of_late(message: Mapping[str, Any]) -> str:
+    """Why a message is not carried out, for people; empty: it is in time, or has no stamp."""
+    stamp = message.get(STAMP)
+    if not isinstance(stamp, (int, float)) or isinstance(stamp, bool) or not math.isfinite(stamp):
+        return ""
+    if console_time() - stamp <= LATE:
+        return ""
+    return (
+        f"it came more than {LATE:g} s late, as the connection was interrupted: look, and press again if still wanted"
+    )

@@ -9,8 +9,7 @@ from typing import Any
 from urllib.parse import parse_qs, quote, urlencode, urlsplit
 
 from .connections import Connections
-from .logins import Logins
-from .sessions import Session, Sessions
+from .sessions import Logins, Session, Sessions
 
 COOKIE = "nao_console"
 SESSION = "nao_session"

@@ -1,18 +1,216 @@
-"""Browsers that have shown a token or a password."""
+"""Users and their sessions: the file of hashed passwords, roles, tokens, logins, limits of wrong passwords, controls.
+
+`SessionFile` keeps sessions over a restart. `Controls` knows which operator holds the controls of which robot.
+"""
 
 from __future__ import annotations
 
+import asyncio
+import base64
 import hashlib
 import hmac
+import json
+import logging
+import os
+import re
 import secrets
+import stat
 import threading
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
 
+from naoqi.errors import NaoError
+
+from ...base.whole_file import draft_in, put_aside, write_whole
+from ...behaviors.language.errors import Problem
+from ...behaviors.language.yaml_text import dump, line_in
+from ...studies.commands import ConsoleFileError, FileReader
 from .connections import address_group
-from .session_file import KeptSession, SessionFile
-from .users import OBSERVER, OPERATOR, ConsoleUser
+
+OPERATOR, OBSERVER = "operator", "observer"
+ROLES = (OPERATOR, OBSERVER)
+COST, BLOCK, LANES = 2**14, 8, 1
+"""Of scrypt: 16 MiB and some 40 ms for one password."""
+SHORTEST = 8
+_NAME = re.compile(r"[\w.@-]{1,40}")
+
+
+HASHED = re.compile(r"scrypt(\$(?=[^$])(?:[A-Za-z0-9+/]{4})*(?:[A-Za-z0-9+/]{2}==|[A-Za-z0-9+/]{3}=)?){2}")
+
+
+@dataclass(frozen=True)
+class ConsoleUser:
+    """A person who may log in. `password`: scrypt$SALT$HASH, both base64."""
+
+    name: str
+    role: str
+    password: str
+
+    def has_password(self, password: str) -> bool:
+        """Whether it is theirs; takes as long for a wrong one."""
+        _, salt, wanted = self.password.split("$")
+        return hmac.compare_digest(_hash(password, base64.b64decode(salt)), base64.b64decode(wanted))
+
+
+def hashed(password: str) -> str:
+    """A password as the file has it. Raises NaoError if it is too short."""
+    if len(password) < SHORTEST:
+        raise NaoError(f"a password has {SHORTEST} characters at least")
+    salt = secrets.token_bytes(16)
+    return "$".join(("scrypt", *(base64.b64encode(part).decode() for part in (salt, _hash(password, salt)))))
+
+
+def read_users(path: Path) -> Mapping[str, ConsoleUser]:
+    """The people of a file. Raises ConsoleFileError with all that is wrong with it; without them nobody is let in."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConsoleFileError(str(path), [Problem("", f"cannot be read: {error}")]) from error
+    reader = FileReader(text, path.name)
+    users = {}
+    for name, entry in reader.mapping(
+        reader.content, "", reader.content if isinstance(reader.content, dict) else ()
+    ).items():
+        fields = reader.mapping(entry, str(name), ("role", "password"), ("role", "password"))
+        role = reader.choice(fields, "role", str(name), ROLES, OBSERVER)
+        password = reader.text(fields, "password", str(name))
+        if not HASHED.fullmatch(password):
+            reader.note(
+                f"{name}.password",
+                "no hash: `nao console --users FILE --add-user NAME` writes one",
+                line_in(fields, "password"),
+            )
+        users[str(name)] = ConsoleUser(str(name), role, password)
+    reader.finish()
+    return users
+
+
+def add_user(path: Path, name: str, role: str, password: str) -> None:
+    """Write a person into a file, which only its owner can read then; one of that name is replaced. Raises NaoError."""
+    if not _NAME.fullmatch(name):
+        raise NaoError(f"{name!r} is no name: up to 40 letters, digits and . _ @ -")
+    users = dict(read_users(path)) if path.exists() else {}
+    users[name] = ConsoleUser(name, role, hashed(password))
+    text = dump({each.name: {"role": each.role, "password": each.password} for each in users.values()})
+    before = os.umask(0o077)
+    try:
+        write_whole(path, text)
+    finally:
+        os.umask(before)
+
+
+def _hash(password: str, salt: bytes) -> bytes:
+    return hashlib.scrypt(password.encode(), salt=salt, n=COST, r=BLOCK, p=LANES)
+
+
+log = logging.getLogger(__name__)
+
+LONGEST = 86400.0
+"""s since a session began, after which a restarted console does not know it."""
+MODE = 0o600
+
+
+@dataclass(frozen=True)
+class KeptSession:
+    """A session in the file. `proof`: of a person who logged in, made with the hash of the password; else empty."""
+
+    key: str
+    name: str
+    role: str
+    proof: str
+    began: float  # s since 1970
+
+
+class SessionFile:
+    """The file of one console, which only its owner can read. Any thread; writes are made in one of their own.
+
+    `clock`: s since 1970.
+    """
+
+    def __init__(self, path: Path, clock: Callable[[], float] = time.time) -> None:
+        self.path = path
+        self._clock = clock
+        self._wanted = threading.Condition()
+        self._next: str | None = None
+        self._writing = False
+
+    def read(self) -> list[KeptSession]:
+        """Sessions that are not too old. What others may have written or read is not believed, and put aside."""
+        try:
+            with self.path.open("rb") as file:
+                about = os.fstat(file.fileno())
+                content = file.read()
+        except FileNotFoundError:
+            return []
+        except OSError as error:
+            log.error("%s cannot be read: %s; who was logged in logs in again", self.path, error)
+            return []
+        if about.st_uid != os.geteuid() or stat.S_IMODE(about.st_mode) & 0o077:
+            put_aside(self.path, "others may read or write it: its mode should be 0600", _WITHOUT)
+            return []
+        try:
+            kept = [_read_one(each) for each in json.loads(content)]
+        except (ValueError, TypeError, RecursionError) as error:
+            put_aside(self.path, error, _WITHOUT)
+            return []
+        now = self._clock()
+        return [each for each in kept if now - LONGEST < each.began <= now]
+
+    def write(self, sessions: Iterable[KeptSession]) -> None:
+        """Have these in the file, soon; the newest call counts."""
+        text = json.dumps([asdict(each) for each in sessions])
+        with self._wanted:
+            self._next = text
+            if self._writing:
+                return
+            self._writing = True
+        threading.Thread(target=self._write, name="sessions", daemon=True).start()
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait until all is written; whether it is."""
+        with self._wanted:
+            return self._wanted.wait_for(lambda: not self._writing, timeout)
+
+    def _write(self) -> None:
+        while True:
+            with self._wanted:
+                text, self._next = self._next, None
+                if text is None:
+                    self._writing = False
+                    self._wanted.notify_all()
+                    return
+            try:
+                self._replace(text)
+            except OSError as error:
+                log.error("%s cannot be written: %s; after a restart everybody logs in again", self.path, error)
+
+    def _replace(self, text: str) -> None:
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        with draft_in(self.path.parent) as draft:
+            draft.chmod(MODE)  # before there is anything in it
+            draft.write_text(text, encoding="utf-8")
+            os.replace(draft, self.path)
+
+
+_WITHOUT = "who was logged in logs in again"
+
+
+def _read_one(entry: object) -> KeptSession:
+    """Raises ValueError, TypeError if it is none."""
+    if not isinstance(entry, dict):
+        raise ValueError("an entry that is no session")
+    kept = KeptSession(**entry)
+    for each in fields(KeptSession):
+        value, kind = getattr(kept, each.name), float if each.name == "began" else str
+        if not isinstance(value, kind):
+            raise ValueError(f"{each.name} of a session: {value!r}")
+    if kept.role not in ROLES:
+        raise ValueError(f"role of a session: {kept.role!r}; {' or '.join(ROLES)} would be right")
+    return kept
+
 
 TRIES, TRY_PERIOD = 5, 60.0
 """Wrong passwords of one source within so many s, after which none of its is looked at."""
@@ -183,3 +381,102 @@ def _signed(user: ConsoleUser, nonce: str) -> str:
     """A text that only who has the file of people can make, for one person and until the password changes."""
     key = f"{user.name} {user.password}".encode()
     return f"{nonce}.{hmac.new(key, nonce.encode(), hashlib.sha256).hexdigest()}"
+
+
+WORKERS = 2
+"""Passwords that are looked at side by side: each takes 16 MiB."""
+MOST_WAITING = 5
+"""Tries of one source that wait for their turn; more are refused at once."""
+
+
+class Logins:
+    """Takes the tries of each source one after the other, so that a source with many waits for itself. Event loop."""
+
+    def __init__(self, sessions: Sessions) -> None:
+        self._sessions = sessions
+        self._threads = ThreadPoolExecutor(WORKERS, "login")
+        self._turns: dict[str, asyncio.Lock] = {}
+        self._waiting: dict[str, int] = {}
+
+    async def by_password(self, name: str, password: str, address: str, device: str) -> Session | None:
+        """A new session, or None; see `Sessions.by_password`."""
+        source = self._sessions.source_of(name, address, device)
+        if self._waiting.get(source, 0) >= MOST_WAITING:
+            return None
+        self._waiting[source] = self._waiting.get(source, 0) + 1
+        try:
+            async with self._turns.setdefault(source, asyncio.Lock()):
+                return await asyncio.get_running_loop().run_in_executor(
+                    self._threads, self._sessions.by_password, name, password, source
+                )
+        finally:
+            self._waiting[source] -= 1
+            if not self._waiting[source]:
+                del self._waiting[source], self._turns[source]
+
+
+class Controls:
+    """Of all robots. Any thread.
+
+    One operator at a time holds the controls of a robot: the first who does something, until another takes them or the
+    last page of the holder is gone.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._pages: dict[object, tuple[Session, str]] = {}
+        self._holders: dict[str, Session] = {}
+
+    def enter(self, session: Session, robot: str) -> Callable[[], None]:
+        """A page was opened; what comes back is to be called when it is gone."""
+        key = object()
+        with self._lock:
+            self._pages[key] = (session, robot)
+        return lambda: self._leave(key)
+
+    def visitors(self, robot: str) -> list[Session]:
+        """Who has a page of a robot open, each once."""
+        with self._lock:
+            return list(dict.fromkeys(session for session, where in self._pages.values() if where == robot))
+
+    def holder(self, robot: str) -> Session | None:
+        with self._lock:
+            return self._holders.get(robot)
+
+    def take(self, robot: str, session: Session) -> bool:
+        """Hold the controls from now on, whoever did before; whether that is allowed."""
+        if not session.operator:
+            return False
+        with self._lock:
+            self._holders[robot] = session
+        return True
+
+    def release(self, robot: str, session: Session) -> None:
+        with self._lock:
+            if self._holders.get(robot) is session:
+                del self._holders[robot]
+
+    def may_move(self, robot: str, session: Session) -> bool:
+        """Whether somebody may move a robot now: who holds its controls, or an operator where nobody does."""
+        if not session.operator:
+            return False
+        with self._lock:
+            return self._holders.setdefault(robot, session) is session
+
+    def refusal(self, robot: str, session: Session) -> str:
+        """Why somebody may not move a robot."""
+        if not session.operator:
+            return "observers look on; only operators move the robot"
+        holder = self.holder(robot)
+        return f"{holder.name if holder else 'nobody'} holds the controls of {robot}: take them over first"
+
+    def forget(self, session: Session) -> None:
+        """Somebody has logged out."""
+        with self._lock:
+            self._holders = {robot: holder for robot, holder in self._holders.items() if holder is not session}
+
+    def _leave(self, key: object) -> None:
+        with self._lock:
+            self._pages.pop(key, None)
+            there = {session for session, _ in self._pages.values()}
+            self._holders = {robot: holder for robot, holder in self._holders.items() if holder in there}

@@ -14,22 +14,19 @@ from starlette.requests import Request
 from naoqi.errors import NaoError
 
 from ...behaviors.language.expressions import text_of
-from ..robots.commands import RobotCommand, call
+from ...studies.command_check import StoredBehaviors, problems_in
+from ...studies.commands import RobotCommand, call
 from ..robots.forms import form_of_behavior
-from ..robots.runs import Run, end_of
+from ..robots.robot_goals import Run, end_of
 from ..timeline.document import BehaviorDocument
-from ..timeline.projected import NotProjected, project_behavior
-from ..timeline.run_view import RunView, StepLine
-from ..timeline.stored import StoredBehaviors, problems_in
-from ..timeline.tracks import Tracks, tracks_of
+from ..timeline.projection import NotProjected, project_behavior
+from ..timeline.tracks import RunView, StepLine, Tracks, tracks_of
 from ..timeline.yaml_places import EditRefused
 from ..view.background import Subscriptions
 from .field_inputs import FieldInputs
 from .frame import PageContext, framed, page_at, remove_dialog, sure
-from .insert_dialog import BEHIND, INSIDE, LAST, InsertDialog
-from .step_form import StepForm
+from .step_editor import BEHIND, INSIDE, KEYS, LAST, InsertDialog, StepForm, TimelineCanvas
 from .text_editor import Draft, marks_of
-from .timeline_canvas import KEYS, TimelineCanvas
 
 SERVER = "NaoBehavior"
 LOOK_PERIOD = 0.2

@@ -1,30 +1,172 @@
-"""What all pages have: head line, choice of the robot, the stop, who is there, light and dark, the alarms."""
+"""What all pages have: head line, choice of the robot, stop, users, light and dark, alarms, and presses that failed.
+
+What a page could not send is reported later: see static/presses.js.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Iterator
+import math
+import time
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, Awaitable, Callable, Union
 
 from fastapi import Depends, HTTPException, Request
 from fastapi.staticfiles import StaticFiles
 from nicegui import context, ui
+from starlette.requests import ClientDisconnect
 
 from naoqi.errors import NaoError
 
 from ...base.paths import config_file
+from ...studies.commands import RobotCommand
+from ...studies.robot_events import namespace_of
+from ..access.connections import refusal_of_late
 from ..access.guard import LOGOUT, session_of
-from ..access.pulse import refusal_of_late
 from ..access.sessions import Session
-from ..robots.commands import RobotCommand
-from ..robots.presses import PATIENCE, Press
-from ..robots.robot import RobotClient
-from ..robots.runs import NOT_SENT, Run
+from ..robots.robot_client import RobotClient
+from ..robots.robot_goals import NOT_SENT, PATIENCE, FailedPress, Press, Presses, Run
+from ..view.alarms import Alarm
 from ..view.background import Subscriptions, in_background
-from . import failed_presses
-from .alarm_bar import AlarmBar
+
+PERIOD = 0.2
+"""s between two looks for changes."""
+NONE = "No alarms"
+
+
+class AlarmBar:
+    """The strip of one page. The line of an alarm is created once, so that a screen reader reads it once.
+
+    `page`: its `PageContext`.
+    """
+
+    def __init__(self, page: Any) -> None:
+        self._watch = page.console.views.of(page.robot).alarms
+        page.on_leave(self._watch.acquire())
+        self._lines: dict[tuple[str, str, float], ui.element] = {}
+        with ui.element("div").classes("nao-alarms"):
+            self._none = ui.label(NONE).classes("nao-no-alarm")
+            self._list = ui.element("div").classes("nao-alarm-list")
+            self._list.props('role="alert" aria-live="assertive" aria-atomic="false"')
+        self._show()
+        page.every(PERIOD, self._show)
+
+    def _show(self) -> None:
+        alarms = {(alarm.code, alarm.what, alarm.since): alarm for alarm in self._watch.alarms}
+        for gone in self._lines.keys() - alarms.keys():
+            self._lines.pop(gone).delete()
+        with self._list:
+            for key, alarm in alarms.items():
+                if key not in self._lines:
+                    self._lines[key] = _line(alarm)
+        self._none.set_visibility(not alarms)
+
+
+def since_text(alarm: Alarm) -> str:
+    """Begin of an alarm as text."""
+    clock = time.strftime("%H:%M:%S", time.localtime(alarm.since))
+    return f"since {clock} or before" if alarm.found else f"since {clock}"
+
+
+def _line(alarm: Alarm) -> ui.element:
+    with ui.element("div").classes("nao-alarm").props(f'data-alarm="{alarm.code}"') as line:
+        ui.icon("warning").props('aria-hidden="true"')
+        ui.label(f"{alarm.what}, {since_text(alarm)}.").classes("nao-alarm-what")
+        ui.label(alarm.action)
+    return line
+
+
+LONGEST_LABEL = 100
+UNSENT = "the page had no connection to the console when it was pressed"
+BROKEN = "the connection to the console broke before it arrived"
+MOST_UNSENT = 50
+"""Presses of which a page tells at once that it could not send them."""
+
+
+def build_unsent(console: Any) -> None:
+    """Register where a page tells what was pressed while it had no connection: POST `/console/unsent`."""
+
+    @console.app.post("/console/unsent")
+    async def unsent(request: Request) -> None:
+        session = session_of(request)
+        try:
+            told = await request.json()
+        except ValueError as error:
+            raise HTTPException(400, f"presses are told as JSON: {error}") from None
+        except ClientDisconnect:  # the page is left, and tells it again from the next one
+            return
+        for press, reason, more in unsent_presses(told, session, console.robots.known, console.presses.is_new):
+            console.presses.report(press, NOT_SENT, reason, **more)
+
+
+def unsent_presses(
+    told: Any, session: Session, known: Callable[[str], Any], is_new: Callable[[str], bool] = lambda press_id: True
+) -> Iterator[tuple[Press, str, Mapping[str, Any]]]:
+    """Presses, the reason, and what else `Presses.report` takes, of what a browser tells, which may be anything.
+
+    `known`: finds the robot of a name, or gives None. `is_new`: whether nothing was heard yet of the press of an id.
+    """
+    for each in told[:MOST_UNSENT] if isinstance(told, list) else ():
+        if not isinstance(each, dict):
+            continue
+        label, group, page, via, name, of, press_id = (
+            str(each.get(field) or "")[:LONGEST_LABEL]
+            for field in ("label", "group", "page", "via", "robot", "of", "press_id")
+        )
+        if not is_new(press_id):
+            continue
+        robot, age = known(name), each.get("age")
+        age = round(age, 1) if isinstance(age, (int, float)) and math.isfinite(age) else 0.0
+        streams = (robot.events,) if robot is not None and session.operator else ()
+        via = "key" if via == "key" else "click"
+        press = Press(label, session.name, page, namespace_of(of or name), group, via, streams)
+        yield press, BROKEN if each.get("doubt") else UNSENT, {"age": age, "keep": not each.get("seen")}
+
+
+class FailedLines:
+    """A line for each press of the visitor that has failed, with a button that takes it away."""
+
+    def __init__(self, presses: Presses, page: Any) -> None:
+        self._presses, self._page, self._user = presses, page, page.visitor.name
+        self._shown: list[FailedPress] = []
+
+    def build(self) -> None:
+        """Make the lines, and follow what happens."""
+        self._lines = ui.column().classes("nao-failed gap-1").props('role="alert" aria-label="What has failed"')
+        # static/presses.js fills it; Vue leaves its content alone.
+        ui.element("div").classes("nao-failed nao-unsent").props('role="alert" aria-label="What was not sent"')
+        loop, client = asyncio.get_running_loop(), context.client
+
+        def in_page() -> None:
+            if not self._page.gone:
+                with client:
+                    self._show()
+
+        self._page.on_leave(self._presses.subscribe(lambda: loop.call_soon_threadsafe(in_page)))
+        self._show()
+
+    def _show(self) -> None:
+        failed = self._presses.unseen(self._user)
+        if failed == self._shown:
+            return
+        self._shown = failed
+        self._lines.clear()
+        with self._lines:
+            for each in failed:
+                with ui.row().classes("w-full items-center no-wrap gap-2"):
+                    ui.icon("error")
+                    ui.label(each.text).classes("flex-1 break-words")
+                    self._button("Seen", f"Seen: {each.text}", each.id)
+            if len(failed) > 1:
+                self._button("All seen", "All seen", None)
+
+    def _button(self, text: str, label: str, number: int | None) -> None:
+        button = ui.button(text, icon="done", on_click=lambda: self._presses.seen(self._user, number))
+        button.props("no-caps dense outline color=black")
+        button.props["aria-label"] = label
+
 
 log = logging.getLogger(__name__)
 
@@ -40,7 +182,7 @@ Callback = Callable[[], Union[None, Awaitable[None]]]
 def build(console: Any) -> None:
     """Register what all pages need: static files, and where they tell what they could not send."""
     console.app.mount(STATIC, StaticFiles(directory=config_file("console/static")), name="console_static")
-    failed_presses.build_unsent(console)
+    build_unsent(console)
 
 
 class PageContext:
@@ -162,7 +304,7 @@ class PageContext:
             return
         refusal = refusal_of_late(message)
         if refusal:
-            self.failed(str(message.get("label", ""))[: failed_presses.LONGEST_LABEL], refusal)
+            self.failed(str(message.get("label", ""))[:LONGEST_LABEL], refusal)
         else:
             self._handle_event(message)
 
@@ -242,7 +384,7 @@ def framed(console: Any, title: str, request: Request) -> Iterator[PageContext]:
             ui.element("span").classes("nao-stop-state")
     with ui.footer(elevated=False).classes("nao-strip").props('role="region" aria-label="Reports" tabindex="0"'):
         AlarmBar(page)
-        failed_presses.FailedLines(console.presses, page).build()
+        FailedLines(console.presses, page).build()
     with ui.column().classes("nao-main w-full"):
         yield page
 

@@ -10,9 +10,8 @@ from starlette.requests import Request
 
 from ...base.suggestion import closest
 from ...behaviors.language.yaml_text import dump
-from ..robots.commands import RobotCommand
-from ..robots.copies import as_command, as_python, as_yaml
-from ..robots.forms import form_of
+from ...studies.commands import RobotCommand
+from ..robots.forms import as_command, as_python, as_yaml, form_of
 from .field_inputs import FieldInputs
 from .frame import PageContext, framed, page_at
 

@@ -1,27 +1,303 @@
-"""The page "Robot": what it looks like, sees, feels and does, live; and a simulator's controls where there is one."""
+"""The page "Robot": what it looks like, sees, feels and does, live; and a simulator's controls where there is one.
+
+The live data have routes of their own, behind the guard: the robot's model, its meshes, WebSockets.
+"""
 
 from __future__ import annotations
 
+import asyncio
+import json
 import math
 import time
 from collections import deque
+from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import Any, Deque
 
-from fastapi import Request
+from fastapi import HTTPException, Request, WebSocket, WebSocketDisconnect
+from fastapi.responses import FileResponse, Response
 from nicegui import ui
 
 from naoqi.errors import NaoError
 
-from ..robots.events import ConsoleEvent
-from ..robots.runs import Run
+from ...base.suggestion import did_you_mean
+from ...nao.touch_names import SENSORS
+from ...studies.robot_events import ConsoleEvent
+from ..access.guard import session_of
+from ..robots.robot_goals import Run
 from ..view.background import in_background
-from ..view.body_status import ERROR, OK, BodyStatus
-from ..view.camera_feed import CAMERA_VIEWS
-from ..view.traces import MOST_TRACES, TRACE_NAMES
-from ..view.views import RobotViews
-from . import live_routes
+from ..view.live_view import CAMERA_VIEWS, MOST_TRACES, TRACE_NAMES, FrameInbox, RobotViews, watched_traces
+from ..view.robot_model import RobotModel, mesh_path, read_model
+from ..view.robot_state import ERROR, OK, BodyStatus
+from ..view.simulator import CONTENTS, KINDS
 from .frame import STATIC, PageContext, framed, page_at
-from .simulator_panel import SimulatorPanel
+
+DESCRIPTION = "robot_description"
+LONGEST_REASON = 120
+"""Bytes of the reason of a WebSocket's end, at most; 123 are allowed."""
+LOOK_PERIOD = 5.0
+"""s between two looks whether whoever has a WebSocket is still logged in."""
+NOT_FOUND, LOGGED_OUT, WRONG = 4404, 4403, 4400
+CACHED = {"cache-control": "max-age=3600"}
+
+
+def build_live_routes(console: Any) -> None:
+    """Register the routes.
+
+    GET `/console/model?robot=NAME`: its description as JSON; `/console/meshes/PACKAGE/PATH`: meshes of descriptions
+    that were asked for. WebSockets `/console/live?robot=NAME` and `/console/camera?robot=NAME&camera=top`: see
+    `view/wire.py`.
+    """
+    meshes: set[str] = set()
+
+    def described(robot: str) -> tuple[RobotModel, str]:
+        found = model_of(console, robot)
+        return found, json.dumps(found.to_json())
+
+    @console.app.get("/console/model")
+    async def model(robot: str = "") -> Response:
+        try:
+            found, text = await in_background(described, robot)
+        except NaoError as error:
+            raise HTTPException(404, str(error)) from None
+        meshes.update(found.meshes)
+        return Response(text, media_type="application/json")
+
+    @console.app.get("/console/meshes/{name:path}")
+    async def mesh(name: str) -> FileResponse:
+        import rospkg
+
+        try:
+            path = await in_background(lambda: mesh_path(name, frozenset(meshes), rospkg.RosPack().get_path))
+        except (FileNotFoundError, rospkg.ResourceNotFound) as error:
+            raise HTTPException(404, f"no mesh {name}") from error
+        return FileResponse(path, media_type="model/stl", headers=CACHED)
+
+    @console.app.websocket("/console/live")
+    async def live(socket: WebSocket, robot: str = "") -> None:
+        client = await _accepted(console, socket, robot)
+        if client is None:
+            return
+        view = console.views.of(client).live
+        inbox = await view.attach()
+
+        async def read() -> None:
+            while True:
+                text = await socket.receive_text()
+                await view.watch(inbox, watched_traces(json.loads(text)))
+
+        try:
+            await _serve(console, socket, inbox, read)
+        finally:
+            await view.detach(inbox)
+
+    @console.app.websocket("/console/camera")
+    async def camera(socket: WebSocket, robot: str = "", camera: str = "top") -> None:
+        client = await _accepted(console, socket, robot)
+        if client is None:
+            return
+        feed = console.views.of(client).cameras.get(camera)
+        if feed is None:
+            await _end(socket, NOT_FOUND, f"there is no camera {camera[:20]!r}{did_you_mean(camera, CAMERA_VIEWS)}")
+            return
+        inbox = await feed.attach()
+
+        async def read() -> None:
+            while True:
+                await socket.receive_text()
+
+        try:
+            await _serve(console, socket, inbox, read)
+        finally:
+            await feed.detach(inbox)
+
+
+def model_of(console: Any, name: str) -> RobotModel:
+    """The description of a robot. Raises NaoError if there is none, or it will not do."""
+    import rospy
+
+    robot = console.robots.robot(name)
+    for full in dict.fromkeys((robot.namespace + DESCRIPTION, f"/{DESCRIPTION}")):
+        try:
+            text = rospy.get_param(full, None)
+        except OSError as error:
+            raise NaoError(f"the ROS master does not answer: {error}") from error
+        if text is not None:
+            return read_model(str(text))
+    raise NaoError(f"there is no parameter {robot.namespace}{DESCRIPTION}: does the driver run?")
+
+
+async def _accepted(console: Any, socket: WebSocket, name: str) -> Any:
+    """The robot that a WebSocket is about; None if there is none, which the browser was told."""
+    await socket.accept()
+    try:
+        return await in_background(console.robots.robot, name)
+    except NaoError as error:
+        await _end(socket, NOT_FOUND, str(error))
+        return None
+
+
+async def _serve(console: Any, socket: WebSocket, inbox: FrameInbox, read: Callable[[], Awaitable[None]]) -> None:
+    """Send frames and read messages until the browser goes, sends nonsense, or is logged out."""
+    session = session_of(socket)
+
+    async def send() -> None:
+        while True:
+            for frame in await inbox.take():
+                await (socket.send_text(frame) if isinstance(frame, str) else socket.send_bytes(frame))
+
+    async def look() -> None:
+        while console.sessions.get(session.key) is session:
+            await asyncio.sleep(LOOK_PERIOD)
+        await _end(socket, LOGGED_OUT, "logged out")
+
+    tasks = [asyncio.ensure_future(task) for task in (send(), read(), look())]
+    try:
+        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        for task in done:
+            task.result()
+    except (WebSocketDisconnect, RuntimeError):
+        pass  # the browser has gone; Starlette says so by a RuntimeError to who still sends
+    except (NaoError, ValueError) as error:
+        await _end(socket, WRONG, str(error))
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def _end(socket: WebSocket, code: int, reason: str) -> None:
+    await socket.close(code, reason.encode()[:LONGEST_REASON].decode(errors="ignore"))
+
+
+SIMULATOR_PERIOD = 3.0
+"""s between two looks whether there is a simulator."""
+TOUCH, PUSH = 0.5, 0.2
+"""s that a touch and a push last."""
+FORCES = (10, 200)
+"""N."""
+SPEEDS = {0.5: "half", 1.0: "1 x", 2.0: "2 x", 4.0: "4 x", 0.0: "as fast as possible"}
+WAYS = {"ahead": 0.0, "to its left": math.pi / 2, "back": math.pi, "to its right": -math.pi / 2}
+
+
+class SimulatorPanel:
+    """Buttons and fields on one page.
+
+    Args:
+        view: The element `nao-robot-view` of the page, whose sensors can be clicked while there is a simulator.
+    """
+
+    def __init__(self, page: PageContext, views: RobotViews, view: Any) -> None:
+        self._page = page
+        self._views = views
+        self._simulator = views.simulator
+        self._view = view
+        view.on("nao-touch", lambda event: self._clicked(event.args), ["detail"])
+        self._holder = ui.column().classes("w-full")
+        self._holder.set_visibility(False)
+        self._built = False
+        page.every(SIMULATOR_PERIOD, self._look)
+
+    async def _look(self) -> None:
+        there = await in_background(lambda: self._simulator.there)
+        if there and not self._built:
+            self._built = True
+            speed = await in_background(self._simulator.speed)
+            with self._holder:
+                self._build(speed)
+        if there != self._holder.visible:
+            self._holder.set_visibility(there)
+            self._view.props["touchable"] = "true" if there else "false"
+            self._view.update()
+
+    def _build(self, speed: float | None) -> None:
+        with ui.card().classes("w-full nao-card"):
+            ui.label("The simulator").classes("text-h6").props('role="heading" aria-level="2"')
+            with ui.row().classes("items-center"):
+                self._button("Pause", self._simulator.pause)
+                self._button("Go on", self._simulator.resume)
+                self._button("Reset", self._simulator.reset)
+                speeds = SPEEDS if speed is None else {**SPEEDS, speed: SPEEDS.get(speed, f"{speed:g} x")}
+                ui.select(speeds, value=speed, label="Speed", on_change=lambda e: self._do(
+                    partial(self._simulator.set_speed, e.value), f"speed {speeds[e.value]}"
+                )).props("dense outlined").classes("nao-speed")  # fmt: skip
+            with ui.expansion("Touch it", value=True).classes("w-full"):
+                ui.label("Click a sensor here, or a yellow spot on the robot.").classes("text-caption")
+                with ui.row().classes("nao-sensors"):
+                    for sensor in SENSORS:
+                        touch = partial(self._simulator.touch, sensor.devices[:1], TOUCH)
+                        self._button(sensor.name, touch, f"touches {sensor.name}")
+            with ui.expansion("Push it").classes("w-full"), ui.row().classes("items-center"):
+                force = ui.number("Force in N", value=60, min=FORCES[0], max=FORCES[1]).props("dense outlined")
+                for way, angle in WAYS.items():
+                    ui.button(way, on_click=partial(self._push, force, way, angle)).props("dense no-caps outline")
+            with ui.expansion("Somebody says").classes("w-full"):
+                self._build_person()
+            with ui.expansion("Place a thing").classes("w-full"):
+                self._build_things()
+
+    def _build_person(self) -> None:
+        text = ui.input("Text").props("dense outlined").classes("w-full")
+        with ui.row().classes("items-center"):
+            x, y = _number("x in m", 1.0), _number("y in m", 0.0)
+
+            async def say() -> None:
+                words = (text.value or "").strip()
+                await self._do(lambda: self._simulator.person_says(words, x.value, y.value), f"a person says {words!r}")
+
+            ui.button("Say", on_click=say).props("dense no-caps outline")
+            text.on("keydown.enter", say)
+
+    def _build_things(self) -> None:
+        with ui.row().classes("items-center"):
+            kind = ui.select(list(KINDS), value="ball", label="Kind").props("dense outlined")
+            name = ui.input("Name", value="thing1").props("dense outlined")
+            content = ui.input("Content").props("dense outlined")
+            content.bind_visibility_from(kind, "value", backward=lambda value: value in CONTENTS)
+            kind.on_value_change(lambda event: content.set_value(CONTENTS.get(event.value, "")))
+            x, y, z = _number("x in m", 0.6), _number("y in m", 0.0), _number("z in m", 0.05)
+
+        async def place() -> None:
+            await self._do(
+                lambda: self._simulator.place(name.value, kind.value, content.value or "", x.value, y.value, z.value),
+                f"places {kind.value} {name.value!r}",
+            )
+
+        with ui.row():
+            ui.button("Place", on_click=place).props("dense no-caps outline")
+            ui.button(
+                "Remove",
+                on_click=lambda: self._do(lambda: self._simulator.remove(name.value), f"removes {name.value!r}"),
+            ).props("dense no-caps outline")
+
+    def _button(self, text: str, action: Callable[[], None], note: str = "") -> None:
+        ui.button(text, on_click=lambda: self._do(action, note or text.lower())).props("dense no-caps outline")
+
+    async def _clicked(self, arguments: Any) -> None:
+        """A sensor of the robot was clicked; what comes from a browser may be anything."""
+        detail = arguments.get("detail") if isinstance(arguments, dict) else None
+        device = detail.get("device") if isinstance(detail, dict) else None
+        if any(device in sensor.devices for sensor in SENSORS):
+            await self._do(lambda: self._simulator.touch([device], TOUCH), f"touches {device}")
+
+    async def _push(self, force: Any, way: str, angle: float) -> None:
+        strength, heading = float(force.value or 0.0), self._views.live.heading + angle
+        await self._do(lambda: self._simulator.push(strength, heading, PUSH), f"pushes it {way}, {strength:g} N")
+
+    async def _do(self, action: Callable[[], None], note: str) -> None:
+        """Carry something out for who may move the robot, and tell what went wrong."""
+        if not self._page.operate(note):
+            return
+        self._page.robot.events.add("simulator", note, self._page.visitor.name)
+        try:
+            await in_background(action)
+        except NaoError as error:
+            self._page.failed(note, str(error))
+
+
+def _number(label: str, value: float) -> Any:
+    return ui.number(label, value=value, step=0.1, format="%.2f").props("dense outlined").classes("nao-number")
+
 
 PERIOD, SLOW_PERIOD = 0.4, 1.0
 """s between two looks at events and goals, and at the body."""
@@ -50,7 +326,7 @@ SENSOR_TRACES = tuple(f"{kind}:{name}" for kind, names in TRACE_NAMES.items() fo
 
 def build(console: Any) -> None:
     """Register the page, at the root, and the routes behind it."""
-    live_routes.build_live_routes(console)
+    build_live_routes(console)
 
     @page_at(console, "/")
     def robot_page(request: Request) -> None:
@@ -240,7 +516,7 @@ class PlotPanel:
     async def _find_joints(self) -> None:
         """Offer the joints of the robot's description, once there is one."""
         try:
-            model = await in_background(live_routes.model_of, self._page.console, self._page.robot.name)
+            model = await in_background(model_of, self._page.console, self._page.robot.name)
         except NaoError:
             return
         self._timer.cancel()

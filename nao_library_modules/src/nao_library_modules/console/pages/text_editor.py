@@ -8,7 +8,7 @@ from typing import Any, Union
 from nicegui import ui
 
 from ...behaviors.language.errors import Problem
-from ..files.yaml_file import ConsoleFileError, revision_of
+from ...studies.commands import ConsoleFileError, revision_of
 from .frame import PageContext
 
 MOST_PROBLEMS = 100

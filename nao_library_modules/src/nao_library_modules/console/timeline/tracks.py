@@ -1,13 +1,20 @@
-"""A behaviour as boxes on tracks: which row each is in, when it begins and ends, and what can be done to it by hand."""
+"""A behaviour as boxes on tracks: which row each is in, how long it takes, and what becomes of it while it runs."""
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Tuple
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple, Tuple
+
+import yaml
 
 from naoqi.errors import NaoError
 
+from ...base.paths import config_file
 from ...behaviors.language.binder import Library, bind_what_can_be
 from ...behaviors.language.errors import Problem
 from ...behaviors.language.expressions import UNKNOWN
@@ -26,13 +33,131 @@ from ...behaviors.language.model import (
     path_text,
 )
 from ...behaviors.language.parameters import given_as_text
-from ...behaviors.language.program import Node, OnTimeline, RepeatNode, SequenceNode, walk
+from ...behaviors.language.preview import times_of
+from ...behaviors.language.program import (
+    GoalNode,
+    Node,
+    OnTimeline,
+    ParallelNode,
+    Pause,
+    RaceNode,
+    RepeatNode,
+    SequenceNode,
+    walk,
+)
 from ...behaviors.language.servers import FunctionTables
 from ...behaviors.language.structure import name_on_timeline
 from ...behaviors.language.yaml_text import dump_line
-from .document import BehaviorDocument
-from .lengths import USUAL, Lengths
-from .steps import can_shift, can_stretch, step_path
+from ...motion.recorded_motion import motion_of
+from .document import BehaviorDocument, can_shift, can_stretch, step_path
+
+USUAL = 1.0
+"""s of a goal of which nothing is known."""
+AT_ONCE = 0.1
+"""s of a goal that sets something."""
+OF_CHARACTER, OF_SPEECH = 0.065, 0.4
+"""s that a character takes to be said, and every speech beside that: as the simulator's voice speaks."""
+OF_POSTURE = 2.0
+WALK, TURN = 0.08, 0.3
+"""m/s and rad/s of a walk with its first and last step."""
+_SETTING = ("set", "on", "off", "reset", "stop", "enable", "disable", "get", "list")
+
+
+class Length(NamedTuple):
+    """How long a goal takes, s. `sure`: whether its fields say so, or it was measured; else it is a guess."""
+
+    seconds: float
+    sure: bool
+
+
+class Lengths:
+    """Lengths of the nodes of a program. `measured`: path -> s that a step took when it ran."""
+
+    def __init__(self, measured: Mapping[str, float] | None = None) -> None:
+        self._measured = dict(measured or {})
+
+    def of(self, node: Node) -> float:
+        """S that a node takes."""
+        inside = self._inside(node)
+        return inside if node.limit is None else min(inside, node.limit)
+
+    def sure(self, node: Node) -> bool:
+        """Whether that is more than a guess."""
+        if isinstance(node, GoalNode):
+            return node.where in self._measured or length_of_goal(node).sure
+        return all(map(self.sure, node.parts))
+
+    def begins(self, timeline: OnTimeline) -> dict[str, float]:
+        """When the entries of a timeline begin, s from its beginning, by path."""
+        begins, _ = times_of(timeline, self.of)
+        return {timeline.nodes[i].where: begin for i, begin in begins.items()}
+
+    def _inside(self, node: Node) -> float:
+        if isinstance(node, Pause):
+            return node.duration
+        if isinstance(node, GoalNode):
+            return self._measured.get(node.where, length_of_goal(node).seconds)
+        lengths = [self.of(part) for part in node.parts] if not isinstance(node, OnTimeline) else []
+        if isinstance(node, RepeatNode):
+            return node.count * sum(lengths)
+        if isinstance(node, RaceNode):
+            return min(lengths, default=0.0)
+        if isinstance(node, ParallelNode):
+            return max(lengths, default=0.0)
+        if isinstance(node, OnTimeline):
+            return max(times_of(node, self.of)[1].values(), default=0.0)
+        return sum(lengths)
+
+
+def length_of_goal(node: GoalNode) -> Length:
+    """How long a goal takes."""
+    lengths = [_length(node.server, message) for message in getattr(node.goal, node.goal.__slots__[0])]
+    return Length(sum(each.seconds for each in lengths), all(each.sure for each in lengths))
+
+
+def _length(server: str, message: Any) -> Length:
+    wait = message.time.to_sec()
+    own = _own_length(server, message)
+    return Length(own.seconds + wait, own.sure)
+
+
+def _own_length(server: str, message: Any) -> Length:
+    function = message.function
+    duration, times = getattr(message, "duration", 0.0), getattr(message, "times", ())
+    if getattr(message, "background", False):
+        return Length(AT_ONCE, False)
+    if duration > 0.0:
+        return Length(duration, True)
+    if times:
+        return Length(max(times), True)
+    points = getattr(getattr(message, "trajectory", None), "points", ())
+    if points:
+        return Length(points[-1].time_from_start.to_sec(), True)
+    if function == "playMotion":
+        motion = shipped_motion(message.str_param)
+        return Length(motion / (message.speed or 1.0), True) if motion else Length(USUAL, False)
+    if function.lower().endswith("say"):
+        return Length(OF_SPEECH + OF_CHARACTER * len(message.str_param), False)
+    if function in ("moveTo", "walkTo") and len(message.values) >= 3:
+        x, y, theta = message.values[-3:]
+        return Length(AT_ONCE + math.hypot(x, y) / WALK + abs(theta) / TURN, False)
+    if function == "goToPosture":
+        return Length(OF_POSTURE, False)
+    return Length(AT_ONCE if server == "NaoLights" or function.startswith(_SETTING) else USUAL, False)
+
+
+@lru_cache(maxsize=None)
+def shipped_motion(name: str) -> float:
+    """S that a motion takes which comes with the library; 0 for others, which only their server knows."""
+    folder = config_file("motions")
+    path = folder / f"{Path(name).name}.yaml"
+    if not path.is_file():
+        return 0.0
+    try:
+        return motion_of(yaml.safe_load(path.read_text(encoding="utf-8")), name).duration
+    except (OSError, ValueError, yaml.YAMLError, NaoError):
+        return 0.0
+
 
 LONGEST_TEXT = 80
 """Characters that a box says of its fields."""
@@ -273,3 +398,110 @@ def _line(value: Any) -> str:
     if value is UNKNOWN:
         return "?"
     return value if isinstance(value, str) else dump_line(value)
+
+
+RUNNING = ("began", "late", "told", "retried")
+"""States of a step that goes on."""
+OVER = ("ended", "failed", "skipped", "preempted")
+MOST_LINES = 2000
+"""Steps that are kept of one run."""
+_PART = re.compile(r"[./#]?(\d+)")
+
+
+@dataclass
+class StepLine:
+    """A step of the tree; times in s from the beginning of the behaviour, -1: not yet."""
+
+    path: str
+    what: str
+    label: str = ""
+    state: str = ""
+    text: str = ""
+    began: float = -1.0
+    ended: float = -1.0
+
+    @property
+    def depth(self) -> int:
+        """How many steps it is in."""
+        return len(_PART.findall(self.path)) - 1 - self.path.count("#")
+
+    @property
+    def running(self) -> bool:
+        return self.state in RUNNING
+
+
+class RunView:
+    """One run of a behaviour, from its beginning on; one thread tells, others look.
+
+    `behavior`: its name; empty until it has begun.
+    """
+
+    def __init__(self) -> None:
+        self.behavior = ""
+        self._lines: dict[str, StepLine] = {}
+
+    def told(self, feedback: Any) -> None:
+        """Take in what the server tells. `feedback`: NaoBehaviorFeedback of a run."""
+        if not feedback.path:
+            return
+        self.behavior = self.behavior or feedback.behavior
+        if feedback.path not in self._lines and len(self._lines) >= MOST_LINES:
+            return
+        line = self._lines.setdefault(feedback.path, StepLine(feedback.path, feedback.what, feedback.label))
+        if feedback.state == "began" and line.began < 0.0:
+            line.began = feedback.time
+        if feedback.state in OVER:
+            line.ended = feedback.time
+        if feedback.state != "told" or not line.state:
+            line.state = feedback.state
+        line.text = feedback.text or (line.text if feedback.state == "told" else "")
+
+    def end(self) -> None:
+        """The run is over: what has not ended was cut short."""
+        for line in list(self._lines.values()):
+            if line.running:
+                line.state = "preempted"
+
+    @property
+    def running(self) -> bool:
+        """Whether a step goes on."""
+        return any(line.running for line in list(self._lines.values()))
+
+    def tree(self) -> list[StepLine]:
+        """All steps that have begun, parents before what is in them."""
+        return sorted(list(self._lines.values()), key=lambda line: [int(each) for each in _PART.findall(line.path)])
+
+    def states(self) -> dict[str, str]:
+        """State of each step of the file."""
+        states: dict[str, str] = {}
+        for line in list(self._lines.values()):
+            path = step_path(line.path)
+            if "/" not in line.path:
+                states[path] = line.state
+            elif line.running:
+                states[path] = "began"
+        return states
+
+    def measured(self) -> dict[str, float]:
+        """Path -> s that each step took which has ended by itself."""
+        return {
+            line.path: line.ended - line.began
+            for line in self._lines.values()
+            if line.state == "ended" and 0.0 <= line.began <= line.ended
+        }
+
+    def cursor(self, tracks: Tracks, now: float) -> float:
+        """Where the run is on the tracks, s: their times are guesses, so it follows the step that began last.
+
+        `now`: s from the beginning of the behaviour.
+        """
+        place = 0.0
+        latest = -1.0
+        for line in list(self._lines.values()):
+            box = tracks.box(step_path(line.path))
+            if box is None or "/" in line.path or line.began < latest:
+                continue
+            latest = line.began
+            elapsed = max(now - line.began, 0.0) if line.running else box.end - box.begin
+            place = min(box.begin + elapsed, box.end)
+        return place

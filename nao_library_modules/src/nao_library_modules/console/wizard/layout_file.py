@@ -1,18 +1,21 @@
-"""The wizard's file on the disk: read, watched for changes, and saved if nobody else has changed it. No ROS."""
+"""The wizard's file on the disk: read, watched for changes, saved if it has not changed there, checked with a robot."""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from naoqi.errors import NaoError
+
+from ...base.suggestion import of_those
 from ...base.whole_file import write_whole
 from ...behaviors.language.errors import Problem
-from ..files.yaml_file import ConsoleFileError, revision_of
-from .errors import EditConflict
-from .model import WizardLayout
-from .reader import read_layout
+from ...behaviors.language.servers import FunctionTables
+from ...studies.command_check import CommandCheck, value_problems
+from ...studies.commands import BEHAVIORS, RUN, ConsoleFileError, RobotCommand, command_problems, revision_of, type_of
+from .layout import EditConflict, WizardButton, WizardLayout, read_layout
 
 
 class SavedText(NamedTuple):
@@ -119,3 +122,58 @@ class CurrentLayout:
     def _forget(self, key: object) -> None:
         with self._lock:
             self._listeners.pop(key, None)
+
+
+def doubts(layout: WizardLayout, robot: Any, behaviors: Collection[str] | None) -> list[Problem]:
+    """What the servers of a robot would refuse, in the order of the file; buttons for other robots are left out.
+
+    Takes a call of a service for each server that is used; not for the event loop.
+
+    Args:
+        layout: The file.
+        robot: A `robots.robot.RobotClient`.
+        behaviors: Names of the stored behaviours; None: not known.
+    """
+    found = []
+    tables = FunctionTables()
+    for group, button in layout.buttons():
+        if button.robot and button.robot.strip("/") != robot.namespace.strip("/"):
+            continue
+        where = f"{group.title}: {button.label}"
+        found += [Problem(where, text, button.line) for text in _problems(button, robot, behaviors, tables)]
+    return found
+
+
+def layout_problems(layout: WizardLayout, check: CommandCheck) -> list[Problem]:
+    """What robots would refuse of all buttons, in the order of the file; plans are not looked at."""
+    return [
+        Problem(f"{group.title}: {button.label}", text, button.line)
+        for group, button in layout.buttons()
+        if isinstance(button.action, RobotCommand)
+        for text in check.problems(button.action)
+    ]
+
+
+def stored_behaviors(robot: Any) -> list[str] | None:
+    """Names of the behaviours that a robot has stored; None if nobody tells."""
+    from nao_library_msgs.srv import ListBehaviors
+
+    try:
+        return [each.name for each in robot.call(f"{BEHAVIORS}/list", ListBehaviors).behaviors]
+    except NaoError:
+        return None
+
+
+def _problems(button: WizardButton, robot: Any, behaviors: Collection[str] | None, tables: FunctionTables) -> list[str]:
+    command = button.action
+    if not isinstance(command, RobotCommand) or command.stops:
+        return []
+    problems = command_problems(command, robot.describe)
+    if not problems and command.server == BEHAVIORS and behaviors is not None:
+        name, fields = command.chain[0]
+        wanted = str(fields.get("str_param", ""))
+        if name == RUN and wanted and wanted not in behaviors and not button.names:
+            problems.append(f"there is no behavior {wanted!r}{of_those(wanted, behaviors)}")
+    if not problems and command.server != BEHAVIORS:
+        problems += value_problems(command, type_of(command.server, robot.describe), tables)
+    return problems

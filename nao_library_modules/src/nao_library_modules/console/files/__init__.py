@@ -1,1 +1,0 @@
-"""Files of the console: YAML read strictly, with lines in errors."""

@@ -1,1 +1,0 @@
-"""Pages of studies: a trial that runs, what was measured, and trials seen again."""

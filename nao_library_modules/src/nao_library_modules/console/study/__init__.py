@@ -1,1 +1,0 @@
-"""Studies with participants: protocols, trials, their logs and tables. Only `studies` needs ROS."""

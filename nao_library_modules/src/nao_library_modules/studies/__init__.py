@@ -1,0 +1,1 @@
+"""Studies with participants: protocols, trials, their logs and tables. The command line and the console use them."""
