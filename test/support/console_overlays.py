@@ -51,16 +51,16 @@ OPEN_POSTURE = (("type", "input[aria-label='Search functions']", "goToPosture"),
 OVERLAYS = {
     "frame.framed.footer": None,  # stands on every page
     "frame._choice_of_robot.select": None,  # is there where several robots are: test_console_robots.py opens it
-    "insert_dialog.InsertDialog.__init__.dialog": Overlay("/behaviors", PUT_IN),
-    "insert_dialog.InsertDialog.__init__.select": drop_down("/behaviors", "What", *PUT_IN),
-    "insert_dialog.InsertDialog._ask.select": drop_down("/behaviors", "Function (type to search)", *PUT_IN),
+    "step_editor.InsertDialog.__init__.dialog": Overlay("/behaviors", PUT_IN),
+    "step_editor.InsertDialog.__init__.select": drop_down("/behaviors", "What", *PUT_IN),
+    "step_editor.InsertDialog._ask.select": drop_down("/behaviors", "Function (type to search)", *PUT_IN),
     "field_inputs.FieldInputs._select.select": drop_down("/functions", "str_param", *OPEN_POSTURE),
-    "wizard_editor.WizardEditor.__init__.dialog": Overlay("/wizard", (click("Edit"),), escapes=2),
+    "wizard_page.WizardEditor.__init__.dialog": Overlay("/wizard", (click("Edit"),), escapes=2),
     "wizard_page._WizardPage._talk.select": drop_down("/wizard", "Templates"),
     "robot_page.EventPanel.__init__.select": drop_down("/", "Show"),
     "robot_page.PlotPanel.__init__.select": drop_down("/", "Joint or sensor"),
-    "simulator_panel.SimulatorPanel._build.select": drop_down("/", "Speed"),
-    "simulator_panel.SimulatorPanel._build_things.select": drop_down(
+    "robot_page.SimulatorPanel._build.select": drop_down("/", "Speed"),
+    "robot_page.SimulatorPanel._build_things.select": drop_down(
         "/", "Kind", click("Place a thing", ".q-expansion-item .q-item")
     ),
     "behaviors_page.BehaviorsView._project.dialog": Overlay(

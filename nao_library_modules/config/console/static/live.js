@@ -1,4 +1,4 @@
-// One WebSocket a robot for everything live on a page: pose, lights, samples. See console/view/wire.py for the frames.
+// One WebSocket a robot for everything live on a page: pose, lights, samples. See console/view/live_view.py for the frames.
 
 const POSE = 1, LIGHTS = 2, SAMPLES = 3, PICTURE = 4;
 const FIRST_RETRY = 500, LONGEST_RETRY = 8000; // ms

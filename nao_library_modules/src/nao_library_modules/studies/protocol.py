@@ -404,8 +404,9 @@ class WantedRecordings:
 class StudyProtocol:
     """A study.
 
-    `order`: one of `order.ORDERS`. `seed`: of what is drawn: orders, pauses. `values`: values that texts may name, of
-    the whole study. `text`: the file as it was read. `blind`: whether the wizard must not know orders and conditions.
+    `order`: one of `schedule.ORDERS`. `seed`: of what is drawn: orders, pauses. `values`: values that texts may name,
+    of the whole study. `text`: the file as it was read. `blind`: whether the wizard must not know orders and
+    conditions.
     """
 
     name: str

@@ -48,7 +48,7 @@ _TRUTHS = {"True": "true", "False": "false", "None": NOTHING}
 class StepEnd:
     """How a step ended."""
 
-    outcome: str  # one of `state`
+    outcome: str  # one of those of `trial_log`
     answer: str = ""
     stamp: float | None = None  # of the answer, ROS time, s
     error: str = ""

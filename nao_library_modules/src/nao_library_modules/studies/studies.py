@@ -210,13 +210,13 @@ class Studies:
         return left.state
 
     def correct_pseudonym(self, study: str, old: str, new: str, by: str = "", robot: Any = None) -> int:
-        """As `participants.correct_pseudonym`; pages are told."""
+        """As `study_files.correct_pseudonym`; pages are told."""
         number = correct_pseudonym(self.files, study, old, new, by, robot)
         self._tell()
         return number
 
     def take_back(self, study: str, pseudonym: str, by: str = "", robot: Any = None) -> int:
-        """As `participants.take_back`; pages are told."""
+        """As `study_files.take_back`; pages are told."""
         number = take_back(self.files, study, pseudonym, by, robot)
         self._tell()
         return number

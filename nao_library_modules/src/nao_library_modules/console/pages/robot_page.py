@@ -46,7 +46,7 @@ def build_live_routes(console: Any) -> None:
 
     GET `/console/model?robot=NAME`: its description as JSON; `/console/meshes/PACKAGE/PATH`: meshes of descriptions
     that were asked for. WebSockets `/console/live?robot=NAME` and `/console/camera?robot=NAME&camera=top`: see
-    `view/wire.py`.
+    `view/live_view.py`.
     """
     meshes: set[str] = set()
 

@@ -120,8 +120,8 @@ SERVER_LIMIT = 60.0
 FIELDS = ("path", "what", "state", "began", "ended", "error")
 
 
-def run(goal: Mapping[str, Any]) -> dict[str, Any]:
-    """Run a behaviour; state, text, duration (s of ROS time), and its steps."""
+def run_client(goal: Mapping[str, Any]) -> dict[str, Any]:
+    """Run a behaviour on the stack of a projection; state, text, duration (s of ROS time), and its steps."""
     import actionlib
     import rospy
     from actionlib_msgs.msg import GoalStatus
@@ -144,4 +144,4 @@ def run(goal: Mapping[str, Any]) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    print(json.dumps(run(json.load(sys.stdin))))
+    print(json.dumps(run_client(json.load(sys.stdin))))

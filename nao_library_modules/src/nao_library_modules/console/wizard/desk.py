@@ -46,7 +46,7 @@ Place = Tuple[str, str, str]
 
 
 class DeskRobot(Protocol):
-    """What the desk needs of a `robots.robot.RobotClient`."""
+    """What the desk needs of a `RobotClient`."""
 
     namespace: str
     events: Any
@@ -110,7 +110,7 @@ class WizardDesk:
 
     A button that is for once is so for all pages. A repetition ends when its button is pressed again, when one of its
     runs does not succeed, when the robot is stopped, when the page that it began on leaves, and when the user who began
-    it may not move the robot any more. How goals fail is reported to `presses`.
+    it may not move the robot any more. How goals fail is reported to `Presses`.
     """
 
     def __init__(self, presses: Presses) -> None:
@@ -239,7 +239,7 @@ class WizardDesk:
     def states(
         self, layout: WizardLayout, namespace_of: Callable[[WizardButton], str], user: str = ""
     ) -> dict[str, str]:
-        """Ids of buttons -> one of `model.BUTTON_WORDS`; the others are left out.
+        """Ids of buttons -> one of `layout.BUTTON_WORDS`; the others are left out.
 
         `namespace_of`: tells the namespace of the robot that a button is for. `user`: who has not looked at what has
         failed.
@@ -424,11 +424,11 @@ class WizardSession:
     - stop: true; the stop of all pages ends what the robot of the page does, this one what the others do that the
       page's buttons are for.
 
-    `at` of a message is its stamp, see `pulse`: what came late moves nothing.
+    `at` of a message is its stamp, see `connections.refusal_of_late`: what came late moves nothing.
 
     Args:
         page: Id of the page.
-        robot: The robot of the page, a `robots.robot.RobotClient`.
+        robot: The robot of the page, a `RobotClient`.
         desk: Of all pages.
         layout: Gives the layout that the page shows.
         rights: Of the visitor.

@@ -123,7 +123,7 @@ class HeadPointer:
     """
 
     def __init__(self, robot: Any) -> None:
-        """`robot`: the `robots.robot.RobotClient`."""
+        """`robot`: the `RobotClient`."""
         self._robot = robot
         self._ends: list[Callable[[], None]] = []
         self._changed = threading.Condition()

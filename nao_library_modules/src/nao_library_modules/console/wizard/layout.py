@@ -156,7 +156,7 @@ class WizardButton:
         id: Of this button among those of the file.
         label: What stands on it; with the title of its group it is the button's name in logs.
         action: What it has the robot do.
-        key: Its shortcut in the form of `key_names`, as "Shift+H"; empty: none.
+        key: Its shortcut in the form of `key_of`, as "Shift+H"; empty: none.
         color: Background as #RRGGBB; empty: that of its group or of the theme.
         tooltip: Empty: what it does, in the words of its action.
         once: Whether it can be pressed a single time, until it is armed again.
@@ -254,7 +254,7 @@ MOST_BUTTONS = 400
 def read_layout(text: str, name: str = "console.yaml") -> WizardLayout:
     """Read a wizard's file.
 
-    Functions and behaviours are not looked up here: `check.doubts` does that.
+    Functions and behaviours are not looked up here: `layout_file.doubts` does that.
 
     Args:
         text: YAML, as the top of this module shows.

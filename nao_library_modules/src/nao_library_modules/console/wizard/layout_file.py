@@ -131,7 +131,7 @@ def doubts(layout: WizardLayout, robot: Any, behaviors: Collection[str] | None) 
 
     Args:
         layout: The file.
-        robot: A `robots.robot.RobotClient`.
+        robot: A `RobotClient`.
         behaviors: Names of the stored behaviours; None: not known.
     """
     found = []
