@@ -42,7 +42,7 @@ from nao_library_modules.behaviors.server import NaoBehavior
 from nao_library_modules.driver.camera import camera_calibration
 from nao_library_modules.driver.camera.camera_calibration import ideal
 from nao_library_modules.motion.server import NaoMotion
-from nao_library_modules.process_modules.language import trace_picture
+from nao_library_modules.process_modules.language.trace_picture import save_picture
 from nao_library_modules.process_modules.language.control import do, seq, top_level
 from nao_library_modules.process_modules.language.trace import trace_of
 from nao_library_modules.processes.own_master import OwnMaster
@@ -207,7 +207,7 @@ def write_trace(kind):
     roots = []
     top_level(do(seq, do(int), do(float)), observers=[lambda task: roots or roots.append(task)])
     trace, path = trace_of(roots[0]), DISK / "ros" / f"trace.{kind}"
-    write_whole(path, trace.to_json()) if kind == "json" else trace_picture.save(trace, path)
+    write_whole(path, trace.to_json()) if kind == "json" else save_picture(trace, path)
 
 
 class Said(logging.Handler):

@@ -20,7 +20,7 @@ from nao_library_modules.process_modules.core.projection import compare
 from nao_library_modules.process_modules.language.failures import ActionlibActionTimedOut
 from nao_library_modules.process_modules.language.settings import load_settings
 from nao_library_modules.process_modules.language.space import head_angles
-from nao_library_modules.process_modules.language.trace_picture import COLORS, draw, main
+from nao_library_modules.process_modules.language.trace_picture import COLORS, draw_trace, draw_trace_file
 from nao_library_modules.process_modules.robot.action_client import PlanActionClient
 from nao_library_modules.process_modules.robot.chains import Chain
 from nao_library_modules.ros.goal_tracker import GoalTracker
@@ -39,11 +39,11 @@ def trace():
 
 
 def test_a_trace_is_drawn_with_a_bar_for_each_state_also_by_the_command(trace, tmp_path):
-    colors = set(draw(trace).getdata())
+    colors = set(draw_trace(trace).getdata())
     assert COLORS["failed"] in colors and COLORS["succeeded"] in colors
     file, picture = tmp_path / "trace.json", tmp_path / "trace.png"
     file.write_text(trace.to_json())
-    assert main([str(file), str(picture)]) == 0 and picture.read_bytes()[:4] == b"\x89PNG"
+    assert draw_trace_file([str(file), str(picture)]) == 0 and picture.read_bytes()[:4] == b"\x89PNG"
 
 
 def test_what_came_out_otherwise_is_told_with_its_path(trace):

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import click
 
-from ..base.whole_file import FileTrouble, NoPlaceForFile, move_whole, require_new
 from .errors import CommandFailed
 
 overwrite_option = click.option("--overwrite", is_flag=True, help="Replace a file of that name.")
@@ -22,6 +21,8 @@ def wanted_file(file: str, overwrite: bool, kinds: Sequence[str] = ()) -> Path |
     something else; CommandFailed if there is one already, or no folder for it. `overwrite`: whether it may be there
     already. `kinds`: what its name may end in, without the dot; empty where the server decides.
     """
+    from ..base.whole_file import NoPlaceForFile, require_new
+
     if not file:
         return None
     if Path(file).expanduser().is_dir():
@@ -52,6 +53,8 @@ def bring(path: str, target: Path | None, overwrite: bool = False) -> str:
     `target`: as `wanted_file` answers it. `overwrite`: whether it replaces a file that is there by now; else it gets a
     number. Raises CommandFailed if it is on another computer, or cannot be moved.
     """
+    from ..base.whole_file import FileTrouble, move_whole
+
     if target is None:
         return path
     if not os.path.exists(path):

@@ -5,23 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path, PurePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from nao_library_msgs.srv import DescribeFunctionsResponse, ListBehaviorsResponse
-
-from ..base.paths import config_file
-from ..behaviors import BehaviorStore, read
-from ..behaviors.language.checking import preview_facts
-from ..behaviors.language.servers import FunctionTables, NotDescribed
-from ..behaviors.run.running import info_message
-from ..behaviors.server import PARAMETERS, SHIPPED
 from .stack import Stack
+
+if TYPE_CHECKING:
+    from nao_library_msgs.srv import DescribeFunctionsResponse
 
 
 def check_offline(stack: Stack, request: Any) -> Any:
     """What `NaoBehavior/list` would answer; behaviours of the user are those in the usual folder."""
+    from nao_library_msgs.srv import ListBehaviorsResponse
+
+    from ..base.paths import config_file
+    from ..behaviors import BehaviorStore, read
+    from ..behaviors.language.checking import preview_facts
+    from ..behaviors.language.servers import FunctionTables
+    from ..behaviors.run.running import info_message
+    from ..behaviors.server import PARAMETERS, SHIPPED
+
     store = BehaviorStore(Path(PARAMETERS["behavior_dir"]).expanduser(), config_file(SHIPPED))
     name = PurePath(request.file).stem if request.text else request.name
     load = (lambda: read(request.text, name, request.file)) if request.text else (lambda: store.load(name))
@@ -31,6 +35,8 @@ def check_offline(stack: Stack, request: Any) -> Any:
 
 
 def _describe(stack: Stack, server: str, functions: Sequence[str] | None) -> DescribeFunctionsResponse:
+    from ..behaviors.language.servers import NotDescribed
+
     try:
         return stack.describe(server, functions or (), brief=functions is None, names=not functions)
     except click.ClickException as error:

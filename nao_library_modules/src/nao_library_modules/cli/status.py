@@ -7,10 +7,6 @@ import time
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from ..driver.nao_driver import PARTS
-from ..nao.body_devices import CHARGE
-from ..ros.health import SILENT
-from ..ros.part_names import PART_OF, parts_among
 from .errors import CommandFailed, StackMissing
 from .goals import start_node
 from .output import table
@@ -27,7 +23,7 @@ def read_status(stack: Stack) -> dict[str, Any]:
     """What there is to tell; what cannot be asked is None. Raises StackMissing if there are no servers."""
     names = stack.servers()
     reports = _Diagnostics()
-    servers = {name: _server(stack, name) for name in names}
+    servers = {name: _server_state(stack, name) for name in names}
     ip, port = stack.robot_address()
     found: dict[str, Any] = {
         "robot": stack.namespace.strip("/") or "/",
@@ -40,16 +36,16 @@ def read_status(stack: Stack) -> dict[str, Any]:
         "posture": None,
         "stiffness": None,
         "servers": servers,
-        "nodes": _parts(stack),
+        "nodes": _driver_parts(stack),
         "diagnostics": None,
     }
-    found.update(_robot((ip, port)))
+    found.update(_robot_state((ip, port)))
     found["diagnostics"] = reports.result()
     found["silent"] = reports.silent(found["address"])
     return found
 
 
-def _server(stack: Stack, name: str) -> dict[str, Any]:
+def _server_state(stack: Stack, name: str) -> dict[str, Any]:
     try:
         told = stack.describe(name, brief=True)
     except (StackMissing, CommandFailed) as error:
@@ -58,8 +54,11 @@ def _server(stack: Stack, name: str) -> dict[str, Any]:
     return {"up": True, "connected": told.connected, "running": running, "index": told.index, "problem": ""}
 
 
-def _parts(stack: Stack) -> dict[str, list[str]]:
+def _driver_parts(stack: Stack) -> dict[str, list[str]]:
     """Node of the driver -> the nodes of nao_robot that are parts of it; relative names."""
+    from ..driver.nao_driver import PARTS
+    from ..ros.part_names import parts_among
+
     nodes, found = parts_among(stack.graph.services()), {}
     for part, _ in PARTS.values():
         node = nodes.get(stack.namespace + part)
@@ -68,7 +67,9 @@ def _parts(stack: Stack) -> dict[str, list[str]]:
     return found
 
 
-def _robot(address: tuple[str, int]) -> dict[str, Any]:
+def _robot_state(address: tuple[str, int]) -> dict[str, Any]:
+    from ..nao.body_devices import CHARGE
+
     try:
         with DirectRobot(address, limit=3.0) as robot:
             stiffnesses = list(robot.call("ALMotion", "getStiffnesses", "Body"))
@@ -119,7 +120,7 @@ class _Diagnostics:
         self._subscriber.unregister()
         with self._lock:
             reports = list(self._reports.values())
-        level = [LEVELS[_number(status.level) % len(LEVELS)] for status in reports]
+        level = [LEVELS[_level_number(status.level) % len(LEVELS)] for status in reports]
         counts = {name: level.count(name) for name in LEVELS}
         problems = [
             {"name": status.name, "level": name, "message": status.message}
@@ -132,15 +133,19 @@ class _Diagnostics:
 
 def silent_robots(reports: Iterable[Any]) -> dict[str, str]:
     """Address -> what a node reports of the robot there, of those that do not answer for the moment."""
+    from ..ros.health import SILENT
+
     told = [({each.key: each.value for each in status.values}, status.message) for status in reports]
     return {values["address"]: text for values, text in told if values.get("state") == SILENT and "address" in values}
 
 
-def _number(level: Any) -> int:
+def _level_number(level: Any) -> int:
     return level[0] if isinstance(level, bytes) else int(level)
 
 
 def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
+    from ..ros.part_names import PART_OF
+
     stiffness = found["stiffness"]
     reached = "SILENT" if found["silent"] else "connected" if found["connected"] else "NOT REACHED"
     rows = [

@@ -99,9 +99,9 @@ class PlanRun:
         if self._trace_file is not None:
             write_whole(self._trace_file, trace.to_json() + "\n")
         if self._picture_file is not None:
-            from .language.trace_picture import save  # Pillow takes its time
+            from .language.trace_picture import save_picture  # Pillow takes its time
 
-            save(trace, self._picture_file)
+            save_picture(trace, self._picture_file)
 
 
 def wake_up() -> None:

@@ -58,11 +58,11 @@ def validate(program: Node, ask: Ask, tables: FunctionTables) -> Validation:
             unvalidated.append(f"{server}: {reason}")
             known = tables.check_goals(server, goals)
             found += [each for each in known.problems if doubtful is None or (each.goal, each.index) in doubtful]
-            unchecked += [_told(nodes[each.goal], each) for each in known.unchecked]
+            unchecked += [_step_and_function(nodes[each.goal], each) for each in known.unchecked]
         for each in found:
             node = nodes[each.goal]
             if id(node) in may_fail:  # as a recorded goal that failed
-                unchecked.append(f"{_told(node, each)}: it would be skipped: {each.text}")
+                unchecked.append(f"{_step_and_function(node, each)}: it would be skipped: {each.text}")
             else:
                 problems.append(_problem(node, each))
     return Validation(problems, unvalidated, unchecked)
@@ -94,5 +94,5 @@ def _problem(node: GoalNode, problem: GoalProblem) -> Problem:
     return Problem(f"step {node.where}{inside}", problem.text if single else str(problem), node.line, node.file)
 
 
-def _told(node: GoalNode, problem: GoalProblem) -> str:
+def _step_and_function(node: GoalNode, problem: GoalProblem) -> str:
     return f"{node.where} {node.server}.{problem.function}"

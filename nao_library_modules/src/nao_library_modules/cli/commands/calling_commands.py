@@ -7,7 +7,6 @@ from typing import Any
 
 import click
 
-from ...functions.check_service import NotValidated
 from .. import completion
 from ..chain_text import NEXT, TypedFunction, build_message, read_chain
 from ..errors import CommandFailed
@@ -58,6 +57,8 @@ def _tell_dry_run(settings: CliSettings, server: str, functions: Sequence[Any]) 
 
     Raises CommandFailed if it could not be carried out, or the server does not say.
     """
+    from ...functions.check_service import NotValidated
+
     goal = message_class(f"{settings.stack.describe(server, brief=True).action}Goal")
     try:
         check = settings.stack.check(server, [goal(list(functions))])

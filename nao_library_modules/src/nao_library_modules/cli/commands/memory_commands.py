@@ -82,11 +82,11 @@ def watch_command(context: click.Context, names: tuple[str, ...], count: int | N
         known = frozenset(robot.events())
         for text in robot.unknown(names):  # they may come, or be misspelt
             click.echo(text, err=True)
-        with _Watch(robot, [n for n in wanted if n in known], [n for n in wanted if n not in known], rate) as watch:
-            _tell(watch, settings, count)
+        with _MemoryWatch(robot, [n for n in wanted if n in known], [n for n in wanted if n not in known], rate) as watch:
+            _print_values(watch, settings, count)
 
 
-def _tell(watch: _Watch, settings: Any, count: int | None) -> None:
+def _print_values(watch: _MemoryWatch, settings: Any, count: int | None) -> None:
     deadline = None if settings.timeout is None else time.monotonic() + settings.timeout
     told = 0
     while count is None or told < count:
@@ -104,7 +104,7 @@ def _tell(watch: _Watch, settings: Any, count: int | None) -> None:
             click.echo(f"{name}: {words(plain(value))}")
 
 
-class _Watch:
+class _MemoryWatch:
     """Subscriptions to events, and a thread that looks at the other values, for a `with` block."""
 
     def __init__(self, robot: Any, events: list[str], keys: list[str], rate: float) -> None:
@@ -127,7 +127,7 @@ class _Watch:
             raise came
         return came
 
-    def __enter__(self) -> _Watch:
+    def __enter__(self) -> _MemoryWatch:
         for event in self._events:
             subscriber = self._robot.subscriber(event)
             link = subscriber.signal.connect(lambda value=None, *_, name=event: self._came.put((name, value)))

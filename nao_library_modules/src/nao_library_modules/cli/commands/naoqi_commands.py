@@ -107,7 +107,7 @@ def watch(context: click.Context, members: tuple[str, ...], count: int | None, u
     with _robot(settings, url) as robot:
         links = [_watched(robot, member, came.put) for member in members]
         try:
-            _tell(came, settings, count)
+            _print_news(came, settings, count)
         finally:
             for signal, link in links:
                 with suppress(RuntimeError):
@@ -186,7 +186,7 @@ def _watched(robot: DirectRobot, member: str, told: Callable[[Any], None]) -> tu
     return signal, signal.connect(lambda *values: told((member, values)))
 
 
-def _tell(came: queue.Queue[Any], settings: CliSettings, count: int | None) -> None:
+def _print_news(came: queue.Queue[Any], settings: CliSettings, count: int | None) -> None:
     deadline = None if settings.timeout is None else time.monotonic() + settings.timeout
     told = 0
     while count is None or told < count:

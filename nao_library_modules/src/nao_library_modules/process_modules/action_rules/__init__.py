@@ -6,6 +6,3 @@ plans, `{type: trajectory, to: open, side: left}`; and a name, `{name: to open, 
 
 from __future__ import annotations
 
-from . import manipulation, speech_lights_vision, walking  # each registers its rules
-
-__all__ = ["manipulation", "speech_lights_vision", "walking"]

@@ -18,7 +18,7 @@ TOKEN = re.compile(r'\s*(?:(?P<bracket>[()])|"(?P<text>(?:[^"\\]|\\.)*)"|(?P<wor
 NUMBER, FRACTION = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"), re.compile(r"[.eE]")
 LONGEST_NUMBER = 40
 """Characters."""
-QUANTIFIERS = {"a": "a", "an": "a", "the": "the", "all": "all"}
+LISP_QUANTIFIERS = {"a": "a", "an": "a", "the": "the", "all": "all"}
 
 
 def read_lisp(text: str, values: int, levels: int) -> dict[str, Any]:
@@ -33,13 +33,13 @@ def read_lisp(text: str, values: int, levels: int) -> dict[str, Any]:
     Returns:
         `{"quantifier": "a", "kind": "action", "pairs": {...}}`; quantifier and kind are empty where there are none.
     """
-    forms = _read(text, values, levels)
+    forms = _nested_lists(text, values, levels)
     if len(forms) != 1 or not isinstance(forms[0], list):
         raise PlanError(f"designator: {short_repr(text)} is not one form in brackets")
     return _designator(forms[0], text)
 
 
-def _read(text: str, values: int, levels: int) -> list[Any]:
+def _nested_lists(text: str, values: int, levels: int) -> list[Any]:
     """Nested lists of words; numbers are converted, quoted text is a `_Quoted`."""
     stack: list[list[Any]] = [[]]
     opened: list[int] = []
@@ -68,7 +68,7 @@ def _read(text: str, values: int, levels: int) -> list[Any]:
         elif match["word"] is not None:
             word = match["word"].strip(":")
             if word:
-                stack[-1].append(_value(word))
+                stack[-1].append(_word_value(word))
         else:
             stack[-1].append(_Quoted(re.sub(r"\\(.)", r"\1", match["text"])))
         position = match.end()
@@ -81,7 +81,7 @@ class _Quoted(str):
     """A text in quotes: neither a key nor a number."""
 
 
-def _value(word: str) -> Any:
+def _word_value(word: str) -> Any:
     if NUMBER.fullmatch(word):
         if len(word) > LONGEST_NUMBER:
             raise PlanError(
@@ -93,8 +93,8 @@ def _value(word: str) -> Any:
 
 def _designator(form: list[Any], text: str) -> dict[str, Any]:
     head = [str(each).rpartition(":")[2].lower() for each in form[:2]]
-    if len(form) >= 2 and head[0] in QUANTIFIERS and isinstance(form[1], str):
-        return {"quantifier": QUANTIFIERS[head[0]], "kind": head[1], "pairs": _pairs(form[2:], text)}
+    if len(form) >= 2 and head[0] in LISP_QUANTIFIERS and isinstance(form[1], str):
+        return {"quantifier": LISP_QUANTIFIERS[head[0]], "kind": head[1], "pairs": _pairs(form[2:], text)}
     return {"quantifier": "a", "kind": "", "pairs": _pairs(form, text)}
 
 
@@ -108,7 +108,7 @@ def _pairs(forms: list[Any], text: str) -> dict[str, Any]:
         elif isinstance(entry, list) and len(entry) >= 2 and isinstance(entry[0], str):
             key, values = entry[0], entry[1:]
         else:
-            raise PlanError(f"designator: {short_repr(text)}: {_shown(entry)} is no key with a value")
+            raise PlanError(f"designator: {short_repr(text)}: {_as_lisp(entry)} is no key with a value")
         if str(key).lower() == "name" and all(isinstance(value, list) for value in values):
             values, rest = values[:1], [*values[1:], *rest]  # a name is one text: these are further pairs
         pairs[key.lower()] = _meant(values, text)
@@ -120,7 +120,7 @@ def _meant(values: list[Any], text: str) -> Any:
     if len(values) == 1:
         value = values[0]
         if isinstance(value, list):
-            if value and str(value[0]).rpartition(":")[2].lower() in QUANTIFIERS and len(value) >= 2:
+            if value and str(value[0]).rpartition(":")[2].lower() in LISP_QUANTIFIERS and len(value) >= 2:
                 return _designator(value, text)
             return _meant(value, text) if value else []
         return str(value) if isinstance(value, _Quoted) else value
@@ -129,5 +129,5 @@ def _meant(values: list[Any], text: str) -> Any:
     return [_meant([value], text) for value in values]
 
 
-def _shown(form: Any) -> str:
-    return f"({' '.join(map(_shown, form))})" if isinstance(form, list) else str(form)
+def _as_lisp(form: Any) -> str:
+    return f"({' '.join(map(_as_lisp, form))})" if isinstance(form, list) else str(form)

@@ -6,13 +6,15 @@ import argparse
 import math
 import sys
 from pathlib import Path
-
-from PIL import Image, ImageDraw, ImageFont
+from typing import TYPE_CHECKING
 
 from naoqi.errors import NaoError
 
 from ...base.whole_file import WholeFile
 from .trace import Record, Trace
+
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw, ImageFont
 
 PAPER, GRID, INK, FAINT = (255, 255, 255), (228, 228, 232), (50, 50, 56), (130, 130, 138)
 COLORS = {
@@ -33,8 +35,10 @@ FINE = 2
 """Drawn so many times larger and then reduced, for smooth edges."""
 
 
-def draw(trace: Trace) -> Image.Image:
+def draw_trace(trace: Trace) -> Image.Image:
     """The picture of a trace; of a very long one the first tasks. Raises NaoError if it has no task."""
+    from PIL import Image, ImageDraw  # takes its time to load
+
     lines = list(trace.walk())
     if not lines:
         raise NaoError("a trace without a task cannot be drawn")
@@ -51,24 +55,26 @@ def draw(trace: Trace) -> Image.Image:
     return picture.resize(size, Image.LANCZOS)
 
 
-def save(trace: Trace, path: Path) -> None:
+def save_picture(trace: Trace, path: Path) -> None:
     """Draw a trace into a PNG file.
 
     Raises NaoError if the trace has no task, FileTrouble if the file cannot be written.
     """
+    from PIL import Image
+
     # A few colours are enough, and a third of the size.
     with WholeFile(path) as file:
-        draw(trace).quantize(64, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
+        draw_trace(trace).quantize(64, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
 
 
-def main(argv: list[str] | None = None) -> int:
+def draw_trace_file(argv: list[str] | None = None) -> int:
     """Draw a trace that was saved as JSON."""
-    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser = argparse.ArgumentParser(description=draw_trace_file.__doc__)
     parser.add_argument("trace", type=Path, help="JSON file of a trace")
     parser.add_argument("picture", type=Path, help="PNG file to write")
     options = parser.parse_args(argv)
     try:
-        save(Trace.from_json(options.trace.read_text(encoding="utf-8")), options.picture)
+        save_picture(Trace.from_json(options.trace.read_text(encoding="utf-8")), options.picture)
     except (OSError, ValueError, KeyError, TypeError, NaoError) as error:
         print(f"{options.trace}: {error}", file=sys.stderr)
         return 1
@@ -131,8 +137,10 @@ def _fitting(pen: ImageDraw.ImageDraw, text: str, width: float) -> str:
 
 
 def _font() -> ImageFont.ImageFont:
+    from PIL import ImageFont
+
     return ImageFont.load_default(TEXT * FINE)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(draw_trace_file())

@@ -12,8 +12,8 @@ from nao_library_msgs.msg import LedFunction
 from ..language.failures import LightsLowLevelFailure
 from .robot_module import RobotModule
 
-ACTION = "NaoLights"
-LONGEST = 60.0
+LIGHTS_ACTION = "NaoLights"
+LONGEST_LIGHTS = 60.0
 FACE = "FaceLeds"
 
 
@@ -38,6 +38,6 @@ class Lights(RobotModule):
 
     def _run(self, function: LedFunction, time: float) -> None:
         function.time = rospy.Duration.from_sec(time)
-        end = self.robot.action(ACTION, NaoLedAction).call(NaoLedGoal([function]), time + LONGEST)
+        end = self.robot.action(LIGHTS_ACTION, NaoLedAction).call(NaoLedGoal([function]), time + LONGEST_LIGHTS)
         if not end.succeeded:
             raise LightsLowLevelFailure(f"{function.function}: {end}")

@@ -26,8 +26,8 @@ from ..robot.chains import Chain
 from ..robot.robot_link import TORSO
 from .robot_module import RobotModule
 
-ACTION = "joint_trajectory"
-MARGIN = 5.0
+TRAJECTORY_ACTION = "joint_trajectory"
+MOTION_MARGIN = 5.0
 """s that a motion may take longer than it says."""
 SIDES = {"left": "L", "right": "R"}
 HEAD = ("HeadYaw", "HeadPitch")
@@ -120,7 +120,7 @@ class Manipulation(RobotModule):
     def gripper_goal(self, side: str, word: str) -> JointTrajectoryGoal:
         """What the controller gets to open a hand or to close it. `word`: "open" or "closed"."""
         settings = self.robot.settings
-        return _goal({f"{_letter(side)}Hand": settings.gripper[word]}, settings.gripper_time)
+        return _trajectory_goal({f"{_letter(side)}Hand": settings.gripper[word]}, settings.gripper_time)
 
     def _gripper(self, side: str, opening: float) -> float:
         joint = f"{_letter(side)}Hand"
@@ -147,7 +147,7 @@ class Manipulation(RobotModule):
     def head_goal(self, target: Point3) -> JointTrajectoryGoal:
         """What the controller gets to look at a point. Raises PtuGoalUnreachable as `move_head`."""
         angles = self._head(*self._gaze(target))
-        return _goal(angles, self._time(angles, self.robot.settings.head_speed))
+        return _trajectory_goal(angles, self._time(angles, self.robot.settings.head_speed))
 
     def turn_head(self, yaw: float, pitch: float) -> tuple[float, float]:
         """Turn the head to two angles, rad; returns the angles that it reached. Raises as `move_head`."""
@@ -196,7 +196,7 @@ class Manipulation(RobotModule):
     def arm_goal(self, target: Point3, side: str) -> JointTrajectoryGoal:
         """What the controller gets to bring a hand to a point. Raises ManipulationPoseUnreachable as `move_arm`."""
         angles = self._arm(target, side)
-        return _goal(angles, self._time(angles, self.robot.settings.arm_speed))
+        return _trajectory_goal(angles, self._time(angles, self.robot.settings.arm_speed))
 
     def _arm_chain(self, side: str) -> Chain:
         return self.robot.chain(TORSO, f"{_letter(side).lower()}_gripper")
@@ -258,7 +258,7 @@ class Manipulation(RobotModule):
 
     def stable_goal(self) -> JointTrajectoryGoal:
         """What the controller gets to take that pose."""
-        return _goal(dict(self.robot.settings.stable), self.robot.settings.stable_time)
+        return _trajectory_goal(dict(self.robot.settings.stable), self.robot.settings.stable_time)
 
     def _time(self, goal: Mapping[str, float], speed: float) -> float:
         now = self.robot.angles()
@@ -269,7 +269,7 @@ class Manipulation(RobotModule):
         return max(way / speed, self.robot.settings.shortest_motion)
 
     def _move(self, angles: Mapping[str, float], time: float, failure: type[LowLevelFailure]) -> dict[str, float]:
-        end = self.robot.action(ACTION, JointTrajectoryAction).call(_goal(angles, time), time + MARGIN)
+        end = self.robot.action(TRAJECTORY_ACTION, JointTrajectoryAction).call(_trajectory_goal(angles, time), time + MOTION_MARGIN)
         if not end.succeeded:
             raise failure(f"{', '.join(angles) if len(angles) < 7 else 'the body'}: {end}", status=end.status)
         state = end.result.goal_position
@@ -277,7 +277,7 @@ class Manipulation(RobotModule):
         return dict(zip(state.name, state.position))
 
 
-def _goal(angles: Mapping[str, float], time: float) -> JointTrajectoryGoal:
+def _trajectory_goal(angles: Mapping[str, float], time: float) -> JointTrajectoryGoal:
     point = JointTrajectoryPoint(positions=list(angles.values()), time_from_start=rospy.Duration.from_sec(time))
     return JointTrajectoryGoal(trajectory=JointTrajectory(joint_names=list(angles), points=[point]))
 

@@ -14,8 +14,8 @@ from ..language.fluents import Fluent
 from ..robot.robot_link import RobotLink
 from .robot_module import RobotModule
 
-ACTION = "walk_target"
-MARGIN = 20.0
+WALK_ACTION = "walk_target"
+WALK_MARGIN = 20.0
 """s that a walk may take longer than the slowest one."""
 
 
@@ -44,7 +44,7 @@ class Navigation(RobotModule):
         way = target.seen_from(here)
         slowest = way.distance / settings.walk_speed[0] + math.pi / settings.walk_speed[1]
         goal = self.walk_goal(target, frame)
-        end = self.robot.action(ACTION, MoveBaseAction).call(goal, slowest + MARGIN, self._on_feedback)
+        end = self.robot.action(WALK_ACTION, MoveBaseAction).call(goal, slowest + WALK_MARGIN, self._on_feedback)
         reached = self.robot.place(ODOM)
         if end.status == GoalStatus.REJECTED:
             raise NavigationPoseUnreachable(f"{_shown(target, frame)}: {end}", target=target, frame=frame)

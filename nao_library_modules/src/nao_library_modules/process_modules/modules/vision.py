@@ -14,8 +14,8 @@ from ..language.failures import PerceptionLowLevelFailure, PerceptionObjectNotFo
 from ..language.space import Point3
 from .robot_module import RobotModule
 
-ACTION = "NaoVision"
-MARGIN = 10.0
+VISION_ACTION = "NaoVision"
+VISION_MARGIN = 10.0
 """s that the server may take beyond what it was given to look."""
 NOT_CHOSEN = ("", "bottom")
 """Cameras to look with, one after the other, where none is named; empty: the active one."""
@@ -69,7 +69,7 @@ class Vision(RobotModule):
         cameras = (camera,) if camera or search else NOT_CHOSEN
         for each in cameras:
             look = VisionFunction(function=function, str_param=wanted, camera=each, size=size, timeout=timeout)
-            end = self.robot.action(ACTION, NaoVisionAction).call(NaoVisionGoal([look]), timeout + MARGIN)
+            end = self.robot.action(VISION_ACTION, NaoVisionAction).call(NaoVisionGoal([look]), timeout + VISION_MARGIN)
             if not end.succeeded:
                 raise PerceptionLowLevelFailure(f"{function}: {end}")
             if end.result.objects:
