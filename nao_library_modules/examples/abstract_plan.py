@@ -12,7 +12,7 @@ import sys
 import rospy
 
 from nao_library_modules.process_modules import Position, achieve, do, par
-from nao_library_modules.process_modules.nao_goals import moveHead, openGripper
+from nao_library_modules.process_modules.low_level import moveHead, openGripper
 from nao_library_modules.process_modules.plan_runner import run_and_tell, wake_up
 
 

@@ -17,11 +17,10 @@ import rospy
 
 from nao_library_modules.process_modules.control import do, par
 from nao_library_modules.process_modules.designators.designator import action, an
-from nao_library_modules.process_modules.designators.patterns import number, text
-from nao_library_modules.process_modules.designators.rules import Command, command, rule
+from nao_library_modules.process_modules.designators.rules import Command, command, number, rule, text
 from nao_library_modules.process_modules.failures import ManipulationPoseUnreachable
 from nao_library_modules.process_modules.low_level import this_robot
-from nao_library_modules.process_modules.modules.robot_module import RobotModule
+from nao_library_modules.process_modules.nao_modules import RobotModule
 from nao_library_modules.process_modules.plan_runner import run_and_tell, wake_up
 from nao_library_modules.process_modules.registry import perform, with_process_modules_running
 

@@ -14,7 +14,7 @@ import rospy
 
 from nao_library_modules.process_modules.control import do, par, seq, try_in_order
 from nao_library_modules.process_modules.designators.designator import Designator, a, action, an, location, object_, the
-from nao_library_modules.process_modules.designators.objects import BELIEFS
+from nao_library_modules.process_modules.designators.objects_and_locations import BELIEFS
 from nao_library_modules.process_modules.failures import (
     CompositeFailure,
     ObjectNowhereToBeFound,

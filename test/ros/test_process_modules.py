@@ -17,19 +17,16 @@ from std_msgs.msg import String
 from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorActionFeedback, PerformDesignatorGoal
 from nao_library_modules.base.places import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401
-from nao_library_modules.process_modules.core.registry import get_process_module, perform, with_process_modules_running
+from nao_library_modules.process_modules.control import do, par, pursue, seq, top_level, wait_for
 from nao_library_modules.process_modules.designators.designator import action, an, designator
-from nao_library_modules.process_modules.language.control import do, par, pursue, seq, top_level, wait_for
-from nao_library_modules.process_modules.language.failures import (
+from nao_library_modules.process_modules.failures import (
     GripperClosedCompletely,
     ManipulationPoseUnreachable,
     NavigationGoalNotReached,
     TaskEvaporatedFailure,
     fail,
 )
-from nao_library_modules.process_modules.language.flow import wait_until as wait_in_plan
-from nao_library_modules.process_modules.language.tasks import TaskState
-from nao_library_modules.process_modules.language.trace import trace_of
+from nao_library_modules.process_modules.fluents import wait_until as wait_in_plan
 from nao_library_modules.process_modules.low_level import (
     closeGripper,
     goStable,
@@ -41,16 +38,19 @@ from nao_library_modules.process_modules.low_level import (
     this_robot,
     walkTo,
 )
-from nao_library_modules.process_modules.robot.plan_topic import PlanTopic
+from nao_library_modules.process_modules.plan_runner import PlanTopic
+from nao_library_modules.process_modules.process_module import get_process_module, perform, with_process_modules_running
+from nao_library_modules.process_modules.tasks import TaskState
+from nao_library_modules.process_modules.trace import trace_of
 from nao_library_msgs.msg import PlanTree
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 PLAN = """
 import rospy
-from nao_library_modules.process_modules.language.control import do
+from nao_library_modules.process_modules.control import do
 from nao_library_modules.process_modules.designators.designator import action, an
 from nao_library_modules.process_modules.plan_runner import run_and_tell
-from nao_library_modules.process_modules.core.registry import perform
+from nao_library_modules.process_modules.process_module import perform
 
 rospy.init_node("mortal_plan")
 run_and_tell(do(perform, an(action, type="going", target=[20.0, 0.0])))

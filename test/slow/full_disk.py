@@ -42,9 +42,8 @@ from nao_library_modules.behaviors.server import NaoBehavior
 from nao_library_modules.driver.camera import camera_calibration
 from nao_library_modules.driver.camera.camera_calibration import ideal
 from nao_library_modules.motion.server import NaoMotion
-from nao_library_modules.process_modules.language.trace_picture import save_picture
-from nao_library_modules.process_modules.language.control import do, seq, top_level
-from nao_library_modules.process_modules.language.trace import trace_of
+from nao_library_modules.process_modules.control import do, seq, top_level
+from nao_library_modules.process_modules.trace import save_picture, trace_of
 from nao_library_modules.processes.own_master import OwnMaster
 from nao_library_modules.vision import NaoVision
 from nao_sim_bridge.testing import wait_until

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from examples_fixture import ExampleTest
 
-from nao_library_modules.process_modules.language.trace import Trace
+from nao_library_modules.process_modules.trace import Trace
 
 STANDING = 0.28
 """m that the torso is over the floor at least."""

@@ -19,7 +19,7 @@ from nao_library_modules.process_modules import (
     wait_for,
     wait_until,
 )
-from nao_library_modules.process_modules.language.failures import GripperGoalNotReached, NavigationGoalNotReached
+from nao_library_modules.process_modules.failures import GripperGoalNotReached, NavigationGoalNotReached
 
 LIMIT = 60.0
 SHORT = 0.02

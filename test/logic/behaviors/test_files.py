@@ -22,24 +22,24 @@ from nao_library_modules.behaviors import (
     problems_of,
     read,
 )
-from nao_library_modules.behaviors.language.expressions import BadExpression, escaped, names_in, substitute
-from nao_library_modules.behaviors.language.messages import fields_of, message_of
-from nao_library_modules.behaviors.language.model import (
+from nao_library_modules.behaviors.behavior_store import text_of
+from nao_library_modules.behaviors.clients import BehaviorRecording
+from nao_library_modules.behaviors.model import (
+    At,
     Barrier,
     Box,
     Functions,
+    GoalNode,
     Parallel,
     Repeat,
     Sequence,
     Timeline,
     Wait,
+    walk,
 )
-from nao_library_modules.behaviors.language.program import GoalNode, walk
-from nao_library_modules.behaviors.language.servers import NAMES, FunctionTables
-from nao_library_modules.behaviors.language.times import At
-from nao_library_modules.behaviors.language.writer import text_of
-from nao_library_modules.behaviors.language.yaml_text import dump, load
-from nao_library_modules.behaviors.run.recording import BehaviorRecording
+from nao_library_modules.behaviors.parameters import BadExpression, escaped, names_in, substitute
+from nao_library_modules.behaviors.server_functions import NAMES, FunctionTables, fields_of, message_of
+from nao_library_modules.behaviors.strict_yaml import dump, load
 from nao_library_msgs.msg import LedFunction, MotionFunction
 
 GUIDE = (Path(__file__).parents[3] / "docs" / "behaviors.md").read_text(encoding="utf-8")

@@ -7,8 +7,7 @@ from wrong_behaviors import GOOD, LINE, START, WRONG, wrong_text
 
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors import BehaviorError, BehaviorStore, check, problems_of, read
-from nao_library_modules.behaviors.language.checking import preview_facts
-from nao_library_modules.behaviors.language.validation import ask_nobody
+from nao_library_modules.behaviors.checking import ask_nobody, preview_facts
 from nao_library_modules.functions.check_service import CheckService, NotValidated, check_request, read_response
 from nao_library_modules.functions.goal_checks import GoalCheck, GoalProblem
 from nao_library_modules.functions.offline_module import offline_module

@@ -9,9 +9,9 @@ from nao_library_modules.base.cancellation import CancellationToken
 from nao_library_modules.base.clock import WallClock
 from nao_library_modules.base.errors import RobotLost
 from nao_library_modules.behaviors import StepFailed
-from nao_library_modules.behaviors.language.servers import NAMES
-from nao_library_modules.behaviors.run.execution import Execution
-from nao_library_modules.process_modules.language.failures import ActionlibActionTimedOut, PlanFailure
+from nao_library_modules.behaviors.execution import Execution
+from nao_library_modules.behaviors.server_functions import NAMES
+from nao_library_modules.process_modules.failures import ActionlibActionTimedOut, PlanFailure
 
 
 def test_a_list_is_a_sequence_and_what_happens_is_told_in_order(start, clients):

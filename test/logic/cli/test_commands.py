@@ -16,11 +16,11 @@ from roslaunch.substitution_args import resolve_args
 from wrong_behaviors import GOOD, LINE, WRONG, wrong_text
 
 from nao_library_modules.cli.app import COMMANDS, nao
-from nao_library_modules.cli.bash_completion import LineComplete
 from nao_library_modules.cli.chain_text import Angle, build_message, read_chain, read_value
 from nao_library_modules.cli.commands import simulator_commands
-from nao_library_modules.cli.graph import START
+from nao_library_modules.cli.completion import LineComplete
 from nao_library_modules.cli.output import say_result
+from nao_library_modules.cli.stack import START
 from nao_library_msgs.msg import (
     BehaviorInfo,
     BehaviorParameter,

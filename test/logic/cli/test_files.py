@@ -8,9 +8,9 @@ import os
 import pytest
 
 from nao_library_modules.cli.commands import files_commands
-from nao_library_modules.cli.errors import CommandFailed
-from nao_library_modules.cli.robot_files import FilesOverSsh
-from nao_library_modules.cli.robot_link import DirectRobot
+from nao_library_modules.cli.commands.files_commands import FilesOverSsh
+from nao_library_modules.cli.direct_robot import DirectRobot
+from nao_library_modules.cli.output import CommandFailed
 from nao_library_modules.cli.stack import Stack
 from naoqi.errors import RobotUnreachable
 from naoqi.robot_connection import Connection

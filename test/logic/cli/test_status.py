@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
-from nao_library_modules.cli.status import LEVELS, silent_robots, status_lines
+from nao_library_modules.cli.commands.server_commands import LEVELS, silent_robots, status_lines
 from nao_library_modules.ros.health import connection_report
 from naoqi.limits import Timing
 

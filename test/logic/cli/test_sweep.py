@@ -6,7 +6,7 @@ import click
 import pytest
 
 import nao_library_modules.sweeps
-from nao_library_modules.cli.value_ranges import Seeds, read_values
+from nao_library_modules.cli.commands.behaviors_commands import Seeds, read_values
 from nao_library_modules.sweeps import BehaviorGoal, PlanProgram
 from nao_sim_bridge.sweep import Table
 

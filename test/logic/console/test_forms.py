@@ -130,7 +130,7 @@ def test_degrees_are_rad_in_a_program():
 
 
 def test_a_step_of_yaml_is_read_as_the_command():
-    from nao_library_modules.behaviors.language.yaml_text import load
+    from nao_library_modules.behaviors.strict_yaml import load
 
     say = {"say": {"str_param": "costs ${5}"}}
     assert load(as_yaml(command("nao_audio_out", say)), "t") == [{"nao_audio_out.say": {"str_param": "costs $${5}"}}]

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.behaviors.language.errors import NoSuchBehavior
+from nao_library_modules.behaviors.behavior_errors import NoSuchBehavior
 from nao_library_modules.console.timeline.projection import read_run
 from nao_library_modules.studies.command_check import ALONE, StoredBehaviors, problems_in
 from nao_library_modules.studies.commands import NotThere

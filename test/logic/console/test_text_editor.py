@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nao_library_modules.behaviors.language.errors import Problem
+from nao_library_modules.behaviors.behavior_errors import Problem
 from nao_library_modules.console.pages.text_editor import marks_of, mistakes, problems_of
 from nao_library_modules.console.timeline.document import BehaviorDocument
 from nao_library_modules.studies.commands import ConsoleFileError

@@ -9,7 +9,7 @@ import pytest
 
 from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors import BehaviorStore
-from nao_library_modules.behaviors.language.servers import FunctionTables
+from nao_library_modules.behaviors.server_functions import FunctionTables
 from nao_library_modules.console.timeline.document import BehaviorDocument, EditRefused
 from nao_library_modules.console.timeline.tracks import BY_ORDER, BY_TIME, FIXED, RunView, tracks_of
 

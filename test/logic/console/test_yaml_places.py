@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nao_library_modules.base.paths import config_file
-from nao_library_modules.behaviors.language.yaml_text import load
+from nao_library_modules.behaviors.strict_yaml import load
 from nao_library_modules.console.timeline import yaml_places as places
 
 TEXT = textwrap.dedent("""\

@@ -11,7 +11,7 @@ from genpy import Duration
 
 from nao_library_actions.msg import NaoLedAction
 from nao_library_modules.base.errors import BadGoal, FunctionFailed
-from nao_library_modules.behaviors.language.servers import FunctionTables
+from nao_library_modules.behaviors.server_functions import FunctionTables
 from nao_library_modules.cli import stack
 from nao_library_modules.cli.stack import described_by_code
 from nao_library_modules.functions import fields

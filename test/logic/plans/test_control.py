@@ -8,7 +8,7 @@ import pytest
 from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.process_modules.language.failures import NavigationGoalNotReached, ObjectUnreachable
+from nao_library_modules.process_modules.failures import NavigationGoalNotReached, ObjectUnreachable
 
 
 def no_ball():

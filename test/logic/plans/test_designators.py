@@ -13,24 +13,25 @@ import nao_library_modules.process_modules as p
 from nao_library_actions.msg import PerformDesignatorGoal
 from nao_library_modules.base.places import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401  the rules of the library
-from nao_library_modules.process_modules.action_rules.values import a_place, a_point, a_position
+from nao_library_modules.process_modules.action_rules import a_place, a_point, a_position
 from nao_library_modules.process_modules.designator_server import read
-from nao_library_modules.process_modules.designators.locations import (
+from nao_library_modules.process_modules.designators.objects_and_locations import (
     Candidate,
     Verdict,
     next_different_location_solution,
+    object_pose,
     register_location_generator,
     register_location_validation_function,
 )
-from nao_library_modules.process_modules.designators.objects import object_pose
-from nao_library_modules.process_modules.designators.patterns import Mismatch, number, numbers, one_of
-from nao_library_modules.process_modules.designators.rules import Rules
-from nao_library_modules.process_modules.language.failures import (
-    AmbiguousPerception,
-    DesignatorError,
-    PerceptionObjectNotFound,
+from nao_library_modules.process_modules.designators.rules import (
+    Mismatch,
+    Rules,
+    number,
+    numbers,
+    numbers_of_nao,
+    one_of,
 )
-from nao_library_modules.process_modules.language.settings import numbers_of_nao
+from nao_library_modules.process_modules.failures import AmbiguousPerception, DesignatorError, PerceptionObjectNotFound
 
 HUGE = 10**400
 RADIUS = numbers_of_nao().robot_radius

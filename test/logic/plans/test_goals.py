@@ -7,16 +7,16 @@ from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
 from nao_library_modules.base.places import Place
-from nao_library_modules.process_modules.core import perception  # noqa: F401  the rules of the library
-from nao_library_modules.process_modules.designators.locations import Candidate, register_location_generator
-from nao_library_modules.process_modules.language.failures import (
+from nao_library_modules.process_modules import perception  # noqa: F401  the rules of the library
+from nao_library_modules.process_modules.designators.objects_and_locations import Candidate, register_location_generator
+from nao_library_modules.process_modules.failures import (
     GoalNotAchieved,
     NavigationGoalNotReached,
     NavigationHighLevelFailure,
     PerceptionObjectNotFound,
 )
-from nao_library_modules.process_modules.language.goals import achieved_by
-from nao_library_modules.process_modules.modules.vision import SeenThing
+from nao_library_modules.process_modules.nao_modules import SeenThing
+from nao_library_modules.process_modules.plans import achieved_by
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import pytest
 from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.process_modules.language.failures import (
+from nao_library_modules.process_modules.failures import (
     LowLevelFailure,
     NavigationGoalNotReached,
     NavigationHighLevelFailure,

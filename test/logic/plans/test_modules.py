@@ -8,20 +8,20 @@ import pytest
 from plan_tools import LIMIT, SHORT, Beside, One, at_once, fails, seen, state_of, to
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.process_modules.core.process_module import ModuleState
-from nao_library_modules.process_modules.core.registry import (
-    get_process_module,
-    start_process_modules,
-    stop_process_modules,
-    wait_for_process_module_running,
-)
-from nao_library_modules.process_modules.language.failures import (
+from nao_library_modules.process_modules.failures import (
     DesignatorError,
     NavigationGoalNotReached,
     NoMatchingProcessModule,
     ProcessModuleNotRunning,
     TaskEvaporatedFailure,
     UnknownProcessModule,
+)
+from nao_library_modules.process_modules.process_module import (
+    ModuleState,
+    get_process_module,
+    start_process_modules,
+    stop_process_modules,
+    wait_for_process_module_running,
 )
 
 

@@ -8,7 +8,7 @@ import pytest
 from plan_tools import Beside, seen, stays_false
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.process_modules.language.failures import TaskEvaporatedFailure
+from nao_library_modules.process_modules.failures import TaskEvaporatedFailure
 from naoqi.errors import NaoError
 
 

@@ -16,13 +16,13 @@ from plan_tools import Beside, fails
 
 import nao_library_modules.process_modules as p
 from nao_library_actions.msg import NaoLedAction
-from nao_library_modules.process_modules.core.projection import compare
-from nao_library_modules.process_modules.language.failures import ActionlibActionTimedOut
-from nao_library_modules.process_modules.language.settings import load_settings
-from nao_library_modules.process_modules.language.space import head_angles
-from nao_library_modules.process_modules.language.trace_picture import COLORS, draw_trace, draw_trace_file
-from nao_library_modules.process_modules.robot.action_client import PlanActionClient
-from nao_library_modules.process_modules.robot.chains import Chain
+from nao_library_modules.process_modules.designators.objects_and_locations import head_angles
+from nao_library_modules.process_modules.designators.rules import load_settings
+from nao_library_modules.process_modules.failures import ActionlibActionTimedOut
+from nao_library_modules.process_modules.plan_action_client import PlanActionClient
+from nao_library_modules.process_modules.projection import compare
+from nao_library_modules.process_modules.robot_link import Chain
+from nao_library_modules.process_modules.trace import COLORS, draw_trace, draw_trace_file
 from nao_library_modules.ros.goal_tracker import GoalTracker
 from naoqi.errors import NaoError
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from nao_library_modules.sweeps import BehaviorGoal, sweep_stack
-from nao_library_modules.sweeps.watch import Push, TorsoWatch
+from nao_library_modules.sweeps.sweep_stack import Push, TorsoWatch
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.base.readings import Pose
 

@@ -19,8 +19,8 @@ from nao_library_actions.msg import (
     NaoMotionGoal,
 )
 from nao_library_modules.audio_out.server import NaoAudioOutput
-from nao_library_modules.behaviors.language.servers import FunctionTables
 from nao_library_modules.behaviors.server import NaoBehavior
+from nao_library_modules.behaviors.server_functions import FunctionTables
 from nao_library_modules.motion.server import NaoMotion
 from nao_library_msgs.msg import LedFunction
 from nao_library_msgs.srv import ListBehaviorsRequest

@@ -17,9 +17,9 @@ import nao_library_modules.process_modules as p
 from nao_library_modules.base.places import Place
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.process_modules import low_level
-from nao_library_modules.process_modules import nao_goals as goals
-from nao_library_modules.process_modules.core.registry import get_process_module
-from nao_library_modules.process_modules.language.failures import (
+from nao_library_modules.process_modules import low_level as goals
+from nao_library_modules.process_modules.designators.rules import load_settings
+from nao_library_modules.process_modules.failures import (
     DesignatorError,
     GripperClosedCompletely,
     GripperGoalNotReached,
@@ -34,9 +34,9 @@ from nao_library_modules.process_modules.language.failures import (
     SpeechLowLevelFailure,
     TaskEvaporatedFailure,
 )
-from nao_library_modules.process_modules.language.settings import load_settings
-from nao_library_modules.process_modules.robot.action_client import ActionEnd
-from nao_library_modules.process_modules.robot.chains import Chain
+from nao_library_modules.process_modules.plan_action_client import ActionEnd
+from nao_library_modules.process_modules.process_module import get_process_module
+from nao_library_modules.process_modules.robot_link import Chain
 
 FRAME_TORSO, STANDING = 0, 0.28
 URDF = (Path(__file__).parents[3] / "nao_sim_bridge/urdf/nao_h25.urdf").read_text(encoding="utf-8")

@@ -8,9 +8,9 @@ import cv2
 import pytest
 from sounds import RATE, loudness, played, tone, write
 
-from nao_library_modules.cli.errors import CommandFailed
-from nao_library_modules.cli.robot_files import Entry, files_of
-from nao_library_modules.cli.robot_link import DirectRobot
+from nao_library_modules.cli.commands.files_commands import Entry, files_of
+from nao_library_modules.cli.direct_robot import DirectRobot
+from nao_library_modules.cli.output import CommandFailed
 
 RANDOM = "/usr/share/naoqi/wav/random.wav"
 FRONT = [0, 0, 1, 0]

@@ -10,13 +10,12 @@ The action server is in `server`; what is needed to run behaviours elsewhere is 
 
 from __future__ import annotations
 
-from .language.binder import bind
-from .language.checking import check, problems_of
-from .language.errors import BehaviorError, NoSuchBehavior, Problem, StepFailed
-from .language.model import Behavior
-from .language.reader import read
-from .language.store import BehaviorStore
-from .language.writer import from_goal
+from .behavior_errors import BehaviorError, NoSuchBehavior, Problem, StepFailed
+from .behavior_reader import read
+from .behavior_store import BehaviorStore, from_goal
+from .binder import bind
+from .checking import check, problems_of
+from .model import Behavior
 
 __all__ = [
     "Behavior",

@@ -15,14 +15,18 @@ from ..base.paths import config_file
 from ..functions.parts import joined
 from ..processes.launcher import LaunchPath
 from ..server.nao_basic import NaoBasic
-from .language.checking import facts_of
-from .language.reader import NAME
-from .language.servers import NAMES, FunctionTables
-from .language.store import BehaviorStore
-from .run.clients import Clients, GoalLog, describe, running
-from .run.library_functions import LibraryFunctions
-from .run.recording_functions import BehaviorRecordingFunctions
-from .run.running import RunningFunctions, info_message, step_message
+from .behavior_functions import (
+    BehaviorRecordingFunctions,
+    LibraryFunctions,
+    RunningFunctions,
+    info_message,
+    step_message,
+)
+from .behavior_reader import NAME
+from .behavior_store import BehaviorStore
+from .checking import facts_of
+from .clients import Clients, GoalLog, describe, running
+from .server_functions import NAMES, FunctionTables
 
 PARAMETERS = {"behavior_dir": "~/.ros/nao_behaviors"}
 """Private parameters of the node -> default."""

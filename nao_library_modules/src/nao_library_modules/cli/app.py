@@ -10,9 +10,8 @@ from typing import Any
 
 import click
 
-from .errors import INTERRUPTED
-from .output import BEGUN, SAID, say_json
-from .settings import NaoGroup, common_options, settings_of
+from .cli_settings import NaoGroup, common_options, settings_of
+from .output import BEGUN, INTERRUPTED, SAID, say_json
 
 COMMANDS = {
     "status": ("asking", "Robot, battery, posture, servers, goals that run, and what is wrong."),
@@ -126,7 +125,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # A shell that starts it in the background may have it ignore Ctrl-C; a goal must be stoppable all the same.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     if COMPLETE in os.environ:
-        from .bash_completion import register
+        from .completion import register
 
         register()
     try:

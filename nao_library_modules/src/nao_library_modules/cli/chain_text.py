@@ -188,7 +188,7 @@ _READERS: dict[str, Callable[[Any], Any]] = {
 def _message(kind: str, value: Any) -> Any:
     import roslib.message
 
-    from ..behaviors.language.messages import message_of
+    from ..behaviors.server_functions import message_of
 
     fields = _yaml(value) if isinstance(value, str) else value
     if not isinstance(fields, dict):

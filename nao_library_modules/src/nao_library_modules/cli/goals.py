@@ -16,10 +16,8 @@ import click
 from naoqi.limits import GOAL_END_LIMIT
 
 from ..functions.server_types import DESCRIBE, installed_message
-from .errors import CommandFailed, CommandInterrupted, StackMissing
-from .output import plain, say_json, say_result
-from .progress import NO_NAMES, Progress
-from .settings import CliSettings
+from .cli_settings import CliSettings
+from .output import NO_NAMES, CommandFailed, CommandInterrupted, Progress, StackMissing, plain, say_json, say_result
 
 LOOK_PERIOD = 1.0
 """s between two looks whether the server is still there."""

@@ -1,13 +1,46 @@
-"""What commands print: text for people, JSON for programs. Messages become plain values first."""
+"""What commands print and leave: text for people, JSON for programs, progress of a goal, files; and how they fail.
+
+The exit status tells how a command failed; a mistake in the command itself is click's UsageError: 2. Progress is one
+line that changes on a terminal, and plain lines elsewhere, on standard error. A file never replaces another one, unless
+that is asked for.
+"""
 
 from __future__ import annotations
 
 import json
 import math
+import os
+import shutil
+import sys
+import threading
+import time
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import click
+
+INTERRUPTED = 130
+
+
+class CommandFailed(click.ClickException):
+    """The robot could not do it, or a goal failed."""
+
+    exit_code = 1
+
+
+class StackMissing(click.ClickException):
+    """There is nobody to ask: no master, no server, no robot."""
+
+    exit_code = 3
+
+
+class CommandInterrupted(click.ClickException):
+    """Somebody pressed Ctrl-C; what ran is over."""
+
+    exit_code = INTERRUPTED
+
 
 SAID, BEGUN = f"{__name__}.said", f"{__name__}.begun"
 """Places in `meta` of the context, which all commands of a run share: true when the JSON document is printed, and when
@@ -139,3 +172,147 @@ def table(rows: Sequence[Sequence[str]], indent: str = "") -> list[str]:
         (indent + "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths)), row[-1]])).rstrip()
         for row in rows
     ]
+
+
+WHEEL = "|/-\\"
+PERIOD = 0.15
+"""s between two turns of the wheel."""
+STEP = ("path", "what", "state", "text")
+"""Fields that tell of a step of a behaviour."""
+NO_NAMES: Mapping[str, str] = MappingProxyType({})
+TOLD_ELSEWHERE = frozenset({"index", "function", "count", "stamp"})
+
+
+def progress_text(fields: Mapping[str, Any], called: Mapping[str, str] = NO_NAMES, more: bool = True) -> str:
+    """Feedback of a server for people.
+
+    `fields`: its plain values. `called`: as `Progress` takes it. `more`: with the details.
+    """
+    if fields.get("waiting"):
+        return f"waits for {fields['waiting']}"
+    if fields.get("what"):  # a step of a behaviour
+        return " ".join(fields[name] for name in STEP if fields.get(name))
+    function = fields.get("function", "")
+    text = f"{fields.get('index', 0) + 1}/{fields.get('count', 1)} {called.get(function, function)}"
+    told = {n: v for n, v in fields.items() if n not in TOLD_ELSEWHERE and filled(v) and v != 0} if more else {}
+    return f"{text}: {words(told)}" if told else text
+
+
+class Progress:
+    """Shown from the beginning of a `with` block to its end.
+
+    Feedback comes from a thread of ROS, the wheel turns in one of its own; the lock guards what they print. `called`:
+    function -> what it is called here, where its name says nothing to people.
+    """
+
+    def __init__(self, called: Mapping[str, str] = NO_NAMES) -> None:
+        self._called = called
+        self._live = sys.stderr.isatty()
+        self._lock = threading.Lock()
+        self._ended = threading.Event()
+        self._text = ""
+        self._turns = 0
+        self._thread: threading.Thread | None = None
+
+    def feedback(self, message: Any) -> None:
+        text = progress_text(plain(message), self._called, more=self._live)
+        with self._lock:
+            if text == self._text:
+                return
+            self._text = text
+            if self._live:
+                self._draw()
+            else:
+                click.echo(text, err=True)
+
+    def note(self, text: str) -> None:
+        """Show a line that stays."""
+        with self._lock:
+            self._wipe()
+            click.echo(text, err=True)
+
+    def __enter__(self) -> Progress:
+        if self._live:
+            self._thread = threading.Thread(target=self._turn, name="progress", daemon=True)
+            self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ended.set()
+        if self._thread is not None:
+            self._thread.join()
+        with self._lock:
+            self._wipe()
+
+    def _turn(self) -> None:
+        while not self._ended.wait(PERIOD):
+            with self._lock:
+                self._turns += 1
+                self._draw()
+
+    def _draw(self) -> None:
+        line = f"{WHEEL[self._turns % len(WHEEL)]} {self._text}"
+        width = shutil.get_terminal_size().columns
+        sys.stderr.write(f"\r\x1b[K{line[: width - 1]}")
+        sys.stderr.flush()
+
+    def _wipe(self) -> None:
+        if self._live:
+            sys.stderr.write("\r\x1b[K")
+            sys.stderr.flush()
+
+
+overwrite_option = click.option("--overwrite", is_flag=True, help="Replace a file of that name.")
+
+
+def wanted_file(file: str, overwrite: bool, kinds: Sequence[str] = ()) -> Path | None:
+    """Where a file is to go, absolute, or the folder for it; None if that was left to the server.
+
+    Asked for before anything is done: a recording that finds no place is lost. Raises click.UsageError if it ends in
+    something else; CommandFailed if there is one already, or no folder for it. `overwrite`: whether it may be there
+    already. `kinds`: what its name may end in, without the dot; empty where the server decides.
+    """
+    from ..base.whole_file import NoPlaceForFile, require_new
+
+    if not file:
+        return None
+    if Path(file).expanduser().is_dir():
+        return Path(file).expanduser().absolute()
+    if file.endswith(os.sep):
+        raise CommandFailed(f"there is no folder {file}")
+    if kinds and Path(file).suffix.lower().lstrip(".") not in kinds:
+        raise click.UsageError(f"{file}: the name of the file ends in {' or '.join(f'.{kind}' for kind in kinds)}")
+    try:
+        return require_new(file, overwrite)
+    except NoPlaceForFile as error:
+        raise CommandFailed(str(error)) from None
+
+
+def names_file(target: Path | None) -> bool:
+    """Whether what `wanted_file` answers is a file, not a folder in which it has the name that the server gives it."""
+    return target is not None and not target.is_dir()
+
+
+def passing_name() -> str:
+    """Name, without its end, that a file has at a server until it is brought: no other one has it, nor had it."""
+    return f"nao-{os.getpid()}-{time.time_ns() // 1000}"
+
+
+def bring(path: str, target: Path | None, overwrite: bool = False) -> str:
+    """Move a file that a server has written to where it is wanted; where that is, as a text.
+
+    `target`: as `wanted_file` answers it. `overwrite`: whether it replaces a file that is there by now; else it gets a
+    number. Raises CommandFailed if it is on another computer, or cannot be moved.
+    """
+    from ..base.whole_file import FileTrouble, move_whole
+
+    if target is None:
+        return path
+    if not os.path.exists(path):
+        raise CommandFailed(f"the file is on the computer of the server: {path}")
+    if target.is_dir():
+        target = target / Path(path).name
+    try:
+        return str(move_whole(Path(path), target, overwrite))
+    except FileTrouble as error:
+        raise CommandFailed(f"{error}; the file is {path}") from None

@@ -7,18 +7,35 @@ What plans are written with can be imported from here, and what starts the modul
 import types
 
 from ..base import doors
-from .core.perception import at_location, examine, go_to, perceive
-from .core.process_module import AsynchronousProcessModule, ProcessModule, pm_cancel, pm_run, pm_status
-from .core.registry import (
-    available_process_module,
-    matching_process_module,
-    monitor_process_module,
-    perform,
-    pm_execute,
-    pm_execute_matching,
-    stop_process_modules,
-    with_process_module_aliases,
-    with_process_modules_running,
+from .control import (
+    Policy,
+    define_policy,
+    do,
+    do_retry,
+    get_counter,
+    give,
+    named_policy,
+    par,
+    par_loop,
+    partial_order,
+    pursue,
+    reset_counter,
+    retry,
+    seq,
+    subtask,
+    timeout_policy,
+    top_level,
+    try_all,
+    try_each_in_order,
+    try_in_order,
+    wait_for,
+    whenever,
+    with_failure_handling,
+    with_named_policies,
+    with_named_policy,
+    with_policies,
+    with_policy,
+    with_retry_counters,
 )
 from .designators.designator import (
     Designator,
@@ -36,50 +53,54 @@ from .designators.designator import (
     object_,
     the,
 )
-from .designators.objects import BELIEFS
+from .designators.objects_and_locations import BELIEFS, Point3, Position
 from .designators.rules import Command, command, rule
-from .language.control import (
-    do,
-    par,
-    par_loop,
-    partial_order,
-    pursue,
-    seq,
-    subtask,
-    top_level,
-    try_all,
-    try_each_in_order,
-    try_in_order,
-    wait_for,
-    whenever,
+from .failures import CompositeFailure, PlanError, PlanFailure, SimplePlanFailure, fail
+from .fluents import (
+    Fluent,
+    checkpoint,
+    fl_and,
+    fl_eq,
+    fl_funcall,
+    fl_not,
+    fl_or,
+    fl_value_changed,
+    pulsed,
+    retry_after_suspension,
+    sleep,
+    uninterrupted,
+    wait_until,
 )
-from .language.failures import CompositeFailure, PlanError, PlanFailure, SimplePlanFailure, fail
-from .language.flow import checkpoint, retry_after_suspension, sleep, uninterrupted, wait_until
-from .language.fluents import Fluent, fl_and, fl_eq, fl_funcall, fl_not, fl_or, fl_value_changed, pulsed
-from .language.goals import ANY, achieve, declare_goal, def_goal, holds, perceive_state
-from .language.handling import (
-    do_retry,
-    get_counter,
-    give,
-    reset_counter,
-    retry,
-    with_failure_handling,
-    with_retry_counters,
+from .perception import at_location, examine, go_to, perceive
+from .plans import (
+    ANY,
+    StartedPlan,
+    achieve,
+    declare_goal,
+    def_goal,
+    def_plan,
+    def_top_level_plan,
+    holds,
+    perceive_state,
 )
-from .language.plans import StartedPlan, def_plan, def_top_level_plan
-from .language.policies import (
-    Policy,
-    define_policy,
-    named_policy,
-    timeout_policy,
-    with_named_policies,
-    with_named_policy,
-    with_policies,
-    with_policy,
+from .process_module import (
+    AsynchronousProcessModule,
+    ProcessModule,
+    available_process_module,
+    matching_process_module,
+    monitor_process_module,
+    perform,
+    pm_cancel,
+    pm_execute,
+    pm_execute_matching,
+    pm_run,
+    pm_status,
+    stop_process_modules,
+    with_process_module_aliases,
+    with_process_modules_running,
 )
-from .language.space import Point3, Position
-from .language.tasks import Task, TaskState, current_task
-from .language.trace import Trace, trace_of
+from .tasks import Task, TaskState, current_task
+from .trace import Trace, trace_of
 
 # Loaded when it is asked for: plans alone need no ROS.
 _LATER = {

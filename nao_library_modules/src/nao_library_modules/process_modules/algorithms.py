@@ -17,20 +17,16 @@ from std_msgs.msg import String
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
 
 from ..base.suggestion import of_those
-from .action_rules.values import a_place, a_point, a_position
-from .core.process_module import ProcessModule
-from .core.registry import perform, start_process_modules
+from .action_rules import a_place, a_point, a_position
 from .designators.designator import Designator
-from .designators.patterns import taken
-from .designators.rules import Command
-from .language.failures import LowLevelFailure, PlanError
-from .language.plans import def_top_level_plan
-from .language.space import Point3
+from .designators.objects_and_locations import Point3
+from .designators.rules import Command, taken
+from .failures import LowLevelFailure, PlanError
 from .low_level import this_robot
-from .modules.manipulation import Manipulation
-from .modules.navigation import Navigation
-from .modules.speech import LISTENER_LIMIT
-from .robot.action_client import PlanActionClient
+from .nao_modules import LISTENER_LIMIT, Manipulation, Navigation
+from .plan_action_client import PlanActionClient
+from .plans import def_top_level_plan
+from .process_module import ProcessModule, perform, start_process_modules
 
 ACTIONS = {"JointTrajectoryAction": JointTrajectoryAction, "MoveBaseAction": MoveBaseAction}
 """Names of types that `makeActionClient` knows; others are given as classes."""

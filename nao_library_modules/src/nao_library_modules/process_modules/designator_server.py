@@ -16,13 +16,13 @@ from ..base.yaml_values import Budget
 from ..processes.closing import close_all
 from ..ros.action_server import ActionServer
 from ..ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
-from .core.registry import perform, start_process_modules, stop_process_modules
+from .control import do, top_level
 from .designators.designator import Designator, designator, read_yaml, require_short, text_budget
-from .language.control import do, top_level
-from .language.failures import PlanError, PlanFailure
-from .language.tasks import Task
+from .failures import PlanError, PlanFailure
 from .low_level import make_process_modules, this_robot
-from .modules.manipulation import Grip
+from .nao_modules import Grip
+from .process_module import perform, start_process_modules, stop_process_modules
+from .tasks import Task
 
 ACTION, TOPIC = "perform_designator", "designators"
 SHUTDOWN_LIMIT = 2.0

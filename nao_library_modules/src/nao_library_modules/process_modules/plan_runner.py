@@ -1,4 +1,4 @@
-"""Runs a plan on a robot: process modules, ROS time, the topic of the tree, and the trace file."""
+"""Runs a plan on a robot: process modules, ROS time, the topic of the tree while it runs, and the trace file."""
 
 from __future__ import annotations
 
@@ -13,19 +13,84 @@ from typing import Any
 import rospy
 from std_srvs.srv import Empty
 
+from nao_library_msgs.msg import PlanTask, PlanTree
+
 from ..base.whole_file import NoPlaceForFile, require_new, write_whole
 from ..owners.line import OwnerLine
 from ..ros.goal_tracker import GoalTracker
 from ..ros.node import own_goals, robot_address, robot_beside
 from ..ros.ros_clock import RosClock
-from .core.registry import with_process_modules_running
-from .language.control import Branch, top_level
-from .language.failures import LowLevelFailure, PlanFailure
-from .language.tasks import Task
-from .language.trace import Trace, trace_of
+from .control import Branch, top_level
+from .failures import LowLevelFailure, PlanFailure
 from .low_level import make_process_modules, this_robot
-from .robot.plan_topic import PlanTopic
-from .robot.robot_link import RobotLink
+from .process_module import with_process_modules_running
+from .robot_link import RobotLink
+from .tasks import Task
+from .trace import Record, Trace, trace_of
+
+TOPIC = "plan_tree"
+SHORTEST = 0.1
+"""s between two messages: a plan may change much faster than anybody can look."""
+
+
+class PlanTopic:
+    """Publishes the tree of a plan, latched: after changes, ten times a second at most, and at its end.
+
+    Pass it to `top_level` as an observer; `close` it afterwards.
+    """
+
+    def __init__(self, topic: str = TOPIC) -> None:
+        self._publisher = rospy.Publisher(topic, PlanTree, queue_size=1, latch=True)
+        self._root: Task | None = None
+        self._changed = threading.Event()
+        self._closed = threading.Event()
+        self._thread = threading.Thread(target=self._publish_changes, name=f"topic {topic}", daemon=True)
+        self._thread.start()
+
+    def __call__(self, task: Task) -> None:
+        self._root = task.tree.root
+        self._changed.set()
+
+    def close(self) -> None:
+        """Publish the last state, and end."""
+        self._closed.set()
+        self._changed.set()
+        self._thread.join()
+
+    def _publish_changes(self) -> None:
+        while not self._closed.is_set():
+            self._changed.wait()
+            self._changed.clear()
+            self._publish()
+            self._closed.wait(SHORTEST)
+        self._publish()
+
+    def _publish(self) -> None:
+        root = self._root
+        if root is None:
+            return
+        message = PlanTree(plan=root.name, tasks=[_message(record) for record in trace_of(root).records])
+        message.header.stamp = rospy.Time.now()
+        try:
+            self._publisher.publish(message)
+        except rospy.ROSException as error:  # the node ends
+            rospy.logdebug("%s: %s", TOPIC, error)
+
+
+def _message(record: Record) -> Any:
+    return PlanTask(
+        number=record.number,
+        parent=-1 if record.parent is None else record.parent,
+        name=record.name,
+        state=record.state,
+        created=record.created,
+        began=-1.0 if record.began is None else record.began,
+        ended=-1.0 if record.ended is None else record.ended,
+        arguments=record.facts.get("arguments", ""),
+        result=record.result,
+        failure=record.failure,
+    )
+
 
 WAKE_UP = "wakeup"
 ROBOT_LIMIT = 60.0
@@ -99,7 +164,7 @@ class PlanRun:
         if self._trace_file is not None:
             write_whole(self._trace_file, trace.to_json() + "\n")
         if self._picture_file is not None:
-            from .language.trace_picture import save_picture  # Pillow takes its time
+            from .trace import save_picture  # Pillow takes its time
 
             save_picture(trace, self._picture_file)
 

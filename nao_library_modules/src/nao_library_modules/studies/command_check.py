@@ -17,12 +17,12 @@ from naoqi.errors import NaoError
 from ..base.errors import FunctionFailed
 from ..base.paths import config_file
 from ..base.suggestion import of_those
-from ..behaviors.language.checking import preview_facts
-from ..behaviors.language.errors import NoSuchBehavior, Problem
-from ..behaviors.language.model import Behavior
-from ..behaviors.language.reader import read
-from ..behaviors.language.servers import FunctionTables, NotDescribed
-from ..behaviors.language.store import BehaviorStore
+from ..behaviors.behavior_errors import NoSuchBehavior, Problem
+from ..behaviors.behavior_reader import read
+from ..behaviors.behavior_store import BehaviorStore
+from ..behaviors.checking import preview_facts
+from ..behaviors.model import Behavior
+from ..behaviors.server_functions import FunctionTables, NotDescribed
 from ..functions.server_types import ServerType
 from .commands import BEHAVIORS, RUN, Describe, NotThere, RobotCommand, command_problems, goal_of, type_of
 
@@ -64,7 +64,7 @@ class StoredBehaviors:
         try:
             return list(self._ask().behaviors)
         except NotThere:
-            from ..behaviors.run.running import info_message
+            from ..behaviors.behavior_functions import info_message
 
             store = self._offline()
             return [self._offline_info(name, store, info_message) for name in store.names()]
@@ -91,7 +91,7 @@ class StoredBehaviors:
         try:
             return self._ask(text=text, file=file, parameters=list(given), validate=True).behaviors[0]
         except NotThere:
-            from ..behaviors.run.running import info_message
+            from ..behaviors.behavior_functions import info_message
 
             store = self._offline()
             name = PurePath(file).stem
@@ -124,7 +124,7 @@ class StoredBehaviors:
         return BehaviorStore(Path(FOLDER).expanduser(), config_file("behaviors"))
 
     def _offline_info(self, name: str, store: BehaviorStore, info_message: Callable[..., Any]) -> Any:
-        from ..behaviors.language.checking import facts_of
+        from ..behaviors.checking import facts_of
 
         shipped = store.is_shipped(name) and not store.of_user(name)
         return info_message(facts_of(name, store.load, FunctionTables(self._describe)), shipped)

@@ -24,11 +24,11 @@ from naoqi.errors import NaoError
 from ..base.errors import BadGoal, cut
 from ..base.field_checks import UNUSUAL
 from ..base.suggestion import did_you_mean, of_those
-from ..behaviors.language.errors import BehaviorError, Problem
-from ..behaviors.language.expressions import text_of
-from ..behaviors.language.messages import message_of
-from ..behaviors.language.yaml_text import Mapping as FileMapping
-from ..behaviors.language.yaml_text import line_in, line_of, load
+from ..behaviors.behavior_errors import BehaviorError, Problem
+from ..behaviors.parameters import text_of
+from ..behaviors.server_functions import message_of
+from ..behaviors.strict_yaml import Mapping as FileMapping
+from ..behaviors.strict_yaml import line_in, line_of, load
 from ..functions.server_types import ACTIONS, ServerType, described_type, server_type
 
 LONGEST = 400_000

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 from naoqi.errors import NaoError
 
 from ..base.suggestion import of_those
-from ..behaviors.language.expressions import BadExpression, names_in, substitute, text_of
+from ..behaviors.parameters import BadExpression, names_in, substitute, text_of
 from ..nao.touch_names import names_of, sensors_of
 from .commands import RobotCommand
 

@@ -10,8 +10,8 @@ from functools import partial
 from typing import Any
 
 from ..base.suggestion import of_those
-from ..behaviors.language.errors import Problem
-from ..behaviors.language.expressions import text_of
+from ..behaviors.behavior_errors import Problem
+from ..behaviors.parameters import text_of
 from .command_check import SERVICE, CommandCheck
 from .protocol import (
     COUNTED,

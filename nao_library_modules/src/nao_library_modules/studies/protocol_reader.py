@@ -11,9 +11,9 @@ from typing import Any
 from ..base.errors import BadGoal
 from ..base.limits import limit
 from ..base.suggestion import of_those
-from ..behaviors.language.errors import Problem
-from ..behaviors.language.expressions import IDENTIFIER
-from ..behaviors.language.yaml_text import line_in
+from ..behaviors.behavior_errors import Problem
+from ..behaviors.parameters import IDENTIFIER
+from ..behaviors.strict_yaml import line_in
 from ..nao.touch_names import sensors_of
 from .commands import FORMS, ConsoleFileError, FileReader, place_of_field, read_command
 from .commands import KEYS as COMMAND_KEYS

@@ -19,7 +19,7 @@ from typing import Any
 from ..base.paths import config_file
 from ..base.suggestion import of_those
 from ..base.whole_file import FileTrouble, make_folder, sync_folder, write_durable
-from ..behaviors.language.yaml_text import dump, load
+from ..behaviors.strict_yaml import dump, load
 from .commands import ConsoleFileError
 from .protocol import StudyError, StudyProtocol
 from .protocol_reader import NAME, NAME_FORM, read_protocol, read_protocol_file

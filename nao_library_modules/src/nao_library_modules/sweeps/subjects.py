@@ -102,8 +102,8 @@ class PlanProgram:
 
         from nao_library_msgs.msg import PlanTree
 
-        from ..process_modules.core.projection import ProjectionFailed, ProjectionLate, run_program
-        from ..process_modules.robot.plan_topic import TOPIC
+        from ..process_modules.plan_runner import TOPIC
+        from ..process_modules.projection import ProjectionFailed, ProjectionLate, run_program
 
         before = rospy.get_time()
         seen = rospy.Subscriber(TOPIC, PlanTree, lambda _: begun())

@@ -28,12 +28,15 @@ class PerformOverhead(Row):
         bare = stack.goal_clients[1]
         # Not above: they need the messages of the built workspace.
         from nao_library_actions.msg import NaoLedAction
-        from nao_library_modules.process_modules.core.process_module import ProcessModule
-        from nao_library_modules.process_modules.core.registry import perform, with_process_modules_running
+        from nao_library_modules.process_modules.control import top_level
         from nao_library_modules.process_modules.designators.designator import action, an
         from nao_library_modules.process_modules.designators.rules import RULES, command, rule
-        from nao_library_modules.process_modules.language.control import top_level
-        from nao_library_modules.process_modules.robot.action_client import PlanActionClient
+        from nao_library_modules.process_modules.plan_action_client import PlanActionClient
+        from nao_library_modules.process_modules.process_module import (
+            ProcessModule,
+            perform,
+            with_process_modules_running,
+        )
 
         client, goal = PlanActionClient(bare.server, NaoLedAction), bare.goal("listGroup", {"str_param": GROUP})
 
@@ -65,7 +68,7 @@ class ParOfHundred(Row):
 
     def measure(self, _stack: Stack) -> Figures:
         """Measure alone: there is nothing to compare it with."""
-        from nao_library_modules.process_modules.language.control import par, top_level
+        from nao_library_modules.process_modules.control import par, top_level
 
         branches = [lambda: None] * BRANCHES
         (sample,) = interleave([lambda: top_level(lambda: par(*branches))], PAR_ROUNDS, warm_up=5)

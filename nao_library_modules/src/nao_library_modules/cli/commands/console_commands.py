@@ -1,19 +1,45 @@
-"""`nao console`: pages in a browser."""
+"""`nao console`: pages in a browser for the person who runs a study, and the check of commands in their files."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from naoqi.errors import NaoError
 
-from ..errors import CommandFailed
-from ..output import say_json
-from ..settings import CliSettings, NaoCommand, settings_of
-from .command_check import command_check
+from ..cli_settings import CliSettings, NaoCommand, settings_of
+from ..output import CommandFailed, StackMissing, say_json
+
+if TYPE_CHECKING:
+    from ...studies.command_check import CommandCheck
+
+
+def command_check(settings: CliSettings) -> CommandCheck:
+    """What checks commands against the servers that run, or, where none does, against the code."""
+    from nao_library_msgs.srv import ListBehaviorsRequest
+
+    from ...studies.command_check import CommandCheck
+    from ...studies.commands import NotThere
+
+    stack = settings.stack
+
+    def running() -> list[str]:
+        try:
+            return stack.servers()
+        except click.ClickException:
+            return []
+
+    def ask(**fields: Any) -> Any:
+        try:
+            return stack.list_behaviors(ListBehaviorsRequest(**fields), patient=True)
+        except StackMissing as error:
+            raise NotThere(error.message) from None
+
+    return CommandCheck(stack.describe, running, ask)
+
 
 FILE = click.Path(dir_okay=False, path_type=Path)
 

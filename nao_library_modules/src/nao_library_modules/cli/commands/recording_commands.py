@@ -13,12 +13,19 @@ import click
 
 from ...base.limits import limit
 from ..chain_text import Number
-from ..errors import CommandFailed, CommandInterrupted
-from ..files import bring, names_file, overwrite_option, passing_name, wanted_file
+from ..cli_settings import CliSettings, NaoCommand, NaoGroup, OneOf, settings_of
 from ..goals import GoalEnd, GoalRun, fail, function_message, run_functions, show
-from ..output import say_json
-from ..progress import NO_NAMES
-from ..settings import CliSettings, NaoCommand, NaoGroup, OneOf, settings_of
+from ..output import (
+    NO_NAMES,
+    CommandFailed,
+    CommandInterrupted,
+    bring,
+    names_file,
+    overwrite_option,
+    passing_name,
+    say_json,
+    wanted_file,
+)
 from .simulator_commands import read_size
 
 VISION, AUDIO_IN, MOTION, BEHAVIOR = "NaoVision", "nao_audio_in", "NaoMotion", "NaoBehavior"

@@ -10,11 +10,18 @@ from ...base.errors import BadGoal
 from ...base.limits import limit
 from ...nao.touch_names import GROUPS, SENSORS, devices_of, names_of
 from ..chain_text import Number
-from ..errors import CommandFailed, CommandInterrupted
-from ..files import bring, names_file, overwrite_option, passing_name, wanted_file
+from ..cli_settings import CliSettings, NaoGroup, OneOf, SignedCommand, settings_of
 from ..goals import start_node
-from ..output import say_json
-from ..settings import CliSettings, NaoGroup, OneOf, SignedCommand, settings_of
+from ..output import (
+    CommandFailed,
+    CommandInterrupted,
+    bring,
+    names_file,
+    overwrite_option,
+    passing_name,
+    say_json,
+    wanted_file,
+)
 from ..stack import SIMULATOR
 
 VIEWS = ("front", "three_quarter", "side", "back", "stage", "far", "room", "robots", "face")

@@ -16,11 +16,9 @@ from naoqi.errors import NaoError
 
 from ...base.suggestion import of_those
 from ...base.whole_file import FileTrouble, write_whole
-from ..errors import CommandFailed, CommandInterrupted
-from ..files import overwrite_option, wanted_file
-from ..output import say_json, say_lines, table
-from ..settings import CliSettings, NaoCommand, NaoGroup, settings_of
-from .command_check import command_check
+from ..cli_settings import CliSettings, NaoCommand, NaoGroup, settings_of
+from ..output import CommandFailed, CommandInterrupted, overwrite_option, say_json, say_lines, table, wanted_file
+from .console_commands import command_check
 
 if TYPE_CHECKING:
     from ...studies.protocol import StudyProtocol, WantedRecordings

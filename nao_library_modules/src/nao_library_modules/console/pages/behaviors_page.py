@@ -13,7 +13,7 @@ from starlette.requests import Request
 
 from naoqi.errors import NaoError
 
-from ...behaviors.language.expressions import text_of
+from ...behaviors.parameters import text_of
 from ...studies.command_check import StoredBehaviors, problems_in
 from ...studies.commands import RobotCommand, call
 from ..robots.forms import form_of_behavior

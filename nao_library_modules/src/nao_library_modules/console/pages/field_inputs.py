@@ -7,7 +7,7 @@ from typing import Any
 
 from nicegui import ui
 
-from ...behaviors.language.yaml_text import dump_line
+from ...behaviors.strict_yaml import dump_line
 from ..robots.forms import EXPRESSION, FormField, text_of_value, typed_value, value_of
 
 UNITLESS = ("", "no unit")

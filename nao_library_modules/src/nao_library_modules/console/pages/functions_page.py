@@ -9,7 +9,7 @@ from nicegui import ui
 from starlette.requests import Request
 
 from ...base.suggestion import closest
-from ...behaviors.language.yaml_text import dump
+from ...behaviors.strict_yaml import dump
 from ...studies.commands import RobotCommand
 from ..robots.forms import as_command, as_python, as_yaml, form_of
 from .field_inputs import FieldInputs

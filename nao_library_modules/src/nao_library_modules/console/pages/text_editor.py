@@ -7,7 +7,7 @@ from typing import Any, Union
 
 from nicegui import ui
 
-from ...behaviors.language.errors import Problem
+from ...behaviors.behavior_errors import Problem
 from ...studies.commands import ConsoleFileError, revision_of
 from .frame import PageContext
 

@@ -17,7 +17,7 @@ from starlette.requests import Request
 
 from naoqi.errors import NaoError
 
-from ...behaviors.language.expressions import text_of
+from ...behaviors.parameters import text_of
 from ...studies.commands import revision_of
 from ...studies.protocol import (
     BAG_TOPICS,

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, Tuple
 
 from ...base.degrees import ANGLES, in_rad, is_in_degrees
 from ...base.suggestion import did_you_mean
-from ...behaviors.language.errors import BehaviorError
-from ...behaviors.language.expressions import UNKNOWN, escaped, text_of
-from ...behaviors.language.model import Behavior
-from ...behaviors.language.yaml_text import dump, dump_line, load
+from ...behaviors.behavior_errors import BehaviorError
+from ...behaviors.model import Behavior
+from ...behaviors.parameters import UNKNOWN, escaped, text_of
+from ...behaviors.strict_yaml import dump, dump_line, load
 from ...functions.server_types import ServerType, described_type, server_type
 
 if TYPE_CHECKING:

@@ -20,8 +20,7 @@ from nao_library_msgs.srv import DescribeFunctions
 from naoqi.errors import NaoError
 
 from ...base.suggestion import of_those
-from ...cli.output import plain
-from ...cli.progress import progress_text
+from ...cli.output import plain, progress_text
 from ...functions.server_types import DESCRIBE, ServerType, servers_among, those_in
 from ...owners.line import OwnerLine
 from ...ros.check_client import NoService, NotAnswered, call_service

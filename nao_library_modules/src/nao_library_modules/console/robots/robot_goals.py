@@ -13,8 +13,7 @@ from typing import Any, Tuple
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatusArray
 
-from ...cli.output import plain
-from ...cli.progress import progress_text
+from ...cli.output import plain, progress_text
 from ...functions.server_types import ACTIONS, server_type
 
 

@@ -7,12 +7,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ...base.errors import BadGoal
-from ...behaviors.language.errors import BehaviorError, Problem
-from ...behaviors.language.model import Behavior
-from ...behaviors.language.reader import read
-from ...behaviors.language.step_reader import KINDS
-from ...behaviors.language.times import at_of
-from ...behaviors.language.yaml_text import load
+from ...behaviors.behavior_errors import BehaviorError, Problem
+from ...behaviors.behavior_reader import KINDS, read
+from ...behaviors.model import Behavior, at_of
+from ...behaviors.strict_yaml import load
 from ...studies.commands import LONGEST
 from .yaml_places import (
     EditRefused,

@@ -15,39 +15,36 @@ import yaml
 from naoqi.errors import NaoError
 
 from ...base.paths import config_file
-from ...behaviors.language.binder import Library, bind_what_can_be
-from ...behaviors.language.errors import Problem
-from ...behaviors.language.expressions import UNKNOWN
-from ...behaviors.language.model import (
+from ...behaviors.behavior_errors import Problem
+from ...behaviors.behavior_reader import name_on_timeline
+from ...behaviors.binder import Library, bind_what_can_be
+from ...behaviors.checking import times_of
+from ...behaviors.model import (
     Barrier,
     Behavior,
     Box,
     Composite,
     Functions,
+    GoalNode,
+    Node,
+    OnTimeline,
     Parallel,
+    ParallelNode,
+    Pause,
     Race,
+    RaceNode,
     Repeat,
+    RepeatNode,
+    SequenceNode,
     Step,
     Timeline,
     Wait,
     path_text,
-)
-from ...behaviors.language.parameters import given_as_text
-from ...behaviors.language.preview import times_of
-from ...behaviors.language.program import (
-    GoalNode,
-    Node,
-    OnTimeline,
-    ParallelNode,
-    Pause,
-    RaceNode,
-    RepeatNode,
-    SequenceNode,
     walk,
 )
-from ...behaviors.language.servers import FunctionTables
-from ...behaviors.language.structure import name_on_timeline
-from ...behaviors.language.yaml_text import dump_line
+from ...behaviors.parameters import UNKNOWN, given_as_text
+from ...behaviors.server_functions import FunctionTables
+from ...behaviors.strict_yaml import dump_line
 from ...motion.recorded_motion import motion_of
 from .document import BehaviorDocument, can_shift, can_stretch, step_path
 

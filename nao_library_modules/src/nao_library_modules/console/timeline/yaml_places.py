@@ -12,8 +12,8 @@ import yaml
 
 from naoqi.errors import NaoError
 
-from ...behaviors.language.errors import BehaviorError
-from ...behaviors.language.yaml_text import compose, dump_line, load
+from ...behaviors.behavior_errors import BehaviorError
+from ...behaviors.strict_yaml import compose, dump_line, load
 
 Place = Tuple[Union[str, int], ...]
 """Keys and positions, counted from 0, from the outermost value inwards."""

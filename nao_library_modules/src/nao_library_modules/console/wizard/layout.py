@@ -34,7 +34,7 @@ from naoqi.errors import NaoError
 from ...base.colours import is_colour, parse_colour, to_integer
 from ...base.errors import BadGoal
 from ...base.suggestion import did_you_mean
-from ...behaviors.language.yaml_text import dump_line, line_in, line_of
+from ...behaviors.strict_yaml import dump_line, line_in, line_of
 from ...driver.teleop.teleop_nao_keyboard import ARROWS, DIRECTIONS
 from ...studies.commands import FORMS, KEYS, FileReader, RobotCommand, place_of_field, read_command, revision_of
 from ..robots.robot_goals import GOAL_ENDS, NOT_SENT

@@ -1,1 +1,0 @@
-"""The language of behaviour files: model, reader, writer, checks."""

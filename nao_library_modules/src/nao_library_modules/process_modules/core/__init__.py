@@ -1,1 +1,0 @@
-"""Process modules and their registry, perception, projection."""

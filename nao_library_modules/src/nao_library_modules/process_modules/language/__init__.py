@@ -1,1 +1,0 @@
-"""The plan language: fluents, tasks, control structures, failures, goals, and traces of what ran."""

@@ -1,1 +1,0 @@
-"""The process modules of a NAO: manipulation, navigation, speech, lights and vision."""

@@ -1,1 +1,0 @@
-"""The robot as process modules reach it: its actions and topics."""
