@@ -31,6 +31,8 @@ from .parameters import Parameter
 from .server_functions import NAMES, FunctionTables
 from .strict_yaml import dump_line
 
+# --- fields -----------------------------------------------------------------------------------------------------------
+
 EITHER = "either a name in str_param or a behavior in text"
 EITHER_TO_STORE = "either a behavior, or the server whose last goal is to be stored"
 
@@ -70,6 +72,8 @@ Servers = Annotated[List[str], _SERVERS]
 Length = Annotated[float, number("recording", "length of the recording", zero=": until stopRecording")]
 Overwrite = Annotated[bool, flag("whether one of that name in the folder of the user is replaced")]
 
+
+# --- run and show -----------------------------------------------------------------------------------------------------
 
 UNNAMED = "text"
 """What a behaviour is called that has no name yet."""
@@ -271,6 +275,9 @@ def _parameter_message(parameter: Parameter) -> BehaviorParameter:
     )
 
 
+# --- store ------------------------------------------------------------------------------------------------------------
+
+
 class LibraryFunctions(Part):
     """Functions that store, rename, copy and delete behaviours. Parameters are fields of BehaviorFunction."""
 
@@ -359,6 +366,9 @@ class LibraryFunctions(Part):
         "copyBehavior": copy_behavior,
         "deleteBehavior": delete_behavior,
     }
+
+
+# --- record -----------------------------------------------------------------------------------------------------------
 
 
 log = logging.getLogger(__name__)

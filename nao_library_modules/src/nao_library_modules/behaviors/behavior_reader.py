@@ -35,6 +35,8 @@ from .model import (
 from .parameters import IDENTIFIER, LIST, NUMBER, UNKNOWN, Parameter, kind_of, names_in, text_of
 from .strict_yaml import line_in, line_of, load
 
+# --- labels, times, barriers ------------------------------------------------------------------------------------------
+
 
 def structure_problems(behavior: Behavior) -> list[Problem]:
     """What is wrong with labels, times and barriers of a behaviour; nothing that a step not read whole may cause."""
@@ -159,6 +161,8 @@ def _orders(parallel: Parallel, orders: list[tuple[str, ...]]) -> Iterator[Probl
 def _problem(step: Step, text: str) -> Problem:
     return Problem(f"step {path_text(step.path)}" if step.path else "do", text, step.line)
 
+
+# --- steps ------------------------------------------------------------------------------------------------------------
 
 COMMON = ("label", "on_error", "for", UNUSUAL)
 KINDS = ("SERVER.FUNCTION", "parallel", "race", "timeline", "behavior", "chain", "wait", "repeat", "do", "barrier")
@@ -358,6 +362,8 @@ class StepReader:
         self._problems.extend(Problem(f"step {path}", str(error), line) for error in wrong)
         return not wrong
 
+
+# --- files ------------------------------------------------------------------------------------------------------------
 
 NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,99}")
 NAME_ALLOWED = "letters, digits, '_' and '-', at most 100, no '-' in front"

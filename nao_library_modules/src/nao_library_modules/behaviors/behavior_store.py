@@ -176,6 +176,8 @@ def _names(folder: Path) -> list[str]:
     return [path.stem for path in folder.glob(f"*{SUFFIX}") if path.is_file()] if folder.is_dir() else []
 
 
+# --- the store during a check -----------------------------------------------------------------------------------------
+
 KEY = "behaviors"
 _UNKNOWN, _GONE = object(), object()
 
@@ -247,6 +249,9 @@ class PlannedStore:
     def _unknown(self, name: str) -> NoSuchBehavior:
         gone = {each for each, change in self._changes.items() if change is _GONE and not self._store.is_shipped(each)}
         return NoSuchBehavior(name, {*self._store.names(), *self._changes} - gone)
+
+
+# --- from goals to text -----------------------------------------------------------------------------------------------
 
 
 def step_of(server: str, goal: Any, unusual: bool = False) -> dict[str, Any]:

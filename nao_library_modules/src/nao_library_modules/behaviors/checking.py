@@ -161,6 +161,8 @@ def _cut(text: str) -> str:
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
 
 
+# --- what the servers say ---------------------------------------------------------------------------------------------
+
 Ask = Callable[[str, Sequence[Any]], GoalCheck]
 """Has a server check goals; raises NotValidated if it does not."""
 
@@ -244,6 +246,9 @@ def _problem(node: GoalNode, problem: GoalProblem) -> Problem:
 
 def _step_and_function(node: GoalNode, problem: GoalProblem) -> str:
     return f"{node.where} {node.server}.{problem.function}"
+
+
+# --- checks -----------------------------------------------------------------------------------------------------------
 
 
 def check(

@@ -112,13 +112,15 @@ class BehaviorRecording:
         return entries, left_out
 
 
+# --- clients and the log of goals -------------------------------------------------------------------------------------
+
 CLOCKS_APART = 1.0
 """s that the stamp of a goal may lie before its arrival, or after it where simulated time reaches one program later
 than the other: what is further away was stamped by another clock."""
 
 
 def describe(server: str, functions: Sequence[str] | None) -> DescribeFunctionsResponse:
-    """Have a server that runs describe functions; see `servers.Describe`."""
+    """Have a server that runs describe functions; see `server_functions.Describe`."""
     request = DescribeFunctionsRequest(
         functions=functions or [], without_arguments=not functions, without_functions=functions is None
     )

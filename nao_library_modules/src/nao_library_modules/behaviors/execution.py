@@ -182,6 +182,9 @@ def _outermost_rounds(node: Node) -> Iterator[RepeatNode]:
         yield from _outermost_rounds(part)
 
 
+# --- timelines --------------------------------------------------------------------------------------------------------
+
+
 class _Moments:
     """When an entry began and ended, s from the beginning of the behaviour; None until then."""
 
@@ -250,6 +253,8 @@ class TimelineRun:
         wait_until(lambda: moment.value is not None, [moment])
         return float(moment.value)
 
+
+# --- a run ------------------------------------------------------------------------------------------------------------
 
 NOTED_LATE = 0.05
 """s after its time from which on it is told that a step is late."""

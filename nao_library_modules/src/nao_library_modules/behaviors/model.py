@@ -45,6 +45,8 @@ def at_of(value: Any) -> At:
     return At(seconds, match[1], match[2] is not None) if match else At(seconds)
 
 
+# --- steps of a file --------------------------------------------------------------------------------------------------
+
 PathParts = Tuple[Tuple[str, int], ...]
 """Separators and numbers: (("", 2), (".", 1)) is 2.1."""
 
@@ -191,6 +193,9 @@ class Behavior:
     body: Sequence
     tags: Tuple[str, ...] = ()  # what it is filed under
     file: str = ""  # path of its file; empty if it is none
+
+
+# --- nodes that run ---------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)

@@ -181,6 +181,8 @@ def _number(node: ast.expr, text: str, values: Mapping[str, Any]) -> Number:
     return value
 
 
+# --- parameters -------------------------------------------------------------------------------------------------------
+
 TEXT, NUMBER, TRUTH, LIST = "text", "number", "truth value", "list"
 
 

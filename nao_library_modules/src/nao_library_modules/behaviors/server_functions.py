@@ -164,6 +164,8 @@ def _same(a: Any, b: Any) -> bool:
     return bool(a == b)
 
 
+# --- servers ----------------------------------------------------------------------------------------------------------
+
 OWN = "NaoBehavior"
 NAMES = tuple(name for name in ACTIONS if name != OWN)
 """Servers of this package that steps may use."""

@@ -171,6 +171,8 @@ class NaoGroup(click.Group):
         return super().resolve_command(context, arguments)
 
 
+# --- past the servers -------------------------------------------------------------------------------------------------
+
 URL = re.compile(r"(?:tcp://)?(?P<ip>[^:/]+)(?::(?P<port>\d+))?")
 PORT = 9559
 

@@ -99,6 +99,8 @@ def _values(argument: Any, typed: str) -> list[str]:
     return list(argument.choices)
 
 
+# --- bash -------------------------------------------------------------------------------------------------------------
+
 BREAKS = ":="
 """Characters that bash begins a new word at, among those that our words have."""
 

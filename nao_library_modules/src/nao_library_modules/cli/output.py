@@ -42,6 +42,8 @@ class CommandInterrupted(click.ClickException):
     exit_code = INTERRUPTED
 
 
+# --- text and JSON ----------------------------------------------------------------------------------------------------
+
 SAID, BEGUN = f"{__name__}.said", f"{__name__}.begun"
 """Places in `meta` of the context, which all commands of a run share: true when the JSON document is printed, and when
 any JSON is, be it a document or a line."""
@@ -174,6 +176,8 @@ def table(rows: Sequence[Sequence[str]], indent: str = "") -> list[str]:
     ]
 
 
+# --- progress ---------------------------------------------------------------------------------------------------------
+
 WHEEL = "|/-\\"
 PERIOD = 0.15
 """s between two turns of the wheel."""
@@ -261,6 +265,8 @@ class Progress:
             sys.stderr.write("\r\x1b[K")
             sys.stderr.flush()
 
+
+# --- files ------------------------------------------------------------------------------------------------------------
 
 overwrite_option = click.option("--overwrite", is_flag=True, help="Replace a file of that name.")
 

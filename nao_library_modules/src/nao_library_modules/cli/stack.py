@@ -161,6 +161,8 @@ def _read(stream: Any, count: int) -> bytes:
     return content
 
 
+# --- the servers of a robot -------------------------------------------------------------------------------------------
+
 SIMULATOR = "nao_sim"
 BEHAVIORS = "NaoBehavior/list"
 

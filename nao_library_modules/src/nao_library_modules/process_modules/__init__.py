@@ -1,7 +1,7 @@
 """Process modules and plans on a NAO: designators, rules, modules, goals and CRAM's plan language.
 
 What plans are written with can be imported from here, and what starts the modules of a NAO. What else needs ROS is in
-`low_level`, `nao_goals`, `plan_runner`, `modules` and `robot_link`.
+`low_level`, `plan_runner`, `nao_modules` and `robot_link`.
 """
 
 import types
@@ -106,8 +106,7 @@ from .trace import Trace, trace_of
 _LATER = {
     "start_process_modules": "low_level",
     "StartProcessModules": "low_level:start_process_modules",
-    # By way of the goals, so that `achieve` knows which of them each means.
-    **{name: "nao_goals" for name in "openGripper closeGripper moveHead moveArm goStable walkTo textToSpeech".split()},
+    **{name: "low_level" for name in "openGripper closeGripper moveHead moveArm goStable walkTo textToSpeech".split()},
     # By way of `low_level`, which imports the rules that resolve what the modules get.
     "ManipulationProcessModule": "low_level:Manipulation",
     "NavigationProcessModule": "low_level:Navigation",

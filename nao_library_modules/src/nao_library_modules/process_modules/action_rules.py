@@ -273,6 +273,8 @@ rule_about("at", _looking, action, called="trajectory to see", type="trajectory"
 rule_about("position", _looking, action, called="to look", name=TO_LOOK)
 
 
+# --- walking ----------------------------------------------------------------------------------------------------------
+
 NAVIGATION = "navigation"
 
 

@@ -34,7 +34,7 @@ from __future__ import annotations
 
 import logging
 from collections import ChainMap
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Callable, NoReturn, Tuple, Type, Union
@@ -350,6 +350,8 @@ def _predecessors(branches: Mapping[str, Branch], order: Iterable[Sequence[str]]
     return before
 
 
+# --- failure handling -------------------------------------------------------------------------------------------------
+
 Kinds = Union[Type[PlanFailure], Tuple[Type[PlanFailure], ...]]
 COUNTERS = "retry counters"
 HANDLING = "handling"
@@ -466,6 +468,8 @@ def _scopes() -> Iterator[dict[str, Any]]:
         yield task.scope
         task = task.parent
 
+
+# --- policies ---------------------------------------------------------------------------------------------------------
 
 PERIOD = 0.1
 

@@ -236,6 +236,9 @@ def _in_words(name: str) -> str:
     return "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in name).strip()
 
 
+# --- values that were never used --------------------------------------------------------------------------------------
+
+
 class MadeToBeUsed:
     """Warns when it is dropped unused, as Python does of a coroutine that was never awaited."""
 
@@ -264,6 +267,8 @@ def use_all(values: object) -> None:
         elif isinstance(value, (list, tuple)):
             use_all(value)
 
+
+# --- short text -------------------------------------------------------------------------------------------------------
 
 DIGITS = 3
 SHORTENED = 8

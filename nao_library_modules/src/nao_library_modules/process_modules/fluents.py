@@ -16,7 +16,7 @@ from __future__ import annotations
 import operator
 import threading
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import reduce
 from typing import Any, Callable
@@ -252,6 +252,9 @@ def _equal(first: Any, second: Any) -> bool:
 
 def _name(thing: Any) -> str:
     return thing.name if isinstance(thing, AnyFluent) else repr(thing)
+
+
+# --- waiting: a thread of a plan --------------------------------------------------------------------------------------
 
 
 _local = threading.local()

@@ -138,6 +138,9 @@ moveHead, moveArm, goStable = move_head, move_arm, go_stable  # noqa: N816
 walkTo, textToSpeech = walk_to, text_to_speech  # noqa: N816
 
 
+# --- goals ------------------------------------------------------------------------------------------------------------
+
+
 def _there(reached: bool) -> bool | None:
     """True where nothing is to be done; otherwise None, unknown: what achieves the goal fails by itself."""
     return True if reached else None

@@ -86,6 +86,8 @@ class RobotModule(AsynchronousProcessModule):
         return frozenset({self.name})
 
 
+# --- manipulation -----------------------------------------------------------------------------------------------------
+
 TRAJECTORY_ACTION = "joint_trajectory"
 MOTION_MARGIN = 5.0
 """s that a motion may take longer than it says."""
@@ -354,6 +356,8 @@ def _angles(pair: Sequence[float]) -> str:
     return f"yaw {pair[0]:.2f}, pitch {pair[1]:.2f} rad"
 
 
+# --- navigation -------------------------------------------------------------------------------------------------------
+
 WALK_ACTION = "walk_target"
 WALK_MARGIN = 20.0
 """s that a walk may take longer than the slowest one."""
@@ -423,6 +427,8 @@ def _shown(place: Place, frame: str) -> str:
     return f"x {place.x:.2f} m, y {place.y:.2f} m, {place.yaw:.2f} rad in {frame}"
 
 
+# --- speech -----------------------------------------------------------------------------------------------------------
+
 SPEECH_TOPIC = "speech"
 SPEECH_ACTION = "speech_action"
 LISTENER_LIMIT = 10.0
@@ -451,6 +457,8 @@ class Speech(RobotModule):
         if not end.succeeded:
             raise SpeechLowLevelFailure(f"{text!r} was not said: {end}", text=text)
 
+
+# --- lights -----------------------------------------------------------------------------------------------------------
 
 LIGHTS_ACTION = "NaoLights"
 LONGEST_LIGHTS = 60.0
@@ -482,6 +490,8 @@ class Lights(RobotModule):
         if not end.succeeded:
             raise LightsLowLevelFailure(f"{function.function}: {end}")
 
+
+# --- vision -----------------------------------------------------------------------------------------------------------
 
 VISION_ACTION = "NaoVision"
 VISION_MARGIN = 10.0

@@ -28,6 +28,8 @@ from .robot_link import RobotLink
 from .tasks import Task
 from .trace import Record, Trace, trace_of
 
+# --- the tree on a topic ----------------------------------------------------------------------------------------------
+
 TOPIC = "plan_tree"
 SHORTEST = 0.1
 """s between two messages: a plan may change much faster than anybody can look."""
@@ -91,6 +93,8 @@ def _message(record: Record) -> Any:
         failure=record.failure,
     )
 
+
+# --- running a plan ---------------------------------------------------------------------------------------------------
 
 WAKE_UP = "wakeup"
 ROBOT_LIMIT = 60.0

@@ -23,7 +23,6 @@ import functools
 import inspect
 import logging
 import threading
-from collections.abc import Callable
 from concurrent import futures
 from concurrent.futures import Future
 from dataclasses import dataclass, field
@@ -126,6 +125,8 @@ def def_top_level_plan(function: Callable[..., Any]) -> Callable[..., Any]:
     begun.start = start  # type: ignore[attr-defined]
     return begun
 
+
+# --- goals ------------------------------------------------------------------------------------------------------------
 
 Plan = Callable[..., Any]
 

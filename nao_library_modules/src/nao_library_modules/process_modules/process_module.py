@@ -45,6 +45,9 @@ END_PATIENCE = 10.0
 """s that a module has to put things right after a cancel, before a warning."""
 
 
+# --- a process module -------------------------------------------------------------------------------------------------
+
+
 class ModuleState(enum.Enum):
     OFFLINE = "offline"
     WAITING = "waiting"

@@ -33,6 +33,8 @@ from .failures import LowLevelFailure
 from .fluents import Fluent, sleep, wait_until
 from .plan_action_client import PlanActionClient
 
+# --- kinematics -------------------------------------------------------------------------------------------------------
+
 MARGIN = 0.02
 """rad that solutions stay away from the limits of joints: a motor does not get to its end."""
 CLOSE = 1e-4
@@ -200,6 +202,8 @@ def _signs(count: int) -> list[list[int]]:
     """Eight corners of a cube of any dimension, spread over it."""
     return [[1 if (corner >> (place % 3)) & 1 else -1 for place in range(count)] for corner in range(8)]
 
+
+# --- the robot --------------------------------------------------------------------------------------------------------
 
 STATE_LIMIT = 5.0
 """s to wait for the first joint states, and for frames."""

@@ -129,6 +129,8 @@ def _since(time: float | None, start: float) -> float | None:
     return None if time is None else round(time - start, 6)
 
 
+# --- the picture ------------------------------------------------------------------------------------------------------
+
 PAPER, GRID, INK, FAINT = (255, 255, 255), (228, 228, 232), (50, 50, 56), (130, 130, 138)
 COLORS = {
     "created": (200, 200, 205),

@@ -90,6 +90,9 @@ class WorkerStack:
         shutil.rmtree(self._folder, ignore_errors=True)
 
 
+# --- what is seen of a run --------------------------------------------------------------------------------------------
+
+
 @dataclass(frozen=True)
 class Push:
     """A push on the torso.
@@ -179,6 +182,8 @@ class TorsoWatch:
             self.pushed_at = max(0.0, self._now - self._began)
         return push
 
+
+# --- a run ------------------------------------------------------------------------------------------------------------
 
 TRUTH = "ground_truth/odom"
 AFTERWARDS = 3.0
@@ -317,6 +322,8 @@ def _pose(told: Any) -> Pose:
     place, turn = told.position, told.orientation
     return Pose((place.x, place.y, place.z), (turn.x, turn.y, turn.z, turn.w))
 
+
+# --- a sweep ----------------------------------------------------------------------------------------------------------
 
 LIMIT = 300.0
 """s of a computer that a run may take."""

@@ -63,6 +63,8 @@ def _running(stack: Stack) -> list[str]:
         return []
 
 
+# --- nao run, behaviors and check -------------------------------------------------------------------------------------
+
 SERVER = "NaoBehavior"
 SUFFIX = ".yaml"
 
@@ -228,6 +230,8 @@ def _lines_of(behavior: dict[str, Any], values: Mapping[str, str]) -> Iterator[s
     yield from (f"    {function}" for function in behavior["unchecked"])
 
 
+# --- ranges of what is swept ------------------------------------------------------------------------------------------
+
 MOST = 10000
 """Values of one range."""
 ROUNDING = 10
@@ -298,6 +302,8 @@ class Seeds(Values):
             raise ValueError(f"{told}: how many, 1 or more, or whole numbers from 0 on as 100..199")
         return list(map(int, values))
 
+
+# --- nao sweep --------------------------------------------------------------------------------------------------------
 
 PROGRAM = ".py"
 SUCCEEDED = "succeeded"

@@ -197,6 +197,9 @@ def _is_folder(path: str) -> CommandFailed:
     return CommandFailed(f"{path} is a folder on the robot")
 
 
+# --- nao files --------------------------------------------------------------------------------------------------------
+
+
 @click.group(cls=NaoGroup, name="files")
 def files_command() -> None:
     """The robot's files: list them, get one, put one.

@@ -166,6 +166,8 @@ class _MemoryWatch:
             self._ended.wait(self._period if self._keys else 1.0)
 
 
+# --- nao naoqi --------------------------------------------------------------------------------------------------------
+
 OWN = 100
 """Members below this number are those that every object of libqi has."""
 KINDS = ("methods", "signals", "properties")

@@ -143,6 +143,8 @@ wake_command = _one_function("wake", "wakeUp", "Switch the motors on; a robot on
 rest_command = _one_function("rest", "rest", "Go to a safe posture and switch the motors off.")
 
 
+# --- nao stop ---------------------------------------------------------------------------------------------------------
+
 CANCEL = "/cancel"
 CONNECT_LIMIT = 3.0
 """s until the servers must have been found."""

@@ -194,6 +194,8 @@ def _does(server: Mapping[str, Any]) -> str:
     return text if server["connected"] else f"{text}, without a robot"
 
 
+# --- nao list and help ------------------------------------------------------------------------------------------------
+
 INDENT = "  "
 
 
@@ -204,7 +206,6 @@ def status_command(context: click.Context) -> None:
 
     The exit status is 3 if the robot cannot be reached.
     """
-
     settings = settings_of(context)
     found = read_status(settings.stack)
     if settings.json:
@@ -337,6 +338,9 @@ def function_lines(server: str, told: Any, function: Any) -> Iterable[str]:
         if argument.choices and not all(word in argument.allowed for word in argument.choices):
             yield f"{INDENT * 2}here: {', '.join(argument.choices)}"
     yield f"{INDENT}nao call {server} {function.name}{''.join(f' {a.name}:=...' for a in function.arguments)}"
+
+
+# --- nao call ---------------------------------------------------------------------------------------------------------
 
 
 class _CallCommand(SignedCommand):

@@ -75,6 +75,8 @@ def _place_of_package(name: str) -> str:
         return ""
 
 
+# --- nao bag ----------------------------------------------------------------------------------------------------------
+
 SAID = {
     "renamed": "renamed",
     "refilled": "renamed, with the fields that both types have",
@@ -128,6 +130,8 @@ def _lines(counts: Mapping[str, Mapping[str, int]]) -> Iterator[str]:
     if not counts["renamed"] and not counts["refilled"]:
         yield "nothing had to be renamed"
 
+
+# --- nao completion ---------------------------------------------------------------------------------------------------
 
 SHELLS = ("bash", "zsh", "fish")
 

@@ -367,6 +367,8 @@ def _shown(value: Any) -> str:
     return f"({value})" if isinstance(value, Designator) else short_repr(value)
 
 
+# --- Lisp -------------------------------------------------------------------------------------------------------------
+
 TOKEN = re.compile(r'\s*(?:(?P<bracket>[()])|"(?P<text>(?:[^"\\]|\\.)*)"|(?P<word>[^\s()"]+))')
 NUMBER, FRACTION = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"), re.compile(r"[.eE]")
 LONGEST_NUMBER = 40

@@ -29,6 +29,8 @@ from ..failures import AmbiguousPerception, DesignatorError, short_repr
 from .designator import Designator, location, object_
 from .rules import Mismatch, number, numbers_of_nao, plain, rule
 
+# --- points -----------------------------------------------------------------------------------------------------------
+
 
 class Point3(NamedTuple):
     """A point in a frame of /tf."""

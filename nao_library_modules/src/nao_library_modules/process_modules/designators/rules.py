@@ -30,6 +30,8 @@ from ...base.suggestion import did_you_mean
 from ..failures import DesignatorError, PlanError, short_repr
 from .designator import KINDS, Designator, plain_key
 
+# --- numbers ----------------------------------------------------------------------------------------------------------
+
 FILE = config_file("process_modules.yaml")
 
 
@@ -43,7 +45,7 @@ class Settings:
     head: Dict[str, Tuple[float, float]]  # (yaw, pitch) by word, as forward
     head_speed: float  # rad/s
     head_tolerance: float
-    camera: Dict[str, float]  # on the head, see `space.head_angles`: forward, up, neck, tilt
+    camera: Dict[str, float]  # on the head, see `objects_and_locations.head_angles`: forward, up, neck, tilt
     arm_targets: Dict[str, Tuple[float, float, float]]  # of the left hand by word, in the torso frame; right: mirrored
     arm_speed: float  # rad/s
     arm_tolerance: float  # of the hand
@@ -97,6 +99,8 @@ def _tuples(value: Any) -> Any:
         return {key: _tuples(inner) for key, inner in value.items()}
     return tuple(value) if isinstance(value, list) else value
 
+
+# --- patterns ---------------------------------------------------------------------------------------------------------
 
 SETTING = limit("setting")
 
