@@ -253,6 +253,8 @@ def test_a_recording_that_stops_by_itself_is_told_and_one_that_is_ended_is_not(t
     assert recordings.stopped(running, told(now), now) == {}
     assert set(recordings.stopped(running, told(now, ()), now)) == {"video"}
     assert set(recordings.stopped(running, told(now), now + GONE_AFTER + 1.0)) == {"video"}
+    again = {"NaoVision": ServerRecordings(frozenset({"P01"}), now, "2.0")}
+    assert set(recordings.stopped(running, again, now)) == {"video"}
     running["bag"]["pid"] = 2
     assert set(recordings.stopped(running, told(now), now)) == {"bag"}
     recordings.end(Trial(tmp_path).begin().runner)

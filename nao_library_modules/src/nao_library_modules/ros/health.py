@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import threading
+import time
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -20,8 +21,9 @@ SILENT = "silent"
 
 SILENT_FOR = "silent for (s)"
 """Value of a report about the connection: how long the robot has not answered, 0 while it does."""
-RECORDINGS = "recordings"
-"""Value of a report about recordings: their names, a list as JSON."""
+RECORDINGS, STARTED = "recordings", "started"
+"""Values of a report about recordings: their names, a list as JSON; when the process was started, s since 1970."""
+_STARTED = f"{time.time():.3f}"
 
 
 class Level(IntEnum):
@@ -91,7 +93,8 @@ def connection_report(address: str, connection: Any) -> Report:
 def recordings_report(names: Iterable[str]) -> Report:
     """What a server records at this moment. `names`: of the recordings that get something to record."""
     running = sorted(names)
-    return Report(Level.OK, f"records {', '.join(running) or 'nothing'}", {RECORDINGS: json.dumps(running)})
+    values = {RECORDINGS: json.dumps(running), STARTED: _STARTED}
+    return Report(Level.OK, f"records {', '.join(running) or 'nothing'}", values)
 
 
 def launch_report(supervisor: Supervisor | None) -> Report:

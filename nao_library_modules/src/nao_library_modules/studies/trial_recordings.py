@@ -152,6 +152,8 @@ GONE_AFTER = 5.0
 """s of this computer without a report of a server, which reports its recordings once a second."""
 BEGUN_AFTER = 3.0
 """s of this computer from the begin of a recording until its server's reports count."""
+FRESH = 1.5
+"""s of this computer for which a report is that of the server that began: to start one again takes longer."""
 LIMIT = 30.0
 """s of this computer that a server has for the begin or the end of a recording."""
 
@@ -167,6 +169,7 @@ class TrialRecordings:
         self._bag: BagRecorder | None = None
         self._ending = False
         self._seen: dict[str, float] = {}  # recording -> when it was first seen to run
+        self._started: dict[str, str] = {}  # recording -> when its server was started
 
     def begin(self, runner: Any) -> None:
         """Begin what is wanted and does not run yet. What cannot be recorded is a deviation of the trial."""
@@ -217,12 +220,17 @@ class TrialRecordings:
             report = reports.get(server)
             if kind not in running or report is None:  # an older server does not report them
                 self._seen.pop(kind, None)
+                self._started.pop(kind, None)
                 continue
             since = self._seen.setdefault(kind, now)
+            if now - report.heard <= FRESH:
+                self._started.setdefault(kind, report.started)
             if now - report.heard > GONE_AFTER:
                 found[kind] = f"{server} does not report any more"
             elif report.heard > since + BEGUN_AFTER and not report.names:
                 found[kind] = f"{server} does not record"
+            elif report.started != self._started.get(kind, report.started):
+                found[kind] = f"{server} was started again, and what was meanwhile is lacking"
         return found
 
     def _begin_bag(self, runner: Any) -> None:

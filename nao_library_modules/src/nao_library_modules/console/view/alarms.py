@@ -177,7 +177,7 @@ RULES: Sequence[Rule] = (
         "Have the robot rest after this step until they are cooler: a motor that gets too hot goes limp.",
     ),
     *(
-        _recorder(kind, f"Note the time. The {kind} lacks what comes from now on: abort the trial if you need it.")
+        _recorder(kind, f"Note the time. The {kind} has a gap, or ends here: abort the trial if you need it.")
         for kind in ("bag", "video", "sound")
     ),
     Rule(
