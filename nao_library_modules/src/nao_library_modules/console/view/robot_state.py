@@ -15,7 +15,7 @@ from typing import Any
 
 from ...nao.body_devices import CHARGING_BIT
 from ...ros.body_reports import BATTERY_FLAGS
-from ...ros.health import RECORDINGS, SILENT_FOR
+from ...ros.health import RECORDINGS, SILENT_FOR, STARTED
 from .background import Subscriptions, Takers
 from .senses import CONNECTED, TEXT, Latched, MemoryTopics, Perception, felt
 
@@ -169,6 +169,7 @@ class ServerRecordings:
 
     names: frozenset[str]
     heard: float  # time of the report
+    started: str = ""  # when the server was started, as it says; another one: it was started again
 
 
 class Diagnosis:
@@ -205,7 +206,7 @@ class Diagnosis:
                 self._answered = {**self._answered, status.name: now - silent}
             if RECORDINGS in values:
                 server = status.name.rpartition(": ")[2].rpartition(" ")[0]
-                running = ServerRecordings(frozenset(json.loads(values[RECORDINGS])), now)
+                running = ServerRecordings(frozenset(json.loads(values[RECORDINGS])), now, values.get(STARTED, ""))
                 self.recordings = {**self.recordings, server: running}
 
 
