@@ -41,8 +41,7 @@ from .fields import (
     VolumeFile,
     VolumeId,
 )
-from .sounds import PLAYER, LoadedSounds, Sounds
-from .synthesiser import SPEECH
+from .sounds import PLAYER, SPEECH, LoadedSounds, Sounds
 
 
 class PlayerFunctions(Part):

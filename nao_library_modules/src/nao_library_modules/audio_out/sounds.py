@@ -18,11 +18,10 @@ from ..robot.robot import QUICK_ANSWER
 from ..robot.robot_task import end_call, wait_for_call
 from ..server.nao_basic import NaoBasic
 from ..server.simulated_keys import SimulatedKey
-from .synthesiser import SPEECH
 
 log = logging.getLogger(__name__)
 
-PLAYER, ANIMATED = "ALAudioPlayer", "ALAnimatedSpeech"
+PLAYER, SPEECH, ANIMATED = "ALAudioPlayer", "ALTextToSpeech", "ALAnimatedSpeech"
 TIMES = "NaoSimulation/SoundTimes"
 """A key of simulated robots: [onset, end] of the sound that ALAudioPlayer played last, s of the robot."""
 # Modules that have no `stopAll`, and the one whose it is.

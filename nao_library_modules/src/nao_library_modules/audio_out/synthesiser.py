@@ -8,8 +8,7 @@ from ..base.field_checks import require_known
 from ..base.once_per_connection import OncePerConnection
 from ..functions.parts import Part
 from ..server.nao_basic import NaoBasic
-
-SPEECH = "ALTextToSpeech"
+from .sounds import SPEECH
 
 
 class Synthesiser(Part):

@@ -10,13 +10,12 @@ from typing import Any
 from naoqi.errors import NaoError
 
 from .errors import BadGoal
-from .limits import Limit
-from .limits import limit as limit_of
+from .limits import Limit, limit
 from .suggestion import did_you_mean
 
 LONGEST_NAME = 255
 """Longest name of a file that file systems take, bytes."""
-KEY_FRAMES = limit_of("key frames")
+KEY_FRAMES = limit("key frames")
 CONTROL = re.compile(r"[\x00-\x1f\x7f]")
 """Characters that no name has."""
 

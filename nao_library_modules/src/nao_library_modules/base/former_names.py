@@ -23,7 +23,8 @@ class Former:
     @classmethod
     def install(cls, package: str, modules: Mapping[str, str]) -> None:
         """Have former names of modules of a package found; both names are relative to it."""
-        sys.meta_path.append(cls({f"{package}.{old}": f"{package}.{new}" for old, new in modules.items()}))
+        # First: a module of a new package must not be found once more, under a former name of the package.
+        sys.meta_path.insert(0, cls({f"{package}.{old}": f"{package}.{new}" for old, new in modules.items()}))
 
     def find_spec(self, name: str, _path: Sequence[str] | None, _target: ModuleType | None = None) -> ModuleSpec | None:
         return ModuleSpec(name, self) if name in self._modules else None

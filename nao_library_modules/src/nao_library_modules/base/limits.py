@@ -26,13 +26,13 @@ class Limit(NamedTuple):
 
 def limit(kind: str) -> Limit:
     """The bounds of a kind of number."""
-    declared = _declared()[kind]
+    declared = _declared_limits()[kind]
     return Limit(declared["lowest"], declared["highest"], declared["unit"])
 
 
 def usual(kind: str) -> Limit | None:
     """The bounds of what is usual of a kind of number, which checks before a run look at; None: all that is allowed."""
-    declared = _declared()[kind]
+    declared = _declared_limits()[kind]
     return Limit(*declared["usual"], declared["unit"]) if "usual" in declared else None
 
 
@@ -49,10 +49,10 @@ class Row(NamedTuple):
 
 def table() -> list[Row]:
     """All kinds, in the order of the file."""
-    return [Row(kind, **declared) for kind, declared in _declared().items()]
+    return [Row(kind, **declared) for kind, declared in _declared_limits().items()]
 
 
 @lru_cache(maxsize=None)
-def _declared() -> dict[str, dict[str, Any]]:
+def _declared_limits() -> dict[str, dict[str, Any]]:
     content = json.loads(config_file(FILE).read_text(encoding="utf-8"))
     return {kind: declared for kind, declared in content.items() if not kind.startswith("_")}

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Mapping
 
 from naoqi.errors import NaoError
 from naoqi.limits import CLEAN_UP_LIMIT

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any, List
 
@@ -11,7 +12,6 @@ from ..functions.describe_choices import JOINTS, POSTURES
 from ..functions.fields import Annotated, Field, flag, free, moments, number, numbers, whole
 from ..nao.gaze import load_head
 from .body import DEFAULT_SPEED
-from .store import NAME_ALLOWED, require_name
 
 FRAMES = ("FRAME_TORSO", "FRAME_WORLD", "FRAME_ROBOT")
 """Frames by their numbers."""
@@ -23,6 +23,15 @@ CAMERA = "CameraTop"
 """The one that looks where a message names none."""
 MOST_TRIES = 20
 MOST_TASKS = 2**31 - 1
+# No separators and no dot in front: a name stays in the folder.
+NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. -]*")
+NAME_ALLOWED = "letters, digits, '_', '-', '.' and blanks, the first a letter, a digit or '_'"
+
+
+def require_name(field: str, name: str) -> None:
+    """See that a motion can have a name; `field` of the message has it. Raises BadGoal if it cannot."""
+    if not NAME.fullmatch(name):
+        raise BadGoal(field, name, NAME_ALLOWED, problem=f"{name!r} is no name for a motion")
 
 
 def each(field: Field, meaning: str) -> Field:

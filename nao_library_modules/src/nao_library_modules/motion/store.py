@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import yaml
@@ -11,20 +10,12 @@ from ..base.errors import BadGoal
 from ..base.suggestion import did_you_mean
 from ..base.whole_file import give_name, tidy, write_whole
 from ..base.yaml_values import Budget, load_within
+from .fields import require_name
 from .recorded_motion import RecordedMotion, motion_of
 
 SUFFIX = ".yaml"
 MOST_VALUES, DEEPEST = 10_000_000, 10
 """Of a file: values, more than the longest recording of all joints has, and lists in each other."""
-# No separators and no dot in front: a name stays in the folder.
-NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_. -]*")
-NAME_ALLOWED = "letters, digits, '_', '-', '.' and blanks, the first a letter, a digit or '_'"
-
-
-def require_name(field: str, name: str) -> None:
-    """See that a motion can have a name; `field` of the message has it. Raises BadGoal if it cannot."""
-    if not NAME.fullmatch(name):
-        raise BadGoal(field, name, NAME_ALLOWED, problem=f"{name!r} is no name for a motion")
 
 
 class MotionStore:

@@ -37,7 +37,7 @@ HOT_MOTOR, TOO_HOT_MOTOR = 68.0, 74.0
 # --- sonars -----------------------------------------------------------------------------------------------------------
 
 SIDES = ("left", "right")
-SONARS = {side: sensor_key(f"US/{side.capitalize()}") for side in SIDES}
+SONARS = {name: sensor_key(f"US/{name.capitalize()}") for name in SIDES}
 """Side -> key of its echo."""
 NEAREST, FARTHEST = 0.25, 2.55
 """m, between which sonars measure."""

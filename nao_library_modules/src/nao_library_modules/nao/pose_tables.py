@@ -52,7 +52,7 @@ def pose_table(table: Any) -> dict[str, Pose]:
     """
     if not isinstance(table, Mapping):
         raise BadPose("poses", f"the table is {table!r}")
-    return {str(name): _pose(str(name), entry) for name, entry in table.items()}
+    return {str(name): _pose_of_entry(str(name), entry) for name, entry in table.items()}
 
 
 def built_in() -> dict[str, Pose]:
@@ -67,7 +67,7 @@ def library(path: str) -> dict[str, Pose]:
     return {name: Pose(tuple(pose), tuple(pose.values()), XAP_TIME) for name, pose in read_poses(path).items()}
 
 
-def _pose(name: str, entry: Any) -> Pose:
+def _pose_of_entry(name: str, entry: Any) -> Pose:
     if not isinstance(entry, Mapping) or set(entry) != set(FIELDS):
         found = ", ".join(map(str, entry)) if isinstance(entry, Mapping) else repr(entry)
         raise BadPose(name, f"it has {found or 'nothing'}")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
-from typing import Any
+from typing import Any, Callable
 
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT, LOST_PATIENCE

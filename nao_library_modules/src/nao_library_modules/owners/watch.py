@@ -13,10 +13,9 @@ import selectors
 import socket
 import threading
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, Callable
 
 from naoqi.state import Worker
 
@@ -26,7 +25,7 @@ log = logging.getLogger(__name__)
 
 LONGEST = 65536
 """Bytes of one line of text at most."""
-RETRY = 0.1
+PLACE_RETRY = 0.1
 """s until the next attempt to take a place whose watch does not answer."""
 
 
@@ -137,7 +136,7 @@ class OwnerWatch:
         """Wait until the watch that has the place has gone, as an owner that owns nothing."""
         line = self._connector.connect()
         if line is None:
-            self._closed.wait(RETRY)
+            self._closed.wait(PLACE_RETRY)
             return
         with line, selectors.DefaultSelector() as news:
             news.register(line, selectors.EVENT_READ)

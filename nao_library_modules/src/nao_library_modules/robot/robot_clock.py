@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
-from typing import Any
+from typing import Any, Callable
 
 CLOCKS_AGREE = 5.0
 """s between the robot's clock and simulated ROS time; more, and it is another clock. Ours may be a little late."""

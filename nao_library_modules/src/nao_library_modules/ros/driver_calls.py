@@ -19,7 +19,7 @@ from naoqi.limits import wait_while_answering
 from .driver_types import spoken
 from .goal_tracker import GoalTracker, server_connection
 
-LOOK_PERIOD = 0.005
+CONNECT_LOOK_PERIOD = 0.005
 """s of this computer between two looks whether a server is connected."""
 
 
@@ -181,7 +181,7 @@ class DriverAction(rospy.SubscribeListener):
         while not self.there():
             if time.monotonic() > deadline:
                 return False
-            time.sleep(LOOK_PERIOD)  # nothing tells of connections that come
+            time.sleep(CONNECT_LOOK_PERIOD)  # nothing tells of connections that come
         return True
 
     def send(self, goal: Any, read: Callable[[int, str], Any]) -> GoalCall:

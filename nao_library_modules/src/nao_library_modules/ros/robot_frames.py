@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from typing import Any
 
 import rospy
-import tf2_ros
 from geometry_msgs.msg import Point, Pose, Quaternion
 
 from naoqi.errors import NaoError
 
+from ..base.doors import Later
 from ..base.places import FOOTPRINT, Place, yaw_of_quaternion
 from ..base.rotations import from_roll_pitch_yaw
+
+tf2_ros = Later("tf2_ros")  # who has only the time of ROS does without
 
 PATIENCE = 2.0
 """s that a frame may take to appear: a listener that has just begun knows nothing yet."""

@@ -6,9 +6,9 @@ import logging
 import re
 import socket
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Callable
 
 from naoqi.errors import NaoError
 from naoqi.limits import CLEAN_UP_LIMIT
@@ -19,7 +19,6 @@ from ..functions.parts import Part
 from ..robot.event_relay import EventRelay
 from ..robot.event_times import Event, EventTimes
 from ..robot.robot_task import wait_for_call
-from .nao_basic import NaoBasic
 
 log = logging.getLogger(__name__)
 
@@ -68,7 +67,7 @@ class ExtractorUse(Part):
     `subscriber`: what NAOqi knows this server by: of each robot's clients no two have the same name.
     """
 
-    def __init__(self, module: NaoBasic, subscriber: str) -> None:
+    def __init__(self, module: Any, subscriber: str) -> None:
         self.robot, self.robot_clock = module.robot, module.robot_clock
         self.clock, self.interrupt = module.clock, module.interrupt
         self.call, self.call_now, self.wait = module.call, module.call_now, module.wait

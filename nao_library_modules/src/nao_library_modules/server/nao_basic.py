@@ -6,6 +6,7 @@ import logging
 import threading
 from collections.abc import Callable, Mapping, MutableMapping, Sequence
 from functools import wraps
+from importlib import import_module
 from typing import Any, ClassVar
 
 from genpy import Duration, Time
@@ -140,9 +141,8 @@ class NaoBasic(FunctionRunner):
         if not isinstance(autostart, bool):
             raise NaoError(f"autostart is {autostart!r}: True or False")
         if node is None:
-            from ..ros.server_node import ServerNode
-
-            node = ServerNode()
+            # By its name: the core needs no ROS as long as it is given a node.
+            node = import_module("..ros.server_node", __package__).ServerNode()
         self.ip = ip
         self.port = port
         self.launchpath = launchpath

@@ -14,7 +14,7 @@ from ...base.whole_file import WholeFile, numbered_names, tidy
 
 DEFAULT_RECORD_DIR = "~/.ros/nao_recordings"
 """As that of the simulator: beside a simulated robot on the same computer, its files and these are in one place."""
-SYNONYMS = {"jpeg": "jpg", "tif": "tiff"}
+TYPE_SYNONYMS = {"jpeg": "jpg", "tif": "tiff"}
 SHORT = f"up to {LONGEST_NAME - 10} bytes"
 
 
@@ -135,7 +135,7 @@ class VisionFiles:
 def known_type(field: str, text: str, known: Sequence[str]) -> str:
     """Usual name of a type of file; empty for none. Raises BadGoal if it is not known."""
     bare = text.strip().lower().lstrip(".")
-    kind = SYNONYMS.get(bare, bare)
+    kind = TYPE_SYNONYMS.get(bare, bare)
     return require_known(field, kind, known, "type of file for this") if kind else ""
 
 

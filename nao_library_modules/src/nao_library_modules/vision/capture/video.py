@@ -40,7 +40,7 @@ CODECS = {
     "mjpeg": Codec("mjpeg", "yuvj420p", 2.0, {"qmin": "2", "qmax": "6"}, ("avi", "mp4")),
     "ffv1": Codec("ffv1", "bgr0", 0.0, {}, ("avi",)),
 }
-SYNONYMS = {
+CODEC_SYNONYMS = {
     "avc1": "h264", "x264": "h264", "libx264": "h264", "mp4v": "mpeg4", "xvid": "mpeg4", "divx": "mpeg4",
     "mjpg": "mjpeg",
 }  # fmt: skip
@@ -64,7 +64,7 @@ def codec_name(text: str, file_type: str) -> str:
     """Usual name of a codec, also of an unknown one; of an empty text the preferred codec that this computer has."""
     bare = text.strip().lower()
     if bare:
-        return SYNONYMS.get(bare, bare)
+        return CODEC_SYNONYMS.get(bare, bare)
     known = known_codecs(file_type)
     return next(name for name in (*PREFERRED[file_type], *known) if name in known)
 

@@ -14,11 +14,11 @@ from .detectors import DETECTORS, Detectors, WantedDetection
 from .events import FACE
 from .fields import (
     AnyPerson,
+    DetectionTimeout,
     HeadSize,
     Looks,
     NameConfidence,
     Person,
-    Timeout,
     camera_index,
     require_name,
     timeout_of,
@@ -39,7 +39,7 @@ class FaceFunctions(Part):
         self,
         str_param: AnyPerson,
         camera: Camera,
-        timeout: Timeout,
+        timeout: DetectionTimeout,
         confidence: NameConfidence,
         count: Looks,
         size: HeadSize,
@@ -48,14 +48,14 @@ class FaceFunctions(Part):
         wanted = WantedDetection(FACE, str_param.strip(), confidence, size, camera_index(camera))
         return self._detections.detect(wanted, timeout, count)
 
-    def learn_face(self, str_param: Person, camera: Camera, timeout: Timeout) -> list[bool]:
+    def learn_face(self, str_param: Person, camera: Camera, timeout: DetectionTimeout) -> list[bool]:
         """Learn the face that is in view under a name; answers whether there was one, alone, that could be learnt."""
         name = require_name(str_param)
         if name in self.list_faces():
             raise NaoError(f"the face of {name!r} is learnt already: reLearnFace adds to it, forgetFace forgets it")
         return self._learn("learnFace", name, camera, timeout)
 
-    def relearn_face(self, str_param: Person, camera: Camera, timeout: Timeout) -> list[bool]:
+    def relearn_face(self, str_param: Person, camera: Camera, timeout: DetectionTimeout) -> list[bool]:
         """Add the face that is in view to what is known of a person; answers as learnFace does."""
         name = self._known_person(str_param)
         return self._learn("reLearnFace", name, camera, timeout)

@@ -89,7 +89,7 @@ Thing = Annotated[
         check=lambda _, text: wanted_thing(text),
     ),
 ]
-Timeout = Annotated[float, _TIMEOUT]
+DetectionTimeout = Annotated[float, _TIMEOUT]
 Patience = Annotated[
     float, _TIMEOUT.but(help=f"time out of view after which it ends, in ROS time; 0: {DEFAULT_TIMEOUT:g}")
 ]
@@ -131,4 +131,4 @@ Speed = Annotated[
         allowed="0..1 of the top speed, or 0 for a moderate one",
     ),
 ]
-Revert = Annotated[bool, flag("whether the head goes back to where it was after `time`")]
+HeadRevert = Annotated[bool, flag("whether the head goes back to where it was after `time`")]

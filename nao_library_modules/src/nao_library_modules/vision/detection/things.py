@@ -12,10 +12,10 @@ from .fields import (
     BallSize,
     CodeSize,
     Confidence,
+    DetectionTimeout,
     Looks,
     MarkSize,
     Sensitivity,
-    Timeout,
     camera_index,
     require_mark,
     timeout_of,
@@ -30,26 +30,38 @@ class DetectionFunctions(Part):
         self._detectors = detectors
 
     def detect_ball(
-        self, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: BallSize
+        self, camera: Camera, timeout: DetectionTimeout, confidence: Confidence, count: Looks, size: BallSize
     ) -> list[str]:
         """See a red ball."""
         return self.detect(WantedDetection(BALL, "", confidence, size, camera_index(camera)), timeout, count)
 
     def detect_landmarks(
-        self, str_param: AnyMark, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: MarkSize
+        self,
+        str_param: AnyMark,
+        camera: Camera,
+        timeout: DetectionTimeout,
+        confidence: Confidence,
+        count: Looks,
+        size: MarkSize,
     ) -> list[str]:
         """See landmarks; answers their numbers."""
         wanted = WantedDetection(LANDMARK, require_mark(str_param), confidence, size, camera_index(camera))
         return self.detect(wanted, timeout, count)
 
     def read_barcodes(
-        self, str_param: AnyCode, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, size: CodeSize
+        self,
+        str_param: AnyCode,
+        camera: Camera,
+        timeout: DetectionTimeout,
+        confidence: Confidence,
+        count: Looks,
+        size: CodeSize,
     ) -> list[str]:
         """Read barcodes and QR codes; answers what they say."""
         return self.detect(WantedDetection(CODE, str_param, confidence, size, camera_index(camera)), timeout, count)
 
     def detect_movement(
-        self, camera: Camera, timeout: Timeout, confidence: Confidence, count: Looks, sensitivity: Sensitivity
+        self, camera: Camera, timeout: DetectionTimeout, confidence: Confidence, count: Looks, sensitivity: Sensitivity
     ) -> list[str]:
         """See what moves."""
         wanted = WantedDetection(MOVEMENT, "", confidence, 0.0, camera_index(camera))

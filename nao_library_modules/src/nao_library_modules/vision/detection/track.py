@@ -22,11 +22,11 @@ from .fields import (
     BallSize,
     Confidence,
     Duration,
+    HeadRevert,
     HeadSize,
     Looks,
     NameConfidence,
     Patience,
-    Revert,
     Search,
     SearchTimeout,
     Speed,
@@ -119,7 +119,7 @@ class TrackingFunctions(Part):
         duration: Duration,
         search: Search,
         speed: Speed,
-        revert: Revert,
+        revert: HeadRevert,
     ) -> list[float]:
         """Follow a red ball with the head; answers for how long it was in view, s."""
         wanted = WantedDetection(BALL, "", confidence, size, camera_index(camera))
@@ -135,7 +135,7 @@ class TrackingFunctions(Part):
         duration: Duration,
         search: Search,
         speed: Speed,
-        revert: Revert,
+        revert: HeadRevert,
     ) -> list[float]:
         """Follow a face with the head, or only that of one person; answers for how long it was in view, s."""
         wanted = WantedDetection(FACE, str_param.strip(), confidence, size, camera_index(camera))
@@ -150,7 +150,7 @@ class TrackingFunctions(Part):
         count: Looks,
         size: ThingSize,
         speed: Speed,
-        revert: Revert,
+        revert: HeadRevert,
     ) -> list[str]:
         """Turn the head until something is in view, look at it, and tell where it is; nothing if it is not found."""
         kind, name = wanted_thing(str_param)
