@@ -23,11 +23,9 @@ import yaml
 from compatibility_tables import compatibility
 from markdown_tables import code, table
 
-from nao_library_modules.base.limits import table as limits_of_modules
-from nao_library_modules.functions.describe import NO_UNIT, Described, Description
-from nao_library_modules.functions.describe_offline import offline_servers
-from nao_library_modules.functions.message_fields import read_fields
-from nao_library_modules.vision.capture.pictures import size_rows as sizes_of_pictures
+from nao_library_modules.core.describe import NO_UNIT, Described, Description, offline_servers, read_fields
+from nao_library_modules.core.fields import table as limits_of_modules
+from nao_library_modules.vision.pictures import size_rows as sizes_of_pictures
 from nao_sim_bridge.base.config import robot_files_directory
 from nao_sim_bridge.base.record_dir import load_places
 from nao_sim_bridge.base.sizes import size_rows as sizes_of_simulator

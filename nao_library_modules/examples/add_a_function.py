@@ -10,11 +10,11 @@ from __future__ import annotations
 import sys
 from typing import Any, List
 
+from nao_library_modules.core.fields import Annotated, numbers
 from nao_library_modules.function_chain import checked_by
-from nao_library_modules.functions.fields import Annotated, numbers
 from nao_library_modules.light_checks import check_lights
 from nao_library_modules.lights import NaoLights
-from nao_library_modules.lights.fields import Lights
+from nao_library_modules.lights.light_fields import Lights
 from nao_library_modules.node import run_module
 
 Flashes = Annotated[List[float], numbers((0.01, 60.0), "length of each flash and of the pause after it", "s", least=1)]

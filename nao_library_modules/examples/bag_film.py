@@ -7,10 +7,10 @@ from pathlib import Path
 
 from sensor_msgs.msg import Image
 
-from nao_library_modules.base.whole_file import WholeFile, require_new
+from nao_library_modules.core.files import WholeFile, require_new
 from nao_library_modules.ros.bag_types import read_bag
-from nao_library_modules.vision.capture.pictures import picture_of, visible
-from nao_library_modules.vision.capture.video import VideoFile, codec_name
+from nao_library_modules.vision.pictures import picture_of, visible
+from nao_library_modules.vision.video import VideoFile, codec_name
 from naoqi.errors import NaoError
 
 

@@ -25,9 +25,9 @@ import rospy
 from geometry_msgs.msg import Point
 
 from nao_library_actions.msg import NaoAudioInActionFeedback
-from nao_library_modules.base.errors import NaoError
 from nao_library_modules.console.watched_studies import studies_alone
-from nao_library_modules.nao.touch_names import sensors_of
+from nao_library_modules.core.errors import NaoError
+from nao_library_modules.core.nao_facts import sensors_of
 from nao_library_modules.studies.protocol import ChoiceStep, SenseStep, StudyError, WhileStep
 from nao_library_modules.studies.protocol_reader import read_protocol_file
 from nao_library_modules.studies.study_files import StudyFiles

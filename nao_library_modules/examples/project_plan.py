@@ -16,7 +16,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from nao_library_modules.base.suggestion import of_those
+from nao_library_modules.core.errors import of_those
 from nao_library_modules.process_modules.projection import ProjectionFailed, compare, project, run_program
 from nao_library_modules.process_modules.trace import Trace
 

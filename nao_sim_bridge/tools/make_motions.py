@@ -15,8 +15,7 @@ from choreography import Choreographer
 from motion_dance import dance
 from motion_tables import bow_deep, bow_small, look_around, offer, point_to_self, tai_chi, wave
 
-from nao_library_modules.motion.recorded_motion import recorded
-from nao_library_modules.motion.store import MotionStore
+from nao_library_modules.motion.recorded_motion import MotionStore, recorded
 from nao_sim_bridge.model.model_reader import load_model
 
 FOLDER = Path(__file__).resolve().parents[2] / "nao_library_modules" / "config" / "motions"

@@ -241,7 +241,7 @@ def test_the_package_of_the_simulator_alone_loads_neither_the_engine_nor_arrays(
 
 def test_who_knows_the_errors_of_naoqi_alone_loads_neither_libqi_nor_motion():
     program = (
-        "import sys, naoqi, nao_library_modules.nao.type_names\n"
+        "import sys, naoqi, nao_library_modules.ros.type_names\n"
         "print(sys.modules.keys() & {'qi', 'motion'}, naoqi.ALProxy, naoqi.motion.FRAME_ROBOT)"
     )
     told = subprocess.run([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, check=True).stdout

@@ -15,7 +15,7 @@ from news import News
 from std_msgs.msg import String
 
 from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorActionFeedback, PerformDesignatorGoal
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.geometry import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401
 from nao_library_modules.process_modules.control import do, par, pursue, seq, top_level, wait_for
 from nao_library_modules.process_modules.designators.designator import action, an, designator

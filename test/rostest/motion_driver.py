@@ -20,8 +20,8 @@ from nao_library_actions.msg import (
     NaoMotionAction,
     NaoMotionGoal,
 )
-from nao_library_modules.motion.server import DRIVER
-from nao_library_modules.processes.launcher import launched_nodes
+from nao_library_modules.core.processes import launched_nodes
+from nao_library_modules.motion.motion_server import DRIVER
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))

@@ -36,15 +36,14 @@ from nao_library_actions.msg import (
     NaoMotionGoal,
     NaoVisionGoal,
 )
-from nao_library_modules.base.kept import Kept
-from nao_library_modules.base.whole_file import WholeFile, write_whole
 from nao_library_modules.behaviors.server import NaoBehavior
+from nao_library_modules.core.files import Kept, WholeFile, write_whole
 from nao_library_modules.driver.camera import camera_calibration
 from nao_library_modules.driver.camera.camera_calibration import ideal
-from nao_library_modules.motion.server import NaoMotion
+from nao_library_modules.motion.motion_server import NaoMotion
 from nao_library_modules.process_modules.control import do, seq, top_level
 from nao_library_modules.process_modules.trace import save_picture, trace_of
-from nao_library_modules.processes.own_master import OwnMaster
+from nao_library_modules.ros.own_stack import OwnMaster
 from nao_library_modules.vision import NaoVision
 from nao_sim_bridge.testing import wait_until
 from nao_sim_bridge.vision.face_memory import FaceMemory
@@ -223,9 +222,9 @@ class Said(logging.Handler):
 
 def keep(name):
     """What a node keeps beyond its death; that it cannot is no error of its goals, and told in the log."""
-    said = Said("nao_library_modules.base.kept")
+    said = Said("nao_library_modules.core.files")
     Kept(DISK / "ros" / "kept" / f"{name}.json", "run").save([{"sensors": ["head"], "behavior": "hello"}] * 10)
-    logging.getLogger("nao_library_modules.base.kept").removeHandler(said)
+    logging.getLogger("nao_library_modules.core.files").removeHandler(said)
     if said.texts:
         raise RuntimeError(said.texts[0])
 

@@ -22,12 +22,12 @@ from nao_library_actions.msg import (
     NaoTactileGoal,
     NaoVisionGoal,
 )
-from nao_library_modules.audio_in.server import NaoAudioInput
-from nao_library_modules.audio_out.server import NaoAudioOutput
+from nao_library_modules.audio_in.audio_in_server import NaoAudioInput
+from nao_library_modules.audio_out.audio_out_server import NaoAudioOutput
 from nao_library_modules.behaviors.server import NaoBehavior
-from nao_library_modules.lights.server import NaoLights
-from nao_library_modules.motion.server import NaoMotion
-from nao_library_modules.tactile.server import NaoTactile
+from nao_library_modules.lights.lights_server import NaoLights
+from nao_library_modules.motion.motion_server import NaoMotion
+from nao_library_modules.tactile.tactile_server import NaoTactile
 from nao_library_modules.vision import NaoVision
 
 PROMPT = 0.05

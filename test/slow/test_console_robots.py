@@ -8,7 +8,7 @@ import rosgraph
 from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
 from selenium.webdriver.common.keys import Keys
 
-from nao_library_modules.processes.own_stack import OwnStack
+from nao_library_modules.ros.own_stack import OwnStack
 from nao_sim_bridge.testing import wait_until
 
 TEXT = "ALTextToSpeech/CurrentSentence"

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from waits import PATIENCE
 
-from nao_library_modules.processes.own_master import OwnMaster
+from nao_library_modules.ros.own_stack import OwnMaster
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "soak"))
 from nao_soak.ill_clients import IllClients

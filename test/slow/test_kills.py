@@ -15,8 +15,7 @@ import rosgraph
 from amount import amount
 from listening import listens
 
-from nao_library_modules.processes.own_master import OwnMaster
-from nao_library_modules.processes.own_stack import OwnStack, StackFailed
+from nao_library_modules.ros.own_stack import OwnMaster, OwnStack, StackFailed
 from nao_sim_bridge.testing import wait_until
 
 pytestmark = pytest.mark.timeout(1800)

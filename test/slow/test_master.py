@@ -10,7 +10,7 @@ from listening import listens
 from named_port import named_port
 from waits import hold
 
-from nao_library_modules.processes.own_stack import OwnStack
+from nao_library_modules.ros.own_stack import OwnStack
 from nao_sim_bridge.testing import wait_until
 
 LIMIT = 60.0

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from nao_library_modules.processes.own_master import OwnMaster
+from nao_library_modules.ros.own_stack import OwnMaster
 
 SERVER = """
 import rospy

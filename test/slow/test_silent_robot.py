@@ -12,7 +12,7 @@ from xmlrpc.client import ServerProxy
 import pytest
 import rosgraph
 
-from nao_library_modules.processes.own_stack import OwnStack
+from nao_library_modules.ros.own_stack import OwnStack
 
 pytestmark = pytest.mark.timeout(300)
 USER = Path(__file__).resolve().parents[1] / "support/every_goal.py"

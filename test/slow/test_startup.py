@@ -14,7 +14,7 @@ from waits import PATIENCE, hold
 
 import nao_library_actions
 import nao_library_msgs
-from nao_library_modules.processes.own_master import OwnMaster
+from nao_library_modules.ros.own_stack import OwnMaster
 
 CLIENT = """
 import rospy

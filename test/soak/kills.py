@@ -22,8 +22,8 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 import rospy
 
-from nao_library_modules.owners.line import PEER, place
-from nao_library_modules.processes.own_stack import OwnStack
+from nao_library_modules.core.process_owners import PEER, place
+from nao_library_modules.ros.own_stack import OwnStack
 from nao_sim_bridge.testing import SimulatedRobot, wait_until
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))

@@ -21,9 +21,9 @@ from pathlib import Path
 
 import rosgraph
 
-from nao_library_modules.functions.server_types import ACTIONS, servers_among
-from nao_library_modules.processes.own_stack import OwnStack, StackFailed
-from nao_library_modules.processes.supervisor import WITH_ITS_PARENT
+from nao_library_modules.core.processes import WITH_ITS_PARENT
+from nao_library_modules.core.server_types import ACTIONS, servers_among
+from nao_library_modules.ros.own_stack import OwnStack, StackFailed
 
 COMPUTES = "while True: pass"
 SOCKETS = """

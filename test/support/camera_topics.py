@@ -12,7 +12,7 @@ from genpy import Time
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
-from nao_library_modules.vision.capture.pictures import picture_of
+from nao_library_modules.vision.pictures import picture_of
 from naoqi.errors import NaoError
 
 CAMERA, OUT = "/camera/image_raw", "/out/image_raw"

@@ -18,7 +18,7 @@ from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
 from ros_stack import children, start_program
 from selenium.webdriver.common.action_chains import ActionChains
 
-from nao_library_modules.functions.server_types import ACTIONS
+from nao_library_modules.core.server_types import ACTIONS
 from nao_library_modules.studies.study_files import StudyFiles
 from nao_library_modules.studies.trial_log import EVENTS, read_events
 from nao_library_msgs.srv import SetMemory

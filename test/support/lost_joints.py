@@ -9,7 +9,7 @@ from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from nao_library_actions.msg import BodyPoseAction, BodyPoseGoal, JointTrajectoryAction, JointTrajectoryGoal
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy
 

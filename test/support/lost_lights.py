@@ -11,7 +11,7 @@ from mortal_simulator import PORT, LostRobotCase
 from news import LIMIT, Reports
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_library_msgs.msg import LedFunction
 from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy

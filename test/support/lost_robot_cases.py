@@ -28,7 +28,7 @@ from nao_library_actions.msg import (
     SpeechWithFeedbackAction,
     SpeechWithFeedbackGoal,
 )
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_library_msgs.srv import CmdPoseService, GetAudioMasterVolume, GetMemory, VisionMotionSensitivity
 from nao_sim_bridge.testing import send
 

@@ -8,7 +8,7 @@ from news import News, Reports
 from sensor_msgs.msg import Range
 
 from nao_library_actions.msg import BlinkAction, BlinkGoal, RunBehaviorAction, RunBehaviorGoal
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_library_msgs.msg import ConnectionState, FloatStamped, TactileTouch
 from nao_sim_bridge.testing import send, wait_until
 from naoqi import ALProxy

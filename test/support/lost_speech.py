@@ -7,7 +7,7 @@ from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 
 from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_library_msgs.msg import AudioBuffer, AudioSourceLocalization
 from nao_library_msgs.srv import GetAudioMasterVolume
 from nao_sim_bridge.testing import send, wait_until

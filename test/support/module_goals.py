@@ -8,7 +8,7 @@ from types import SimpleNamespace
 from recorded_node import RecordedNode
 from simulator import PATIENCE
 
-from nao_library_modules.robot.robot import Robot
+from nao_library_modules.core.robot import Robot
 
 
 class WatchedRobot(Robot):

@@ -9,7 +9,7 @@ from collections import defaultdict
 import genpy.generator
 from rospkg import RosPack
 
-from nao_library_modules.nao.type_names import type_names
+from nao_library_modules.ros.type_names import type_names
 
 NEEDED = ("actionlib_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "trajectory_msgs")
 MANIFEST = """<package format="2"><name>{}</name><version>0.0.1</version><description>Made for a test.</description>

@@ -7,8 +7,8 @@ import threading
 from actionlib_msgs.msg import GoalStatus
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.functions.check_service import CHECK, check_request, read_response
+from nao_library_modules.core.describe import CHECK, check_request, read_response
+from nao_library_modules.core.waiting import CancellationToken
 from nao_library_modules.process_modules.plan_action_client import ActionEnd
 from naoqi.errors import NaoError
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from nao_library_modules.processes.process_tree import ProcessId, descendants, kill_survivors
+from nao_library_modules.core.processes import ProcessId, descendants, kill_survivors
 
 PORT = "9559"
 """The port of the robot in commands and programs, as it is without arguments."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from nao_library_modules.base.clock import WallClock
+from nao_library_modules.core.waiting import WallClock
 from naoqi.errors import NaoError
 
 

@@ -49,7 +49,7 @@ def goals_to(robot):
 @pytest.fixture
 def lights(goals_to):
     from nao_library_actions.msg import NaoLedGoal
-    from nao_library_modules.lights.server import NaoLights
+    from nao_library_modules.lights.lights_server import NaoLights
 
     return goals_to(NaoLights, NaoLedGoal)
 

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import rospy
 
-from nao_library_modules.processes.own_master import OwnMaster
-from nao_library_modules.processes.own_stack import OwnStack, StackFailed
+from nao_library_modules.ros.own_stack import OwnMaster, OwnStack, StackFailed
 from nao_sim_bridge.testing import SimulatedRobot, StackNotReady, wait_until
 
 SPEED = 2

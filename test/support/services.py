@@ -2,7 +2,7 @@
 
 import rospy
 
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_sim_bridge.testing import wait_until
 
 LIMIT = 60.0

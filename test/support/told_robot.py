@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 from nao_library_modules.console.view.robot_state import FALLEN, FAMILY, POSTURE, BodyWatch
 from nao_library_modules.console.view.senses import SENTENCE, SETTLED
-from nao_library_modules.ros.body_reports import Thresholds, body_reports
+from nao_library_modules.core.health import Thresholds, body_reports
 from nao_library_modules.studies.robot_events import EventStream
 
 ADDRESS = "127.0.0.1:9559"

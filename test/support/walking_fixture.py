@@ -2,7 +2,7 @@
 
 import unittest
 
-from nao_library_modules.base.places import Place, yaw_of_quaternion
+from nao_library_modules.core.geometry import Place, yaw_of_quaternion
 from nao_sim_bridge.testing import SimulatedRobot
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import av
 from PIL import Image, ImageDraw, ImageFont
 
-from nao_library_modules.base.whole_file import WholeFile
+from nao_library_modules.core.files import WholeFile
 
 MOMENTS = 6
 BAND = 22

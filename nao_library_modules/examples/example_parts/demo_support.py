@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 from typing import Any, Callable, List, Tuple
 
-from nao_library_modules.base.whole_file import write_whole
-from nao_library_modules.processes.own_stack import OwnStack
+from nao_library_modules.core.files import write_whole
+from nao_library_modules.ros.own_stack import OwnStack
 
 SPEED = "3"
 """Times real time: nobody watches. The simulator goes slower where the computer cannot follow."""

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Callable, List, Sequence, TypeVar
 
-from nao_library_modules.base.whole_file import write_whole
+from nao_library_modules.core.files import write_whole
 from naoqi.errors import NaoError
 
 Entry = TypeVar("Entry")

@@ -1,6 +1,6 @@
 """Action servers that play chains of NAOqi functions: NaoBasic and the modules that inherit it."""
 
-from .base.former_names import Former
+from .core.lazy import Former
 
 FORMER = {
     "answers": "base.answers",

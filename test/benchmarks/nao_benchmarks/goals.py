@@ -9,7 +9,7 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_modules.functions.server_types import server_type
+from nao_library_modules.core.server_types import server_type
 
 from .errors import BenchmarkError
 

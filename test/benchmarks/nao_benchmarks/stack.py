@@ -48,7 +48,7 @@ class Stack:
         if self._ros:
             return
         # Not above: rows that need no ROS run without it.
-        from nao_library_modules.processes.own_master import OwnMaster
+        from nao_library_modules.ros.own_stack import OwnMaster
 
         folder = Path(self._started.enter_context(tempfile.TemporaryDirectory()))
         os.environ["ROS_IP"] = "127.0.0.1"

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nao_library_modules.audio_in.events import Bearing, begun_sounds, located_sound, recognised, turned
+from nao_library_modules.audio_in.hearing import Bearing, begun_sounds, located_sound, recognised, turned
 
 LEVEL = [0.0] * 6
 

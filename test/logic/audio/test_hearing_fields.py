@@ -7,10 +7,10 @@ import math
 import pytest
 from goal_functions import audio_in as f
 
-from nao_library_modules.audio_in.server import NaoAudioInput
-from nao_library_modules.functions.chain import FunctionChain, declared_fields, fields_taken
-from nao_library_modules.functions.describe_choices import HEARD_LANGUAGES
-from nao_library_modules.functions.offline_module import offline_module
+from nao_library_modules.audio_in.audio_in_server import NaoAudioInput
+from nao_library_modules.core.chain import FunctionChain, declared_fields, fields_taken
+from nao_library_modules.core.describe import HEARD_LANGUAGES
+from nao_library_modules.core.goal_checks import offline_module
 from nao_library_msgs.msg import AudioInFunction
 
 FUNCTIONS = NaoAudioInput.declared_functions()

@@ -8,13 +8,12 @@ import pytest
 from goal_functions import audio_out as f
 
 from nao_library_actions.msg import NaoAudioOutGoal
-from nao_library_modules.audio.fields import DeviceParameter, DeviceSetting, OutputRate
-from nao_library_modules.audio_out.server import NaoAudioOutput
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.functions.chain import FunctionChain, declared_fields, fields_taken
-from nao_library_modules.functions.describe_choices import LANGUAGES, VOICES
-from nao_library_modules.functions.goal_checks import check_goals
-from nao_library_modules.functions.offline_module import offline_module
+from nao_library_modules.audio_out.audio_out_server import NaoAudioOutput
+from nao_library_modules.core.audio_device import DeviceParameter, DeviceSetting, OutputRate
+from nao_library_modules.core.chain import FunctionChain, declared_fields, fields_taken
+from nao_library_modules.core.describe import LANGUAGES, VOICES
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.goal_checks import check_goals, offline_module
 from nao_library_msgs.msg import AudioOutFunction
 
 FUNCTIONS = NaoAudioOutput.declared_functions()

@@ -10,12 +10,11 @@ import pytest
 from actionlib_msgs.msg import GoalStatus
 from set_clock import SetClock
 
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.base.clock import WallClock
 from nao_library_modules.behaviors import bind, read
 from nao_library_modules.behaviors.behavior_errors import NoSuchBehavior
 from nao_library_modules.behaviors.execution import Execution
 from nao_library_modules.behaviors.server_functions import FunctionTables
+from nao_library_modules.core.waiting import CancellationToken, WallClock
 from nao_library_modules.process_modules import Fluent, wait_until
 from nao_library_modules.process_modules.failures import ActionlibActionTimedOut
 from nao_library_modules.process_modules.plan_action_client import ActionEnd

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal
 from nao_library_modules.behaviors import BehaviorError, check, read
 from nao_library_modules.behaviors.checking import preview_of, waits_of
 from nao_library_modules.behaviors.model import GoalNode, Pause, SequenceNode, servers_in, walk
 from nao_library_modules.behaviors.server_functions import FunctionTables, NotDescribed
+from nao_library_modules.core.errors import BadGoal
 from nao_library_msgs.msg import ArgumentDescription, FunctionDescription
 from nao_library_msgs.srv import DescribeFunctionsResponse
 

@@ -11,8 +11,6 @@ import pytest
 from actionlib_msgs.msg import GoalStatus
 
 from nao_library_actions.msg import NaoLedGoal, NaoMotionGoal
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors import (
     BehaviorError,
     BehaviorStore,
@@ -40,6 +38,8 @@ from nao_library_modules.behaviors.model import (
 from nao_library_modules.behaviors.parameters import BadExpression, escaped, names_in, substitute
 from nao_library_modules.behaviors.server_functions import NAMES, FunctionTables, fields_of, message_of
 from nao_library_modules.behaviors.strict_yaml import dump, load
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.files import config_file
 from nao_library_msgs.msg import LedFunction, MotionFunction
 
 GUIDE = (Path(__file__).parents[3] / "docs" / "behaviors.md").read_text(encoding="utf-8")

@@ -5,13 +5,12 @@ from __future__ import annotations
 import pytest
 from wrong_behaviors import GOOD, LINE, START, WRONG, wrong_text
 
-from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors import BehaviorError, BehaviorStore, check, problems_of, read
 from nao_library_modules.behaviors.checking import ask_nobody, preview_facts
-from nao_library_modules.functions.check_service import CheckService, NotValidated, check_request, read_response
-from nao_library_modules.functions.goal_checks import GoalCheck, GoalProblem
-from nao_library_modules.functions.offline_module import offline_module
-from nao_library_modules.functions.server_types import server_type
+from nao_library_modules.core.describe import CheckService, NotValidated, check_request, read_response
+from nao_library_modules.core.files import config_file
+from nao_library_modules.core.goal_checks import GoalCheck, GoalProblem, offline_module
+from nao_library_modules.core.server_types import server_type
 
 
 @pytest.fixture

@@ -5,12 +5,11 @@ from __future__ import annotations
 import pytest
 
 from nao_library_actions.msg import NaoLedFeedback
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.base.clock import WallClock
-from nao_library_modules.base.errors import RobotLost
 from nao_library_modules.behaviors import StepFailed
 from nao_library_modules.behaviors.execution import Execution
 from nao_library_modules.behaviors.server_functions import NAMES
+from nao_library_modules.core.errors import RobotLost
+from nao_library_modules.core.waiting import CancellationToken, WallClock
 from nao_library_modules.process_modules.failures import ActionlibActionTimedOut, PlanFailure
 
 

@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from nao_library_modules.cli import goals
 from nao_library_modules.cli.app import nao
 from nao_library_modules.cli.output import StackMissing
-from nao_library_modules.functions.describe_offline import offline_servers
+from nao_library_modules.core.describe import offline_servers
 from nao_library_msgs.msg import FunctionResult
 
 DESCRIBE = "/describe"

@@ -6,7 +6,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 
 from nao_library_modules.cli.commands.server_commands import LEVELS, silent_robots, status_lines
-from nao_library_modules.ros.health import connection_report
+from nao_library_modules.core.health import connection_report
 from naoqi.limits import Timing
 
 ADDRESS = "10.0.0.7:9559"

@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.functions.describe_offline import offline_servers
-from nao_library_modules.functions.server_types import server_type
+from nao_library_modules.core.describe import offline_servers
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.server_types import server_type
 from nao_library_modules.studies import commands
 from nao_library_modules.studies.commands import FileReader
 from nao_library_msgs.srv import DescribeFunctionsRequest

@@ -21,8 +21,8 @@ from nao_library_modules.console.robots.forms import (
     typed_value,
     value_of,
 )
-from nao_library_modules.functions.describe_offline import offline_servers
-from nao_library_modules.functions.server_types import server_type
+from nao_library_modules.core.describe import offline_servers
+from nao_library_modules.core.server_types import server_type
 from nao_library_msgs.srv import DescribeFunctionsRequest
 
 

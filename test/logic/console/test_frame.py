@@ -6,8 +6,8 @@ import re
 
 from console_overlays import OVERLAYS, overlays_in_code, paths_in_code
 
-from nao_library_modules.base.paths import config_file
 from nao_library_modules.console.access.connections import PERIOD
+from nao_library_modules.core.files import config_file
 
 TOLD_WITHIN = 2.0
 """s, after which a page says that its console does not answer."""

@@ -22,7 +22,7 @@ from nao_library_modules.console.view.robot_state import (
     state_text,
 )
 from nao_library_modules.console.view.senses import SENTENCE, Latched, Senses
-from nao_library_modules.ros.health import connection_report, recordings_report
+from nao_library_modules.core.health import connection_report, recordings_report
 from nao_sim_bridge.ros import side
 from naoqi.limits import DEFAULT_TIMING
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from nao_library_modules.base.errors import NaoError
+from nao_library_modules.core.errors import NaoError
 from nao_library_modules.studies import trial_recordings as module
 from nao_library_modules.studies.trial_recordings import BagRecorder, end_bag, is_bag
 

@@ -14,7 +14,7 @@ from logged_trial import LoggedTrial
 from played_study import LIMIT, Trial
 from scripted_disk import ScriptedDisk
 
-from nao_library_modules.base.whole_file import FileTrouble
+from nao_library_modules.core.files import FileTrouble
 from nao_library_modules.studies import studies as module
 from nao_library_modules.studies import trial_log as log_module
 from nao_library_modules.studies import trial_runner as runner_module

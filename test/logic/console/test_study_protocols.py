@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 from played_study import PROTOCOL
 
-from nao_library_modules.base.paths import config_file
+from nao_library_modules.core.files import config_file
 from nao_library_modules.studies.commands import ConsoleFileError
 from nao_library_modules.studies.protocol import StudyCondition
 from nao_library_modules.studies.protocol_reader import read_protocol, read_protocol_file

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors import BehaviorStore
 from nao_library_modules.behaviors.server_functions import FunctionTables
 from nao_library_modules.console.timeline.document import BehaviorDocument, EditRefused
 from nao_library_modules.console.timeline.tracks import BY_ORDER, BY_TIME, FIXED, RunView, tracks_of
+from nao_library_modules.core.files import config_file
 
 TEXT = """\
     help: A test.   # kept

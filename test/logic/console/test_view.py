@@ -28,7 +28,7 @@ from nao_library_modules.console.view.live_view import (
 from nao_library_modules.console.view.robot_model import mesh_path, read_model
 from nao_library_modules.console.view.robot_state import BodyStatus, read_status
 from nao_library_modules.console.view.senses import AGAIN, Sightings, clicked, felt, heard, said, touched
-from nao_library_modules.nao.touch_names import SENSORS
+from nao_library_modules.core.nao_facts import SENSORS
 from nao_library_modules.studies.robot_events import EventStream
 from naoqi.errors import NaoError
 

@@ -12,8 +12,6 @@ from types import SimpleNamespace
 import pytest
 from click.testing import CliRunner
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.paths import config_file
 from nao_library_modules.cli.app import nao
 from nao_library_modules.console.access.connections import LATE, console_time
 from nao_library_modules.console.pages.wizard_page import WizardParts
@@ -34,8 +32,10 @@ from nao_library_modules.console.wizard.layout import (
     text_colour,
 )
 from nao_library_modules.console.wizard.layout_file import CurrentLayout, LayoutFile, doubts
-from nao_library_modules.functions.describe_offline import offline_servers
-from nao_library_modules.nao.gaze import load_head
+from nao_library_modules.core.describe import offline_servers
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.files import config_file
+from nao_library_modules.core.nao_facts import load_head
 from nao_library_modules.studies.commands import ConsoleFileError, NotThere, Stopped
 from nao_library_modules.studies.robot_events import EventStream
 from nao_library_msgs.srv import DescribeFunctionsRequest

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_library_modules.base.paths import config_file
 from nao_library_modules.behaviors.strict_yaml import load
 from nao_library_modules.console.timeline import yaml_places as places
+from nao_library_modules.core.files import config_file
 
 TEXT = textwrap.dedent("""\
     # What it is about.

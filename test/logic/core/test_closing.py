@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from nao_library_modules.processes.closing import close_all
+from nao_library_modules.core.processes import close_all
 from nao_sim_bridge.base.closing import close_all as close_simulator
 
 LIMIT = 60.0
@@ -50,7 +50,7 @@ def test_a_step_that_is_given_up_may_end_in_the_time_of_all():
 
 
 def test_a_process_ends_whatever_its_threads_wait_for():
-    program = "from nao_library_modules.processes.closing import exit_in_time; import threading; exit_in_time(0.1)"
+    program = "from nao_library_modules.core.processes import exit_in_time; import threading; exit_in_time(0.1)"
     done = subprocess.run(
         [sys.executable, "-c", f"{program}; threading.Event().wait()"],
         timeout=LIMIT,

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from nao_library_modules.base import whole_file as of_the_library
+from nao_library_modules.core import files as of_the_library
 from nao_sim_bridge.base import whole_file as of_the_simulator
 
 TOKEN = "5a" * 16

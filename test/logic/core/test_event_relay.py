@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from nao_library_modules.robot.event_relay import EventRelay
+from nao_library_modules.core.robot_events import EventRelay
 
 
 def test_one_event_that_cannot_be_subscribed_again_keeps_no_other_from_it(caplog):

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.robot.event_times import EventTimes
-from nao_library_modules.robot.robot_clock import RobotClock
+from nao_library_modules.core.robot_events import EventTimes, RobotClock
 from naoqi.errors import RobotError
 
 TOUCHED = "FrontTactilTouched"

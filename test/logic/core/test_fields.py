@@ -10,16 +10,16 @@ import readme_tables
 from genpy import Duration
 
 from nao_library_actions.msg import NaoLedAction
-from nao_library_modules.base.errors import BadGoal, FunctionFailed
 from nao_library_modules.behaviors.server_functions import FunctionTables
 from nao_library_modules.cli import stack
 from nao_library_modules.cli.stack import described_by_code
-from nao_library_modules.functions import fields
-from nao_library_modules.functions.chain import BoundFunction, FunctionChain, checked_by, declared_fields
-from nao_library_modules.functions.describe import Description
-from nao_library_modules.functions.fields import Annotated, Field, fields_of
-from nao_library_modules.functions.server_types import server_type
-from nao_library_modules.lights.server import NaoLights
+from nao_library_modules.core import fields
+from nao_library_modules.core.chain import BoundFunction, FunctionChain, checked_by, declared_fields
+from nao_library_modules.core.describe import Description
+from nao_library_modules.core.errors import BadGoal, FunctionFailed
+from nao_library_modules.core.fields import Annotated, Field, fields_of
+from nao_library_modules.core.server_types import server_type
+from nao_library_modules.lights.lights_server import NaoLights
 from nao_library_msgs.msg import LedFunction
 
 NAN, INF = float("nan"), float("inf")

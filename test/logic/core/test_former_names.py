@@ -7,7 +7,7 @@ from importlib import import_module
 import pytest
 
 from nao_library_modules import FORMER, process_modules, vision
-from nao_library_modules.base.doors import door
+from nao_library_modules.core.lazy import door
 
 LIBRARY = "nao_library_modules"
 SERVERS = {

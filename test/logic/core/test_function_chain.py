@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal, FunctionFailed, UnknownFunction
-from nao_library_modules.functions.chain import FunctionChain, checked_by, seconds
+from nao_library_modules.core.chain import FunctionChain, checked_by, seconds
+from nao_library_modules.core.errors import BadGoal, FunctionFailed, UnknownFunction
 
 
 class Message:

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.processes.supervisor import Status, SupervisorState
-from nao_library_modules.ros.health import GoalCounter, Level, connection_report, launch_report
+from nao_library_modules.core.health import GoalCounter, Level, connection_report, launch_report
+from nao_library_modules.core.processes import Status, SupervisorState
 from naoqi.limits import Timing
 
 SILENT = "silent: goals and calls wait, until the robot is lost after 10 s without an answer"

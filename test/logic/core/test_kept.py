@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nao_library_modules.base.kept import Kept
+from nao_library_modules.core.files import Kept
 from nao_library_modules.driver.walk.nao_walker import WalkInhibition
 
 

@@ -8,16 +8,16 @@ from unittest.mock import Mock
 
 import pytest
 
-from nao_library_modules.processes.launch_program import _reporting, _Reports
-from nao_library_modules.processes.launcher import (  # fmt: skip
+from nao_library_modules.core.processes import (
     BadLaunchPath,
+    SupervisorState,
     declared_arguments,
     find_launch_file,
     launch_arguments,
     launch_supervisor,
 )
-from nao_library_modules.processes.supervisor import SupervisorState
 from nao_library_modules.ros import node
+from nao_library_modules.ros.launch_program import _reporting, _Reports
 from nao_library_modules.ros.node import launch_path, robot_address, robot_parser
 from naoqi.errors import NaoError
 

@@ -9,25 +9,21 @@ import pytest
 from boundary import EXAMPLES, variants
 from trajectory_msgs.msg import JointTrajectoryPoint
 
-from nao_library_modules.base import limits
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.field_checks import require_rising
+from nao_library_modules.core import fields
+from nao_library_modules.core.chain import fields_taken
+from nao_library_modules.core.describe import offline_servers, read_fields
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.fields import fields_of, require_rising
+from nao_library_modules.core.goal_checks import check_goals, offline_module
+from nao_library_modules.core.joint_trajectory import expand_names, read_trajectory
+from nao_library_modules.core.memory_functions import MemoryFunctions
+from nao_library_modules.core.server_types import server_type
 from nao_library_modules.driver.joints.planar_frames import read_path
 from nao_library_modules.driver.walk.nao_footsteps import read_steps
-from nao_library_modules.functions.chain import fields_taken
-from nao_library_modules.functions.describe_offline import offline_servers
-from nao_library_modules.functions.fields import fields_of
-from nao_library_modules.functions.goal_checks import check_goals
-from nao_library_modules.functions.joint_trajectory import expand_names, read_trajectory
-from nao_library_modules.functions.memory_functions import MemoryFunctions
-from nao_library_modules.functions.message_fields import read_fields
-from nao_library_modules.functions.offline_module import offline_module
-from nao_library_modules.functions.server_types import server_type
-from nao_library_modules.motion.facts import MotionFacts
-from nao_library_modules.motion.gait import GaitRange, places, read_gait, steps
-from nao_library_modules.motion.joints import _key_angles
-from nao_library_modules.motion.stiffness import StiffnessFunctions
+from nao_library_modules.motion.joint_motion import StiffnessFunctions, _key_angles
+from nao_library_modules.motion.motion_plan import MotionFacts
 from nao_library_modules.motion.walk import WalkFunctions
+from nao_library_modules.motion.walk_fields import GaitRange, places, read_gait, steps
 from nao_library_msgs.msg import StepTarget
 
 OF_THE_ROBOT = {("setParameter", "values.0"), ("killTask", "values.0")}
@@ -35,7 +31,7 @@ OF_THE_ROBOT = {("setParameter", "values.0"), ("killTask", "values.0")}
 
 
 def test_every_declared_bound_is_a_number_and_tells_where_it_holds():
-    for row in limits.table():
+    for row in fields.table():
         assert math.isfinite(row.lowest) and row.lowest < row.highest < 1e12 and row.where, row
 
 
@@ -60,7 +56,7 @@ TIMES = [0.01 * i for i in range(1, 20_002)]
             "times",
             lambda: StiffnessFunctions._check_interpolation(STIFFNESS, ["Body"], [0.5] * len(TIMES), TIMES),
         ),
-        ("times", lambda: require_rising("times", TIMES, limits.limit("duration"), limits.limit("poses"))),
+        ("times", lambda: require_rising("times", TIMES, fields.limit("duration"), fields.limit("poses"))),
         ("values", lambda: places([0.0] * 30_003)),
         ("names", lambda: STEPS["names"].require("names", ["LLeg", "RLeg"] * 501)),
         ("footsteps", lambda: read_steps([StepTarget()] * 1001)),

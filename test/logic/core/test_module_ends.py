@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from recorded_node import RecordedNode
 
-from nao_library_modules.functions.known_robot import KnownRobot
-from nao_library_modules.functions.server_types import ACTIONS, server_type
-from nao_library_modules.server.nao_basic import NaoBasic
+from nao_library_modules.core.goal_checks import KnownRobot
+from nao_library_modules.core.nao_basic import NaoBasic
+from nao_library_modules.core.server_types import ACTIONS, server_type
 
 
 @pytest.mark.parametrize("name", ACTIONS)

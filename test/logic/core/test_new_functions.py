@@ -12,7 +12,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 import nao_library_msgs.msg
 import nao_library_msgs.srv
 from nao_library_actions import msg as actions
-from nao_library_modules.server import new_functions as new
+from nao_library_modules.core import new_functions as new
 from nao_library_msgs.msg import AudioOutFunction, LedFunction, MotionFunction
 
 

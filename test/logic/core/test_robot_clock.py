@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.robot.robot_clock import FRESH, RobotClock
+from nao_library_modules.core.robot_events import FRESH, RobotClock
 
 
 class Memory:

@@ -16,9 +16,9 @@ from actionlib_msgs.msg import GoalID, GoalStatus
 from diagnostic_updater import DiagnosticStatusWrapper
 from geometry_msgs.msg import TransformStamped
 
-from nao_library_modules.ros import diagnostics, robot_frames, server_node
+from nao_library_modules.core.health import Level, Report
+from nao_library_modules.ros import diagnostics, server_node, time_and_frames
 from nao_library_modules.ros.action_server import ActionServer, Results, can_have_noted, unless_closed
-from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
 
 
@@ -140,10 +140,10 @@ class Buffer(tf2_ros.BufferCore):
 
 @pytest.fixture
 def frames(monkeypatch):
-    monkeypatch.setattr(robot_frames.tf2_ros, "TransformListener", lambda buffer: None)
-    monkeypatch.setattr(robot_frames.tf2_ros, "Buffer", Buffer)
-    monkeypatch.setattr(robot_frames.rospy, "search_param", lambda name: None)
-    return robot_frames.RobotFrames()
+    monkeypatch.setattr(time_and_frames.tf2_ros, "TransformListener", lambda buffer: None)
+    monkeypatch.setattr(time_and_frames.tf2_ros, "Buffer", Buffer)
+    monkeypatch.setattr(time_and_frames.rospy, "search_param", lambda name: None)
+    return time_and_frames.RobotFrames()
 
 
 def test_a_frame_is_seen_from_the_robot(frames):

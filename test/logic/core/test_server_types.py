@@ -8,19 +8,19 @@ import pytest
 import rospy
 from actionlib.msg import TestAction
 
-from nao_library_modules.base.document_names import names_of
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.functions.chain import OF_THE_SERVER
-from nao_library_modules.functions.memory_functions import MemoryFunctions
-from nao_library_modules.functions.server_types import (
+from nao_library_modules.core.chain import OF_THE_SERVER
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.memory_functions import MemoryFunctions
+from nao_library_modules.core.nao_basic import NaoBasic
+from nao_library_modules.core.server_types import (
     ACTIONS,
     described_type,
     installed_message,
+    names_of,
     require_fields,
     server_type,
     servers_among,
 )
-from nao_library_modules.server.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
 from naoqi.errors import NaoError
 

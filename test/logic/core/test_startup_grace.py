@@ -10,10 +10,9 @@ from genpy import Duration
 from recorded_node import RecordedNode
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules.ros import startup_grace
-from nao_library_modules.ros.startup_grace import require_start_patience
-from nao_library_modules.server import nao_basic
-from nao_library_modules.server.nao_basic import NaoBasic
+from nao_library_modules.core import nao_basic, robot
+from nao_library_modules.core.nao_basic import NaoBasic
+from nao_library_modules.core.robot import require_start_patience
 from nao_library_msgs.msg import LedFunction
 from nao_library_msgs.srv import DescribeFunctionsRequest
 from naoqi.errors import NaoError, RobotUnreachable
@@ -115,7 +114,7 @@ def test_the_first_goal_waits_for_the_robot_and_says_so(absent, caplog):
 def now(monkeypatch):
     """The time of the computer as the grace sees it, s: what is set here."""
     time = [0.0]
-    monkeypatch.setattr(startup_grace, "time", SimpleNamespace(monotonic=lambda: time[0]))
+    monkeypatch.setattr(robot, "time", SimpleNamespace(monotonic=lambda: time[0]))
     return time
 
 

@@ -10,8 +10,7 @@ import threading
 
 import pytest
 
-from nao_library_modules.processes.process_tree import descendants, identify
-from nao_library_modules.processes.supervisor import RestartTiming, Supervisor, SupervisorState
+from nao_library_modules.core.processes import RestartTiming, Supervisor, SupervisorState, descendants, identify
 
 LIMIT = 60.0
 QUICK = RestartTiming(first_delay=0.01, longest_delay=0.04, interrupt=LIMIT, terminate=0.2, kill=LIMIT)
@@ -111,7 +110,7 @@ def test_stopping_during_the_delay_does_not_start_it_again(supervise, pipe):
 def test_it_ends_when_the_process_that_supervises_it_is_killed(pipe):
     program = SAY + "say(os.getpid()); " + FOREVER
     owner = (
-        "import sys, threading; from nao_library_modules.processes.supervisor import Supervisor; "
+        "import sys, threading; from nao_library_modules.core.processes import Supervisor; "
         "Supervisor([sys.executable, '-c', *sys.argv[1:]], 'the program').start(); threading.Event().wait()"
     )
     supervising = subprocess.Popen([sys.executable, "-c", owner, program, pipe.path])

@@ -8,10 +8,9 @@ import os
 import numpy as np
 import pytest
 
-from nao_library_modules.base.answers import json_of, text_of, values_of
-from nao_library_modules.base.errors import LONGEST, BadGoal, FunctionFailed
-from nao_library_modules.base.suggestion import closest, did_you_mean
-from nao_library_modules.base.whole_file import FileTrouble, write_whole
+from nao_library_modules.core.errors import LONGEST, BadGoal, FunctionFailed, closest, did_you_mean
+from nao_library_modules.core.files import FileTrouble, write_whole
+from nao_library_modules.core.memory_functions import json_of, text_of, values_of
 
 KNOWN = ["setIntensity", "setColor", "getColor", "LeftFaceLeds", "LeftFaceLed1"]
 

@@ -8,10 +8,9 @@ import pytest
 import rospy
 from rospy import rostime
 
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.base.clock import WallClock
-from nao_library_modules.base.errors import Preempted, RobotLost
-from nao_library_modules.ros.ros_clock import RosClock
+from nao_library_modules.core.errors import Preempted, RobotLost
+from nao_library_modules.core.waiting import CancellationToken, WallClock
+from nao_library_modules.ros.time_and_frames import RosClock
 
 LIMIT = 60.0
 LOST = "10.0.0.7:9559", "no answer"

@@ -11,9 +11,9 @@ from std_msgs.msg import String
 
 from nao_library_actions.msg import JointTrajectoryActionFeedback
 from nao_library_modules.cli.app import nao
-from nao_library_modules.nao.type_names import OURS, THEIRS
 from nao_library_modules.ros.bag_types import convert_bag, read_bag
 from nao_library_modules.ros.driver_types import as_theirs
+from nao_library_modules.ros.type_names import OURS, THEIRS
 from nao_library_msgs.msg import Bumper, JointAnglesWithSpeed, TactileTouch
 from naoqi.errors import NaoError
 

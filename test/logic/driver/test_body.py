@@ -9,18 +9,17 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.paths import config_file
+from nao_library_modules.core import health as reports
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.files import config_file
+from nao_library_modules.core.health import BATTERY_FLAGS, Level, Thresholds, battery_report, network_reports
+from nao_library_modules.core.joint_trajectory import H25_BODY
+from nao_library_modules.core.poses import BadPose, Pose, UnknownPose, built_in, library, pose_table
 from nao_library_modules.driver.joints.joint_sensors import JointSensors, read_motors, torque_per_ampere
 from nao_library_modules.driver.life.nao_leds import Blinks, joined, shown
 from nao_library_modules.driver.sensors.nao_diagnostic_updater import KEYS, facts_of, info_fields
 from nao_library_modules.driver.sensors.nao_sonar import range_of
 from nao_library_modules.driver.sensors.nao_tactile import keys_of, read_foot
-from nao_library_modules.functions.joint_trajectory import H25_BODY
-from nao_library_modules.nao.pose_tables import BadPose, Pose, UnknownPose, built_in, library, pose_table
-from nao_library_modules.ros import body_reports as reports
-from nao_library_modules.ros.body_reports import BATTERY_FLAGS, Thresholds, battery_report, network_reports
-from nao_library_modules.ros.health import Level
 from nao_library_msgs.msg import RobotInfo
 from naoqi.errors import NaoError
 

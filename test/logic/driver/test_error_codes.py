@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_modules.base.error_codes import CodedError, ErrorCode, code_in, with_code
+from nao_library_modules.core.errors import CodedError, ErrorCode, code_in, with_code
 from nao_library_modules.driver.joints.pose_manager import PostureMissed
 from nao_library_modules.driver.walk.walk_commands import Stop, Superseded, WalkEnded
 from nao_library_modules.ros.nao_robot_driver import arrived, posture_reached

@@ -11,10 +11,10 @@ from genpy import Duration
 from geometry_msgs.msg import Pose2D, PoseStamped, Quaternion, Transform, Twist, Vector3
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.field_checks import number_parameter
-from nao_library_modules.base.limits import limit
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.fields import limit, number_parameter
+from nao_library_modules.core.geometry import Place
+from nao_library_modules.core.joint_trajectory import read_trajectory
 from nao_library_modules.driver.base import reconfigure
 from nao_library_modules.driver.joints.planar_frames import read_place, read_transform
 from nao_library_modules.driver.life.nao_leds import Blinks
@@ -23,7 +23,6 @@ from nao_library_modules.driver.path_follower.path_courses import FollowerSettin
 from nao_library_modules.driver.teleop.teleop_nao_joy import JoyControl, JoySettings
 from nao_library_modules.driver.walk.nao_footsteps import read_steps
 from nao_library_modules.driver.walk.walk_commands import read_gait_config, read_step, read_target, read_velocity
-from nao_library_modules.functions.joint_trajectory import read_trajectory
 from nao_library_msgs.msg import StepTarget
 from naoqi.errors import NaoError
 

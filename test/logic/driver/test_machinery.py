@@ -7,17 +7,15 @@ from unittest.mock import MagicMock
 
 import pytest
 
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.base.clock import WallClock
-from nao_library_modules.base.error_codes import ErrorCode, code_in
-from nao_library_modules.base.errors import BadGoal, Preempted, RobotLost
+from nao_library_modules.core.errors import BadGoal, ErrorCode, Preempted, RobotLost, code_in
+from nao_library_modules.core.waiting import CancellationToken, WallClock
 from nao_library_modules.driver.base import driver_node, reconfigure
 from nao_library_modules.driver.base.driver_node import LazyTopic
 from nao_library_modules.driver.base.polling import Rate
 from nao_library_modules.driver.base.reconfigure import ReconfigureField
 from nao_library_modules.driver.joints.nao_joint_states import NaoJointStates
 from nao_library_modules.driver.joints.pose_manager import PostureMissed
-from nao_library_modules.ros.concurrent_action_server import FULL, ConcurrentActionServer, GoalOutcome
+from nao_library_modules.ros.action_server import FULL, ConcurrentActionServer, GoalOutcome
 from naoqi.errors import NaoError
 
 PATIENCE = 60.0

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rosgraph.names import is_legal_name
 
-from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.memory_functions import parse_assignment, parse_pairs
 from nao_library_modules.driver.memory.memory_rules import (
     MemoryRule,
     MemoryRules,
@@ -25,7 +26,6 @@ from nao_library_modules.driver.memory.memory_rules import (
     type_of,
 )
 from nao_library_modules.driver.memory.memory_watch import WatchedKey
-from nao_library_modules.functions.memory_functions import parse_assignment, parse_pairs
 from naoqi.errors import NaoError
 
 KNOWN = ["Battery/Charge", "Battery/Current", "Head/Front", "Head/Rear"]

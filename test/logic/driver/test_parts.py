@@ -8,12 +8,12 @@ from types import SimpleNamespace
 
 import pytest
 
+from nao_library_modules.core.health import Level, Report
 from nao_library_modules.driver import nao_driver
 from nao_library_modules.driver.joints import nao_joint_states
 from nao_library_modules.driver.nao_driver import PARTS, Driver, DriverPart, chosen, part_class
 from nao_library_modules.driver.sensors import nao_sonar, nao_tactile
 from nao_library_modules.driver.walk import naoqi_moveto
-from nao_library_modules.ros.health import Level, Report
 from naoqi.errors import NaoError
 
 

@@ -13,10 +13,9 @@ import tf2_ros
 from geometry_msgs.msg import PoseStamped, Quaternion, TransformStamped
 from nav_msgs.msg import Path
 
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.base.errors import BadGoal, Preempted
-from nao_library_modules.base.places import ORIGIN, Place
-from nao_library_modules.base.rotations import from_roll_pitch_yaw
+from nao_library_modules.core.errors import BadGoal, Preempted
+from nao_library_modules.core.geometry import ORIGIN, Place, from_roll_pitch_yaw
+from nao_library_modules.core.waiting import CancellationToken
 from nao_library_modules.driver.joints import planar_frames
 from nao_library_modules.driver.joints.planar_frames import (
     PlanarFrames,

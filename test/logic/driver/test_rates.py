@@ -8,9 +8,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from nao_library_modules.core.health import Level
 from nao_library_modules.driver.base import polling
 from nao_library_modules.driver.base.polling import KEPT_FOR, Polling, RateMeter
-from nao_library_modules.ros.health import Level
 
 ASKED = 30.0
 HANGS = 60.0

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from std_msgs.msg import Header
 
-from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.core.errors import BadGoal
 from nao_library_modules.driver.audio import nao_microphone as blocks
 from nao_library_modules.driver.audio.nao_audio import file_on_robot, read_direction, read_recording, read_volume
 from nao_library_modules.driver.audio.nao_microphone import BlockClock, channel_map, read_samples
@@ -22,7 +22,7 @@ from nao_library_modules.driver.audio.robot_speech import (
 from nao_library_modules.driver.audio.speech_recognition import read_heard
 from nao_library_modules.driver.sensors import nao_vision as vision
 from nao_library_modules.driver.sensors.nao_vision import Face, MovementReader, to_face, to_landmarks, to_movement
-from nao_library_modules.vision.detection.events import FACE, LANDMARK, Detection, DetectionArray
+from nao_library_modules.vision.detections import FACE, LANDMARK, Detection, DetectionArray
 from nao_library_msgs.msg import FaceDetected
 from naoqi.errors import NaoError
 

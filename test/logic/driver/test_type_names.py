@@ -9,10 +9,10 @@ import pytest
 from older_packages import make_older_packages
 
 from nao_library_actions import msg as actions
-from nao_library_modules.nao import type_names as names_of_types
-from nao_library_modules.nao.type_names import AUTO, OURS, THEIRS, Choice, choose, generated, main, type_names
 from nao_library_modules.ros import driver_types
+from nao_library_modules.ros import type_names as names_of_types
 from nao_library_modules.ros.driver_types import as_theirs, spoken
+from nao_library_modules.ros.type_names import AUTO, OURS, THEIRS, Choice, choose, generated, main, type_names
 from nao_library_msgs import msg, srv
 from naoqi.errors import NaoError
 

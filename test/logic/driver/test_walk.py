@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 from rospy import Time
 
 from almath import Pose2D, areTwoBoxesInCollision, computeBox
-from nao_library_modules.base.clock import WallClock
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.kept import Kept
-from nao_library_modules.base.places import Place
-from nao_library_modules.base.rotations import from_roll_pitch_yaw, product, rotate
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.files import Kept
+from nao_library_modules.core.geometry import Place, from_roll_pitch_yaw, product, rotate
+from nao_library_modules.core.health import Level
+from nao_library_modules.core.waiting import WallClock
 from nao_library_modules.driver.joints import nao_joint_states as messages
 from nao_library_modules.driver.joints.joint_controller import InitialStiffness
 from nao_library_modules.driver.joints.joint_sensors import (
@@ -51,7 +51,6 @@ from nao_library_modules.driver.walk.walk_commands import (
     read_step,
 )
 from nao_library_modules.driver.walk.walker import Walker
-from nao_library_modules.ros.health import Level
 from nao_library_msgs.msg import StepTarget
 from naoqi.errors import NaoError
 

@@ -7,11 +7,19 @@ from pathlib import Path
 
 import pytest
 
-from nao_library_modules.base.colours import from_integer, named_colours, parse_colour, read_colours, to_integer
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.lights import goals as light_goals
-from nao_library_modules.lights.state import light_intensity, mean_colour, mean_intensity, memory_keys
-from nao_library_modules.nao.light_names import LightNames, UnknownLight, colour_part
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.lights_and_colours import (
+    LightNames,
+    UnknownLight,
+    colour_part,
+    from_integer,
+    named_colours,
+    parse_colour,
+    read_colours,
+    to_integer,
+)
+from nao_library_modules.lights import light_fields as light_goals
+from nao_library_modules.lights.led_access import light_intensity, mean_colour, mean_intensity, memory_keys
 
 ROOT = Path(__file__).resolve().parents[3]
 TWO = ["LeftFaceLeds", "RightFaceLeds"]

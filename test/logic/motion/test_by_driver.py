@@ -7,10 +7,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.base.places import Place
-from nao_library_modules.functions.joint_trajectory import KeyFrames
-from nao_library_modules.motion.by_driver import RobotByDriver
-from nao_library_modules.owners.line import OwnerLine
+from nao_library_modules.core.geometry import Place
+from nao_library_modules.core.joint_trajectory import KeyFrames
+from nao_library_modules.core.process_owners import OwnerLine
+from nao_library_modules.motion.motion_server import RobotByDriver
 
 FRAMES = KeyFrames(("HeadYaw", "HeadPitch"), (0.5, 1.25), ((0.1, 0.2), (0.0, -0.1)), ((0.3, 0.0), (-0.2, 0.1)))
 YAW = ["HeadYaw"]

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_library_modules.base.places import ORIGIN, Place, wrapped, yaw_of_quaternion
-from nao_library_modules.nao.gaze import load_head, look_at
+from nao_library_modules.core.geometry import ORIGIN, Place, wrapped, yaw_of_quaternion
+from nao_library_modules.core.nao_facts import load_head, look_at
 
 HEAD = load_head()
 QUARTER = math.pi / 2

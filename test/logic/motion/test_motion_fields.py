@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.functions.chain import declared_fields
-from nao_library_modules.motion.server import NaoMotion
+from nao_library_modules.core.chain import declared_fields
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.motion.motion_server import NaoMotion
 from nao_library_msgs.msg import MotionFunction
 
 NAN, INF = math.nan, math.inf

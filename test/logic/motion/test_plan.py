@@ -6,12 +6,10 @@ import math
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal, NotFit
-from nao_library_modules.base.places import Place
-from nao_library_modules.motion.facts import JointLimits, JointState, MotionFacts, one_each
-from nao_library_modules.motion.gait import GaitRange, read_gait, walk_time
-from nao_library_modules.motion.health import Health
-from nao_library_modules.motion.plan import MotionPlan
+from nao_library_modules.core.errors import BadGoal, NotFit
+from nao_library_modules.core.geometry import Place
+from nao_library_modules.motion.motion_plan import Health, JointLimits, JointState, MotionFacts, MotionPlan, one_each
+from nao_library_modules.motion.walk_fields import GaitRange, read_gait, walk_time
 
 HEAD = ["HeadYaw", "HeadPitch"]
 LIMITS = {"HeadYaw": (-2.0, 2.0, 8.0), "HeadPitch": (-0.7, 0.5, 7.0), "LShoulderRoll": (-0.3, 1.3, 7.0),

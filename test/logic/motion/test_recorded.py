@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.motion.recorded_motion import RecordedMotion, motion_of, recorded
-from nao_library_modules.motion.store import MotionStore
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.motion.recorded_motion import MotionStore, RecordedMotion, motion_of, recorded
 
 MOTION = RecordedMotion(("HeadYaw", "LElbowRoll", "RHand"), (0.0, 1.0), ((0.5, -1.0, 0.0), (0.0, -0.5, 1.0)))
 

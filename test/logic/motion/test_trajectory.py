@@ -7,17 +7,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.paths import config_file
-from nao_library_modules.functions.joint_trajectory import (
-    H25_BODY,
-    check_range,
-    expand_names,
-    one_each,
-    read_trajectory,
-)
-from nao_library_modules.motion.store import MotionStore
-from nao_library_modules.nao.xap import BadPoseFile, read_poses
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.files import config_file
+from nao_library_modules.core.joint_trajectory import H25_BODY, check_range, expand_names, one_each, read_trajectory
+from nao_library_modules.core.poses import BadPoseFile, read_poses
+from nao_library_modules.motion.recorded_motion import MotionStore
 from nao_sim_bridge.control.joints.curves import SmoothCurve
 from nao_sim_bridge.model.model_reader import load_model
 

@@ -10,8 +10,7 @@ from unittest.mock import Mock
 
 import pytest
 
-from nao_library_modules.owners.line import OwnerLine, place
-from nao_library_modules.owners.watch import OwnerWatch
+from nao_library_modules.core.process_owners import OwnerLine, OwnerWatch, place
 
 DEFAULT_TIMEOUT = 0.05
 """s that sockets of this process wait, if they do not say otherwise; rospy gives them 60 s."""
@@ -46,7 +45,7 @@ def test_what_is_set_going_again_later_is_told_again():
 
 
 def test_another_user_who_has_the_place_of_the_watch_is_told_nothing(monkeypatch, caplog):
-    monkeypatch.setattr("nao_library_modules.owners.line.peer_of", lambda _: (7, 12345))
+    monkeypatch.setattr("nao_library_modules.core.process_owners.peer_of", lambda _: (7, 12345))
     address = f"line of {os.getpid()}"
     with socket.socket(socket.AF_UNIX) as other:
         other.bind(place(address))

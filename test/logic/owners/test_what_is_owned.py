@@ -7,8 +7,7 @@ import json
 import pytest
 from set_clock import CalledClock
 
-from nao_library_modules.owners.rules import rules
-from nao_library_modules.owners.watch import OwnershipTable
+from nao_library_modules.core.process_owners import OwnershipTable, rules
 
 STOP_WALK = ["ALMotion", "stopMove", []]
 

@@ -11,7 +11,7 @@ from diagnostic_msgs.msg import KeyValue
 
 import nao_library_modules.process_modules as p
 from nao_library_actions.msg import PerformDesignatorGoal
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.geometry import Place
 from nao_library_modules.process_modules import action_rules  # noqa: F401  the rules of the library
 from nao_library_modules.process_modules.action_rules import a_place, a_point, a_position
 from nao_library_modules.process_modules.designator_server import read

@@ -6,7 +6,7 @@ import pytest
 from plan_tools import fails, forever
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.geometry import Place
 from nao_library_modules.process_modules import perception  # noqa: F401  the rules of the library
 from nao_library_modules.process_modules.designators.objects_and_locations import Candidate, register_location_generator
 from nao_library_modules.process_modules.failures import (

@@ -23,7 +23,7 @@ from nao_library_modules.process_modules.plan_action_client import PlanActionCli
 from nao_library_modules.process_modules.projection import compare
 from nao_library_modules.process_modules.robot_link import Chain
 from nao_library_modules.process_modules.trace import COLORS, draw_trace, draw_trace_file
-from nao_library_modules.ros.goal_tracker import GoalTracker
+from nao_library_modules.ros.goal_client import GoalTracker
 from naoqi.errors import NaoError
 
 URDF = (Path(__file__).parents[3] / "nao_sim_bridge/urdf/nao_h25.urdf").read_text(encoding="utf-8")

@@ -10,15 +10,22 @@ from actionlib import CommState
 from actionlib_msgs.msg import GoalStatus
 from fake_goals import FakeActionClient
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.functions.fields import fields_of
-from nao_library_modules.nao import body_devices as devices
-from nao_library_modules.nao.touch_names import GROUPS, SENSORS, names_of, sensors_of
-from nao_library_modules.ros.goal_tracker import GoalTracker
-from nao_library_modules.tactile.fields import require_touch
-from nao_library_modules.tactile.runner import BehaviorClient
-from nao_library_modules.tactile.touch import COUNT, HOLD, PRESS, RELEASE, TouchWatch, WantedTouch
-from nao_library_modules.tactile.waiting import WaitingFunctions
+from nao_library_modules.core import nao_facts as devices
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.fields import fields_of
+from nao_library_modules.core.nao_facts import GROUPS, SENSORS, names_of, sensors_of
+from nao_library_modules.ros.behavior_client import BehaviorClient
+from nao_library_modules.ros.goal_client import GoalTracker
+from nao_library_modules.tactile.readings import WaitingFunctions
+from nao_library_modules.tactile.tactile_fields import (
+    COUNT,
+    HOLD,
+    PRESS,
+    RELEASE,
+    TouchWatch,
+    WantedTouch,
+    require_touch,
+)
 
 HEAD, LEFT_HAND = ["front head", "middle head", "rear head"], ["left hand back", "left hand left", "left hand right"]
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 from camera_topics import CAMERA, OUT, HandClock, Topics, numbered_image
 
-from nao_library_modules.vision.capture.files import VisionFiles
-from nao_library_modules.vision.capture.recorder import VideoRecording, VideoSpec
-from nao_library_modules.vision.capture.stream import Stream
+from nao_library_modules.vision.capture_jobs import Stream, VideoRecording, VideoSpec
+from nao_library_modules.vision.video import VisionFiles
 
 
 @pytest.fixture

@@ -5,16 +5,14 @@ from __future__ import annotations
 import pytest
 from goal_functions import vision as f
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.functions.chain import FunctionChain, declared_fields, fields_taken
-from nao_library_modules.functions.offline_module import offline_module
-from nao_library_modules.vision.capture.settings import SettingFunctions
-from nao_library_modules.vision.capture.snapshots import PictureFunctions
-from nao_library_modules.vision.capture.streaming import StreamingFunctions
-from nao_library_modules.vision.detection.faces import FaceFunctions
-from nao_library_modules.vision.detection.things import DetectionFunctions
-from nao_library_modules.vision.detection.track import TrackingFunctions
-from nao_library_modules.vision.server import NaoVision
+from nao_library_modules.core.chain import FunctionChain, declared_fields, fields_taken
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.goal_checks import offline_module
+from nao_library_modules.vision.camera_functions import PictureFunctions, SettingFunctions
+from nao_library_modules.vision.detectors import DetectionFunctions, FaceFunctions
+from nao_library_modules.vision.streaming import StreamingFunctions
+from nao_library_modules.vision.tracking import TrackingFunctions
+from nao_library_modules.vision.vision_server import NaoVision
 from nao_library_msgs.msg import VisionFunction
 
 GROUPS = (

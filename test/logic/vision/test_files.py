@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.whole_file import FileTrouble
-from nao_library_modules.vision.capture.files import VisionFiles
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.files import FileTrouble
+from nao_library_modules.vision.video import VisionFiles
 
 KINDS = ("png", "jpg", "tiff")
 

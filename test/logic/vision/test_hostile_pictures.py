@@ -15,8 +15,8 @@ import pytest
 from camera_topics import compressed
 from sensor_msgs.msg import Image
 
-from nao_library_modules.vision.capture import pictures as vision_pictures
-from nao_library_modules.vision.capture.pictures import BadPicture, picture_of, scaled
+from nao_library_modules.vision import pictures as vision_pictures
+from nao_library_modules.vision.pictures import BadPicture, picture_of, scaled
 from nao_sim_bridge.base.errors import BadValue
 from nao_sim_bridge.world.pictures import WorldPicture, aspect
 

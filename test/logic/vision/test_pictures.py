@@ -8,7 +8,7 @@ import pytest
 from camera_topics import compressed, image
 from sensor_msgs.msg import Image
 
-from nao_library_modules.vision.capture.pictures import (
+from nao_library_modules.vision.pictures import (
     BadPicture,
     encoded,
     encoding_of,

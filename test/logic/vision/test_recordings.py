@@ -9,7 +9,7 @@ import pytest
 from camera_topics import CAMERA, numbered_image, read_video, wait_for
 from disks import room
 
-from nao_library_modules.base.errors import BadGoal
+from nao_library_modules.core.errors import BadGoal
 
 LIMIT = 60.0
 

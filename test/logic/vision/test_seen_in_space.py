@@ -6,9 +6,8 @@ import math
 
 import pytest
 
-from nao_library_modules.motion.facts import JointLimits
-from nao_library_modules.vision.detection.detectors import WantedDetection, seen_messages
-from nao_library_modules.vision.detection.events import (
+from nao_library_modules.motion.motion_plan import JointLimits
+from nao_library_modules.vision.detections import (
     BALL,
     CODE,
     FACE,
@@ -16,15 +15,18 @@ from nao_library_modules.vision.detection.events import (
     NOTHING,
     Detection,
     Lens,
+    LocalizedDetection,
     Region,
     ball_detections,
     code_detections,
     face_detections,
     landmark_detections,
+    located,
+    merged,
     movement_detections,
 )
-from nao_library_modules.vision.detection.space import LocalizedDetection, located, merged
-from nao_library_modules.vision.detection.track_plan import aim, fraction, off_axis, search_angles, the_one, travel_time
+from nao_library_modules.vision.detectors import WantedDetection, seen_messages
+from nao_library_modules.vision.tracking import aim, fraction, off_axis, search_angles, the_one, travel_time
 
 HFOV, VFOV = math.radians(56.3), math.radians(43.7)
 LENS = Lens(HFOV, VFOV)

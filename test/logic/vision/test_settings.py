@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.nao.camera_facts import BOTTOM, TOP, camera_number
-from nao_library_modules.vision.capture.cameras import camera_name, parameter_number, resolution_name, resolution_of
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.nao_facts import BOTTOM, TOP, camera_number
+from nao_library_modules.vision.cameras import camera_name, parameter_number, resolution_name, resolution_of
 
 
 def test_spellings_of_a_parameter():

@@ -6,8 +6,8 @@ import pytest
 from camera_topics import CAMERA, OUT, compressed, image, number_of, numbered, numbered_image, numbers_of, wait_for
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
-from nao_library_modules.vision.capture.pictures import encoded, picture_of
-from nao_library_modules.vision.capture.stream import info_topic
+from nao_library_modules.vision.capture_jobs import info_topic
+from nao_library_modules.vision.pictures import encoded, picture_of
 
 
 def test_frames_pass_a_stream_as_they_are(stream, topics, send):

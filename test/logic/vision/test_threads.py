@@ -7,10 +7,9 @@ import threading
 import pytest
 from camera_topics import CAMERA, OUT, numbers_of, wait_for
 
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.vision.capture import queue as vision_queue
-from nao_library_modules.vision.capture.jobs import MOST_JOBS, CaptureJobs
-from nao_library_modules.vision.capture.stream import Stream
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.vision import pictures as vision_queue
+from nao_library_modules.vision.capture_jobs import MOST_JOBS, CaptureJobs, Stream
 
 FRAME = 64 * 48 * 3
 

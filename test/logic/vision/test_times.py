@@ -6,8 +6,8 @@ import random
 
 import pytest
 
-from nao_library_modules.robot.image_clock import ImageClock
-from nao_library_modules.vision.capture.times import RateLimit, VideoTimes
+from nao_library_modules.core.robot_events import ImageClock
+from nao_library_modules.vision.pictures import RateLimit, VideoTimes
 
 
 def passed(rate, stamps):

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from camera_topics import number_of, numbered
 
-from nao_library_modules.base.whole_file import WholeFile
-from nao_library_modules.vision.capture.video import VideoFile, codec_name, known_codecs
+from nao_library_modules.core.files import WholeFile
+from nao_library_modules.vision.video import VideoFile, codec_name, known_codecs
 
 UNEVEN = [100.0, 100.033, 100.066, 100.5, 100.533, 102.0, 102.1, 102.2]
 EVERY = [(kind, codec) for kind in ("mp4", "avi") for codec in known_codecs(kind)]

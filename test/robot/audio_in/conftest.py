@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in.server import NaoAudioInput
+from nao_library_modules.audio_in.audio_in_server import NaoAudioInput
 
 EXTRACTORS = ("ALSpeechRecognition", "ALSoundDetection", "ALSoundLocalization")
 

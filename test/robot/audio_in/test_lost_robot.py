@@ -12,7 +12,7 @@ from simulator import PATIENCE, Simulator
 
 import naoqi
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in.server import NaoAudioInput
+from nao_library_modules.audio_in.audio_in_server import NaoAudioInput
 from nao_library_msgs.msg import AudioInFunction as In
 from nao_sim_bridge.core.simulation import Scene
 from nao_sim_bridge.server.options import ServerOptions

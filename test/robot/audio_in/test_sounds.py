@@ -10,7 +10,7 @@ from goal_functions import audio_in as f
 from sounds import RATE, frequency, loudness, noise, put, read, take, tone, write
 
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in.server import NaoAudioInput
+from nao_library_modules.audio_in.audio_in_server import NaoAudioInput
 
 DETECTED, LOCATED = "SoundDetected", "ALSoundLocalization/SoundLocated"
 LEVEL = [0.0] * 6

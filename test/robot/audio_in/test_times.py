@@ -8,7 +8,7 @@ from sounds import noise, put
 from word_trials import WAY, listens, says, trial
 
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in.server import NaoAudioInput
+from nao_library_modules.audio_in.audio_in_server import NaoAudioInput
 
 WORDS = ["yes", "no", "stop", "hello", "seven", "good morning"]
 EXACT = 0.06

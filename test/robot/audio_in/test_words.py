@@ -12,8 +12,8 @@ from spoken_words import RATE as SPEECH_RATE
 from spoken_words import spoken
 
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in.server import NaoAudioInput
-from nao_library_modules.base.kept import Kept
+from nao_library_modules.audio_in.audio_in_server import NaoAudioInput
+from nao_library_modules.core.files import Kept
 from nao_sim_bridge.base.samples import Sound
 
 WORDS, STATUS = "WordRecognized", "ALSpeechRecognition/Status"

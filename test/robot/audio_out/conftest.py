@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nao_library_actions.msg import NaoAudioOutGoal
-from nao_library_modules.audio_out.server import NaoAudioOutput
+from nao_library_modules.audio_out.audio_out_server import NaoAudioOutput
 
 
 @pytest.fixture(autouse=True)

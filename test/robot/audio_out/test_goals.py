@@ -10,7 +10,7 @@ from genpy import Duration
 from goal_functions import audio_out as f
 from sounds import played, tone, write
 
-from nao_library_modules.functions.memory_functions import MemoryFunctions
+from nao_library_modules.core.memory_functions import MemoryFunctions
 from nao_library_msgs.msg import AudioOutFunction
 
 NAN = math.nan

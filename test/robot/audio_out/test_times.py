@@ -8,7 +8,7 @@ from goal_functions import audio_out as f
 from sounds import RATE, played, tone, write
 
 from nao_library_actions.msg import NaoAudioOutGoal
-from nao_library_modules.audio_out.server import NaoAudioOutput
+from nao_library_modules.audio_out.audio_out_server import NaoAudioOutput
 
 EXACT = 0.06
 

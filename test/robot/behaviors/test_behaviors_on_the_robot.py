@@ -18,10 +18,10 @@ from nao_library_actions.msg import (
     NaoLedGoal,
     NaoMotionGoal,
 )
-from nao_library_modules.audio_out.server import NaoAudioOutput
+from nao_library_modules.audio_out.audio_out_server import NaoAudioOutput
 from nao_library_modules.behaviors.server import NaoBehavior
 from nao_library_modules.behaviors.server_functions import FunctionTables
-from nao_library_modules.motion.server import NaoMotion
+from nao_library_modules.motion.motion_server import NaoMotion
 from nao_library_msgs.msg import LedFunction
 from nao_library_msgs.srv import ListBehaviorsRequest
 

@@ -9,9 +9,9 @@ from wrong_behaviors import LINE, WRONG, wrong_text
 
 from nao_library_actions.msg import NaoBehaviorGoal, NaoLedGoal, NaoMotionGoal
 from nao_library_modules.behaviors.server import NaoBehavior
-from nao_library_modules.functions.known_robot import robot_facts
-from nao_library_modules.motion.server import NaoMotion
-from nao_library_modules.nao.joint_names import CHAINS
+from nao_library_modules.core.goal_checks import robot_facts
+from nao_library_modules.core.nao_facts import CHAINS
+from nao_library_modules.motion.motion_server import NaoMotion
 from naoqi.errors import RobotError
 
 

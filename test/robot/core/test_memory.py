@@ -6,7 +6,7 @@ import json
 
 from goal_functions import led_with_text as f
 
-from nao_library_modules.functions.memory_functions import parse_assignment
+from nao_library_modules.core.memory_functions import parse_assignment
 
 
 def ask(lights, *calls):

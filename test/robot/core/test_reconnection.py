@@ -11,9 +11,9 @@ from simulator import PATIENCE, Simulator
 
 import naoqi
 from nao_library_actions.msg import NaoLedGoal, NaoMotionGoal, NaoTactileGoal
-from nao_library_modules.lights.server import NaoLights
-from nao_library_modules.motion.server import NaoMotion
-from nao_library_modules.tactile.server import NaoTactile
+from nao_library_modules.lights.lights_server import NaoLights
+from nao_library_modules.motion.motion_server import NaoMotion
+from nao_library_modules.tactile.tactile_server import NaoTactile
 from nao_library_msgs.msg import LedFunction, MotionFunction, TactileFunction
 from nao_sim_bridge.core.simulation import Scene
 from nao_sim_bridge.server.options import ServerOptions

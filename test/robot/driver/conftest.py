@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.robot.robot import Robot
+from nao_library_modules.core.robot import Robot
 
 PATIENCE = 60.0
 

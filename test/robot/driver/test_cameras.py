@@ -7,14 +7,14 @@ from dataclasses import replace
 
 import pytest
 
+from nao_library_modules.core.health import Level
+from nao_library_modules.core.robot import Robot
 from nao_library_modules.driver.base import lazy_subscription
 from nao_library_modules.driver.base.lazy_subscription import Extractor
 from nao_library_modules.driver.camera import camera_stream
 from nao_library_modules.driver.camera.camera_settings import CameraTuning
 from nao_library_modules.driver.camera.camera_stream import CameraStream, StreamSettings
 from nao_library_modules.driver.sensors.nao_vision import FACES, MOVEMENT
-from nao_library_modules.robot.robot import Robot
-from nao_library_modules.ros.health import Level
 from naoqi.errors import NaoError
 
 NAME = "ros_nao_camera_top"

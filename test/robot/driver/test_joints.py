@@ -8,8 +8,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.base.errors import BadGoal, Preempted
+from nao_library_modules.core.errors import BadGoal, Preempted
+from nao_library_modules.core.joint_trajectory import H25_BODY
+from nao_library_modules.core.nao_facts import SONARS as SONAR_KEYS
+from nao_library_modules.core.waiting import CancellationToken
 from nao_library_modules.driver.base import lazy_subscription
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.joints.joint_sensors import JointSensors
@@ -18,9 +20,7 @@ from nao_library_modules.driver.memory.memory_rules import MemoryAccess, MemoryR
 from nao_library_modules.driver.memory.memory_watch import MemoryWatch
 from nao_library_modules.driver.sensors.nao_sonar import Sonars
 from nao_library_modules.driver.sensors.nao_tactile import BUMPER, FEET, HAND, HEAD, TouchSensors
-from nao_library_modules.functions.joint_trajectory import H25_BODY
-from nao_library_modules.nao.body_devices import SONARS as SONAR_KEYS
-from nao_library_modules.ros.concurrent_action_server import Replaced
+from nao_library_modules.ros.action_server import Replaced
 from naoqi.errors import NaoError
 
 CHARGE = "Device/SubDeviceList/Battery/Charge/Sensor/Value"

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.base.errors import Preempted
+from nao_library_modules.core.errors import Preempted
+from nao_library_modules.core.waiting import CancellationToken
 from nao_library_modules.driver.audio.nao_audio import AudioPlayer, SoundDirections, read_recording
 from nao_library_modules.driver.audio.nao_microphone import Microphone
 from nao_library_modules.driver.audio.robot_speech import LONGEST_QUEUE, RobotSpeech, SpeechSettings

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from nao_library_modules.base.cancellation import CancellationToken
-from nao_library_modules.base.errors import BadGoal
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.errors import BadGoal
+from nao_library_modules.core.geometry import Place
+from nao_library_modules.core.health import Level
+from nao_library_modules.core.waiting import CancellationToken
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.driver.walk.nao_footsteps import FootstepWalk
 from nao_library_modules.driver.walk.nao_walker import AFTERWARDS, DOWN, SWEEP_SPEED, UP, HeadScan
 from nao_library_modules.driver.walk.naoqi_moveto import MoveToWalk, WalkGoal
 from nao_library_modules.driver.walk.walk_commands import FootStep, Stop, Superseded, Target, Velocity, WalkEnded
 from nao_library_modules.driver.walk.walker import Walker
-from nao_library_modules.ros.health import Level
 from naoqi.errors import NaoError
 
 LIMIT = 60.0

@@ -10,7 +10,7 @@ POSITION = "Device/SubDeviceList/{}/Position/Sensor/Value"
 @pytest.fixture
 def motion(goals_to, tmp_path):
     from nao_library_actions.msg import NaoMotionGoal
-    from nao_library_modules.motion.server import NaoMotion
+    from nao_library_modules.motion.motion_server import NaoMotion
 
     return goals_to(NaoMotion, NaoMotionGoal, motion_dir=tmp_path)
 

@@ -7,7 +7,7 @@ import threading
 import pytest
 from goal_functions import motion as f
 
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.geometry import Place
 
 CLOSE, CLOSE_TURN = 0.03, 0.1
 """m and rad: what odometry of the legs may be off after a short walk."""

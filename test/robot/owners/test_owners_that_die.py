@@ -12,13 +12,12 @@ import sys
 import pytest
 from simulator import PATIENCE
 
-from nao_library_modules.owners.stops import Stops
-from nao_library_modules.owners.watch import OwnerWatch
-from nao_library_modules.robot.robot import Robot
+from nao_library_modules.core.process_owners import OwnerWatch, Stops
+from nao_library_modules.core.robot import Robot
 
 OWNER = """
 import json, sys
-from nao_library_modules.robot.robot import Robot
+from nao_library_modules.core.robot import Robot
 sys.argv[0] = "owner"
 robot = Robot("127.0.0.1", int(sys.argv[1]))
 robot.connection.wait_connected(20)
@@ -132,7 +131,7 @@ def test_what_lost_its_owner_is_stopped(watched, going):
 
 
 def test_another_watch_takes_over_with_what_is_owned(watched, caplog, eventually):
-    caplog.set_level(logging.DEBUG, "nao_library_modules.owners")
+    caplog.set_level(logging.DEBUG, "nao_library_modules.core.process_owners")
     owner = watched.owner()
     watched.calls(owner, "ALMotion", "moveToward", 1.0, 0.0, 0.0)
     watched.watches.append(watched.watch())

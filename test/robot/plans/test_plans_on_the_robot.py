@@ -14,7 +14,7 @@ from plan_clients import PlanClient, client_of
 from plan_tools import Beside
 
 import nao_library_modules.process_modules as p
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.geometry import Place
 from nao_library_modules.driver.joints.joint_controller import JointController
 from nao_library_modules.process_modules import low_level
 from nao_library_modules.process_modules import low_level as goals

@@ -18,7 +18,7 @@ from simulator import PATIENCE, connected
 from sounds import sound_of
 from waits import hold
 
-from nao_library_modules.processes.process_tree import descendants, identify, kill_survivors
+from nao_library_modules.core.processes import descendants, identify, kill_survivors
 from nao_sim_bridge.naoqi.binding import client_calls
 from nao_sim_bridge.server import broker as module
 from nao_sim_bridge.server import messages, own_sockets, wire

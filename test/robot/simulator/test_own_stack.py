@@ -11,8 +11,7 @@ import pytest
 import qi
 import rosgraph
 
-from nao_library_modules.processes.own_master import OwnMaster
-from nao_library_modules.processes.own_stack import OwnStack, StackFailed, fatal_words, last_words
+from nao_library_modules.ros.own_stack import OwnMaster, OwnStack, StackFailed, fatal_words, last_words
 
 MORTAL = """<launch>
   <node pkg="rostopic" type="rostopic" name="mortal" args="echo /nothing" launch-prefix="{}" output="screen"/>

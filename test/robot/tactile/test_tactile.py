@@ -11,11 +11,11 @@ from goal_functions import tactile as f
 from sensor_msgs.msg import BatteryState
 
 from nao_library_actions.msg import NaoTactileGoal
-from nao_library_modules.base.kept import Kept
-from nao_library_modules.tactile.bindings import TouchBindings
-from nao_library_modules.tactile.fields import CLICKS
-from nao_library_modules.tactile.reading import Senses
-from nao_library_modules.tactile.server import NaoTactile
+from nao_library_modules.core.files import Kept
+from nao_library_modules.tactile.readings import Senses
+from nao_library_modules.tactile.tactile_fields import CLICKS
+from nao_library_modules.tactile.tactile_server import NaoTactile
+from nao_library_modules.tactile.touch_bindings import TouchBindings
 from nao_library_msgs.msg import TactileFunction
 
 FRONT, MIDDLE, REAR = (f"Head/Touch/{place}" for place in ("Front", "Middle", "Rear"))

@@ -10,7 +10,7 @@ from camera_topics import BOTTOM, TOP, number_of, numbered_image, read_video, wa
 from goal_functions import vision as f
 
 from nao_library_actions.msg import NaoVisionGoal
-from nao_library_modules.base.kept import Kept
+from nao_library_modules.core.files import Kept
 from nao_library_modules.vision import NaoVision
 
 

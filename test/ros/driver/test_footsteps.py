@@ -7,7 +7,7 @@ from services import action_client, answer, publisher, service
 from walking_fixture import WalkingTest
 
 from nao_library_actions.msg import ExecFootstepsAction, ExecFootstepsGoal
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.geometry import Place
 from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import ClipFootstep, StepTargetService
 from nao_sim_bridge.testing import send, wait_until

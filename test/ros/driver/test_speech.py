@@ -13,7 +13,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Empty
 
 from nao_library_actions.msg import SpeechWithFeedbackAction, SpeechWithFeedbackGoal
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 
 LIMIT = 60.0

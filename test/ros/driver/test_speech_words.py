@@ -16,7 +16,7 @@ from nao_library_actions.msg import (
     SpeechWithFeedbackAction,
     SpeechWithFeedbackGoal,
 )
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_library_msgs.msg import WordRecognized
 from nao_sim_bridge.testing import SimulatedRobot, send, wait_until
 

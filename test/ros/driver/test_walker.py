@@ -18,7 +18,7 @@ from std_msgs.msg import Empty as EmptyMessage
 from std_srvs.srv import Empty
 from waits import PATIENCE
 
-from nao_library_modules.owners.host import call_for
+from nao_library_modules.ros.node import call_for
 from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import (
     CmdPoseService,

@@ -9,7 +9,7 @@ from sounds import noise, put
 from word_trials import trial
 
 from nao_library_actions.msg import NaoAudioInGoal
-from nao_library_modules.audio_in.server import NaoAudioInput
+from nao_library_modules.audio_in.audio_in_server import NaoAudioInput
 
 WORDS = ["yes", "no", "stop", "start", "left", "right", "hello", "seven", "four", "good morning"]
 VOICES = ("slt", "rms", "awb")

@@ -13,7 +13,7 @@ from geometry_msgs.msg import Point
 from selenium.webdriver.common.keys import Keys
 
 from nao_library_actions.msg import NaoAudioInAction
-from nao_library_modules.base.paths import config_file
+from nao_library_modules.core.files import config_file
 from nao_library_modules.studies.studies import Studies
 from nao_library_modules.studies.study_files import StudyFiles
 from nao_library_modules.studies.trial_log import EVENTS

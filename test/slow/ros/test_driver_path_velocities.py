@@ -13,7 +13,7 @@ from services import action_client
 from walking_fixture import WalkingTest
 
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.geometry import Place
 from nao_library_modules.driver.joints.planar_frames import pose_stamped
 from nao_sim_bridge.testing import send
 

@@ -15,7 +15,7 @@ from std_srvs.srv import Empty as EmptyService
 from walking_fixture import WalkingTest, of_pose, seen_from_above
 
 from nao_library_actions.msg import FollowPathAction, FollowPathGoal
-from nao_library_modules.base.places import Place
+from nao_library_modules.core.geometry import Place
 from nao_library_modules.driver.joints.planar_frames import pose_stamped
 from nao_library_modules.driver.path_follower.path_courses import WalkPath
 from nao_library_msgs.srv import SetTransform

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nao_library_modules.motion.store import MotionStore
+from nao_library_modules.motion.recorded_motion import MotionStore
 from nao_sim_bridge.core.posture_moves import KeyFrame, Move, load_moves
 
 SHIPPED = Path(__file__).resolve().parents[3] / "nao_library_modules" / "config" / "motions"

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from nao_library_modules.functions.server_types import ACTIONS
+from nao_library_modules.core.server_types import ACTIONS
 
 from .machines import machines
 

@@ -13,8 +13,8 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from nao_library_modules.functions.server_types import server_type
-from nao_library_modules.ros.goal_tracker import GoalTracker
+from nao_library_modules.core.server_types import server_type
+from nao_library_modules.ros.goal_client import GoalTracker
 
 from .random_goals import RandomGoals
 

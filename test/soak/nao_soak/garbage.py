@@ -12,7 +12,7 @@ from typing import Any
 
 import rospy
 
-from nao_library_modules.functions.server_types import server_type
+from nao_library_modules.core.server_types import server_type
 
 PERIOD = 1.0
 """s from one to the next."""

@@ -35,9 +35,9 @@ from nao_library_actions.msg import (
     SpeechWithFeedbackAction,
     SpeechWithFeedbackGoal,
 )
+from nao_library_modules.core.server_types import server_type
 from nao_library_modules.driver.nao_driver import PARTS
-from nao_library_modules.functions.server_types import server_type
-from nao_library_modules.ros.simple_action_client import SimpleActionClient
+from nao_library_modules.ros.goal_client import SimpleActionClient
 from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import (
     GetAudioMasterVolume,

@@ -10,7 +10,7 @@ from typing import Any
 import genpy
 import yaml
 
-from nao_library_modules.functions.server_types import server_type
+from nao_library_modules.core.server_types import server_type
 
 FILE = Path(__file__).with_name("goals.yaml")
 HUGE = 100_000

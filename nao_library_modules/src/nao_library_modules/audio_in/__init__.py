@@ -1,6 +1,6 @@
 """The server nao_audio_in: recordings, words, sounds and their directions, energies."""
 
-from ..base.doors import door
+from ..core.lazy import door
 
 __all__ = ["NaoAudioInput"]
 __getattr__ = door(__name__, {"NaoAudioInput": "server"})

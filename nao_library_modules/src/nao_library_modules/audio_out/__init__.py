@@ -1,6 +1,6 @@
 """The server nao_audio_out: speech, sound files, tones, volumes."""
 
-from ..base.doors import door
+from ..core.lazy import door
 
 __all__ = ["NaoAudioOutput"]
 __getattr__ = door(__name__, {"NaoAudioOutput": "server"})

@@ -15,8 +15,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.errors import cut
-from ..base.suggestion import did_you_mean
+from ..core.errors import cut, did_you_mean
 from ..process_modules.failures import PlanFailure
 
 MOST_TOLD = 10

@@ -11,15 +11,14 @@ from typing import Any, List
 from nao_library_msgs.msg import BehaviorInfo, BehaviorParameter, BehaviorProblem, BehaviorStep, FunctionResult
 from naoqi.errors import NaoError
 
-from ..base.errors import BadGoal, Preempted
-from ..base.whole_file import written
-from ..functions.chain import checked_by
-from ..functions.check_service import NotValidated
-from ..functions.fields import Annotated, flag, free, number
-from ..functions.goal_checks import GoalCheck
-from ..functions.parts import Part
+from ..core.chain import Part, checked_by
+from ..core.describe import NotValidated
+from ..core.errors import BadGoal, Preempted
+from ..core.fields import Annotated, flag, free, number
+from ..core.files import written
+from ..core.goal_checks import GoalCheck
+from ..core.nao_basic import NaoBasic
 from ..process_modules.failures import PlanFailure
-from ..server.nao_basic import NaoBasic
 from .behavior_reader import NAME_ALLOWED, read, require_name
 from .behavior_store import BehaviorStore, PlannedStore, UnknownYet, from_goal, text_of
 from .binder import Library, bind

@@ -8,10 +8,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Callable
 
-from ..base.errors import BadGoal
-from ..base.failure_policy import FailurePolicy
-from ..base.field_checks import UNUSUAL
-from ..base.suggestion import did_you_mean
+from ..core.errors import BadGoal, did_you_mean
+from ..core.fields import UNUSUAL, FailurePolicy
 from .behavior_errors import BehaviorError, Problem
 from .model import (
     LABEL,

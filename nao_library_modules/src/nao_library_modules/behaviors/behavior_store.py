@@ -13,9 +13,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.errors import BadGoal
-from ..base.field_checks import UNUSUAL
-from ..base.whole_file import give_name, tidy, write_whole
+from ..core.errors import BadGoal
+from ..core.fields import UNUSUAL
+from ..core.files import give_name, tidy, write_whole
 from .behavior_errors import BehaviorError, NoSuchBehavior, Problem
 from .behavior_reader import read, require_name, walk
 from .model import Behavior, Box

@@ -8,9 +8,8 @@ from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
-from ..base.errors import BadGoal
-from ..base.field_checks import require_usual
-from ..base.limits import limit, usual
+from ..core.errors import BadGoal
+from ..core.fields import limit, require_usual, usual
 from .behavior_errors import BehaviorError, Problem
 from .model import (
     At,

@@ -8,8 +8,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..functions.check_service import NotValidated
-from ..functions.goal_checks import GoalCheck, GoalProblem
+from ..core.describe import NotValidated
+from ..core.goal_checks import GoalCheck, GoalProblem
 from .behavior_errors import BehaviorError, Problem
 from .binder import Library, bind, bind_what_can_be
 from .model import (

@@ -14,11 +14,11 @@ from actionlib_msgs.msg import GoalStatus
 from nao_library_msgs.srv import DescribeFunctions, DescribeFunctionsRequest, DescribeFunctionsResponse
 from naoqi.errors import NaoError
 
-from ..base.errors import BadGoal
-from ..functions.goal_checks import GoalCheck
-from ..functions.server_types import DESCRIBE, ServerType, servers_among, those_in
+from ..core.errors import BadGoal
+from ..core.goal_checks import GoalCheck
+from ..core.server_types import DESCRIBE, ServerType, servers_among, those_in
 from ..process_modules.plan_action_client import PlanActionClient
-from ..ros.check_client import NotAnswered, call_service, check_goals
+from ..ros.goal_client import NotAnswered, call_service, check_goals
 from .behavior_store import step_of
 from .server_functions import NotDescribed
 

@@ -17,7 +17,7 @@ from actionlib_msgs.msg import GoalStatus
 
 from naoqi.errors import NaoError
 
-from ..base.cancellation import CancellationToken
+from ..core.waiting import CancellationToken
 from ..process_modules.control import do, par, pursue, top_level
 from ..process_modules.failures import PlanFailure
 from ..process_modules.fluents import Evaporated, Fluent, sleep, wait_until

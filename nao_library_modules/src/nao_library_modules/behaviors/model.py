@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Callable, ClassVar, Mapping, Tuple
 
-from ..base.errors import BadGoal
-from ..base.failure_policy import FailurePolicy
+from ..core.errors import BadGoal
+from ..core.fields import FailurePolicy
 from .parameters import Parameter
 
 LABEL = r"[A-Za-z_][A-Za-z0-9_-]*"

@@ -14,8 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Union
 
-from ..base.errors import BadGoal
-from ..base.suggestion import did_you_mean
+from ..core.errors import BadGoal, did_you_mean
 from .behavior_errors import BehaviorError, Problem
 from .strict_yaml import load
 

@@ -10,11 +10,11 @@ from nao_library_actions.msg import NaoBehaviorAction
 from nao_library_msgs.srv import ListBehaviors, ListBehaviorsResponse
 from naoqi.errors import NaoError
 
-from ..base.answers import Outcome
-from ..base.paths import config_file
-from ..functions.parts import joined
-from ..processes.launcher import LaunchPath
-from ..server.nao_basic import NaoBasic
+from ..core.chain import joined
+from ..core.files import config_file
+from ..core.memory_functions import Outcome
+from ..core.nao_basic import NaoBasic
+from ..core.processes import LaunchPath
 from .behavior_functions import (
     BehaviorRecordingFunctions,
     LibraryFunctions,

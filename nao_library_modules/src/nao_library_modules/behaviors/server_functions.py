@@ -16,14 +16,12 @@ import roslib.message
 
 from naoqi.errors import NaoError
 
-from ..base.degrees import ANGLES, in_rad, is_in_degrees
-from ..base.errors import BadGoal, FunctionFailed, UnknownFunction
-from ..base.suggestion import did_you_mean, field_hint
-from ..functions.chain import COMMON, FunctionChain, FunctionTable, fields_taken
-from ..functions.goal_checks import GoalCheck, GoalProblem, check_goals
-from ..functions.memory_functions import MemoryFunctions
-from ..functions.offline_module import offline_module
-from ..functions.server_types import ACTIONS, ServerType, described_type, server_type
+from ..core.chain import COMMON, FunctionChain, FunctionTable, fields_taken
+from ..core.errors import BadGoal, FunctionFailed, UnknownFunction, did_you_mean, field_hint
+from ..core.geometry import ANGLES, in_rad, is_in_degrees
+from ..core.goal_checks import GoalCheck, GoalProblem, check_goals, offline_module
+from ..core.memory_functions import MemoryFunctions
+from ..core.server_types import ACTIONS, ServerType, described_type, server_type
 from .parameters import text_of
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from ..base.yaml_values import Budget, ShallowLoader, TooMuch, load_within
+from ..core.yaml_values import Budget, ShallowLoader, TooMuch, load_within
 from .behavior_errors import BehaviorError, Problem
 
 LONGEST = 4_000_000

@@ -74,9 +74,9 @@ class Commands(NaoGroup):
 
     def instead_of(self, word: str) -> str:
         """Behaviours and motions that come along are run by commands."""
-        from ..base.paths import config_file
         from ..behaviors.server import SHIPPED as BEHAVIORS
-        from ..motion.server import SHIPPED as MOTIONS
+        from ..core.files import config_file
+        from ..motion.motion_server import SHIPPED as MOTIONS
 
         for folder, line in ((BEHAVIORS, "nao run {}"), (MOTIONS, "nao call NaoMotion playMotion str_param:={}")):
             if word in {file.stem for file in config_file(folder).glob("*.yaml")}:

@@ -8,10 +8,9 @@ from typing import Any
 
 import click
 
-from ..base.degrees import ANGLES, DEGREES, in_rad
-from ..base.errors import BadGoal
-from ..base.limits import limit
-from ..base.suggestion import field_hint
+from ..core.errors import BadGoal, field_hint
+from ..core.fields import limit
+from ..core.geometry import ANGLES, DEGREES, in_rad
 
 NEXT = (",", "--then")
 """What stands between two functions."""

@@ -14,7 +14,7 @@ from typing import Any
 
 import click
 
-from ..base.suggestion import did_you_mean, of_those
+from ..core.errors import did_you_mean, of_those
 from .chain_text import Number
 from .stack import Stack
 

@@ -10,7 +10,7 @@ from typing import Any
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT
 
-from ..base.suggestion import did_you_mean
+from ..core.errors import did_you_mean
 from .output import CommandFailed, StackMissing
 
 MEMORY = "ALMemory"

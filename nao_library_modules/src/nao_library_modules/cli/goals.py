@@ -15,7 +15,7 @@ import click
 
 from naoqi.limits import GOAL_END_LIMIT
 
-from ..functions.server_types import DESCRIBE, installed_message
+from ..core.server_types import DESCRIBE, installed_message
 from .cli_settings import CliSettings
 from .output import NO_NAMES, CommandFailed, CommandInterrupted, Progress, StackMissing, plain, say_json, say_result
 
@@ -104,7 +104,7 @@ class GoalRun:
         self._relative = self._name[len(settings.stack.namespace) :]
         kind = settings.stack.describe(server, brief=True).action
         self._action, self._goal = message_class(f"{kind}Action"), message_class(f"{kind}Goal")
-        from ..ros.goal_tracker import GoalTracker
+        from ..ros.goal_client import GoalTracker
 
         self._watch = GoalTracker()
         self.last: GoalEnd | None = None
@@ -113,7 +113,7 @@ class GoalRun:
         """Send a goal of these functions and wait for its end, whatever it is."""
         import actionlib
 
-        from ..ros.goal_tracker import SERVER_LIMIT
+        from ..ros.goal_client import SERVER_LIMIT
 
         start_node()
         began = time.monotonic()

@@ -278,7 +278,7 @@ def wanted_file(file: str, overwrite: bool, kinds: Sequence[str] = ()) -> Path |
     something else; CommandFailed if there is one already, or no folder for it. `overwrite`: whether it may be there
     already. `kinds`: what its name may end in, without the dot; empty where the server decides.
     """
-    from ..base.whole_file import NoPlaceForFile, require_new
+    from ..core.files import NoPlaceForFile, require_new
 
     if not file:
         return None
@@ -310,7 +310,7 @@ def bring(path: str, target: Path | None, overwrite: bool = False) -> str:
     `target`: as `wanted_file` answers it. `overwrite`: whether it replaces a file that is there by now; else it gets a
     number. Raises CommandFailed if it is on another computer, or cannot be moved.
     """
-    from ..base.whole_file import FileTrouble, move_whole
+    from ..core.files import FileTrouble, move_whole
 
     if target is None:
         return path

@@ -18,14 +18,14 @@ from urllib.parse import urlparse
 
 import click
 
-from ..base.suggestion import of_those
-from ..functions.server_types import ACTIONS, DESCRIBE, servers_among, those_in
+from ..core.errors import of_those
+from ..core.server_types import ACTIONS, DESCRIBE, servers_among, those_in
 from .output import CommandFailed, StackMissing, plain
 
 if TYPE_CHECKING:
     from nao_library_msgs.srv import DescribeFunctionsResponse, ListBehaviorsRequest, ListBehaviorsResponse
 
-    from ..functions.goal_checks import GoalCheck
+    from ..core.goal_checks import GoalCheck
 
 
 DEFAULT_MASTER = "http://localhost:11311"
@@ -271,7 +271,7 @@ class Stack:
         """
         from nao_library_msgs.srv import CheckGoals
 
-        from ..functions.check_service import CHECK, NotValidated, check_request, read_response
+        from ..core.describe import CHECK, NotValidated, check_request, read_response
 
         try:
             return read_response(self.graph.call(self.server(server) + CHECK, CheckGoals, check_request(goals)))
@@ -348,7 +348,7 @@ def described_by_code(
 
 @lru_cache(maxsize=None)
 def _servers_of_code() -> list[Any]:
-    from ..functions.describe_offline import offline_servers
+    from ..core.describe import offline_servers
 
     return offline_servers()
 

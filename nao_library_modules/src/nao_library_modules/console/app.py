@@ -35,7 +35,7 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from ..base.paths import config_file, ros_home
+from ..core.files import config_file, ros_home
 from ..studies.study_files import StudyFiles
 from .access.connections import BACKLOG, PERIOD, Connections, CountedListener, console_time
 from .access.guard import COOKIE, SESSION, Guard

@@ -12,13 +12,13 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from ..base.suggestion import did_you_mean
-from ..robot.robot import Robot
+from ..core.errors import did_you_mean
+from ..core.health import Level, Report, connection_report
+from ..core.robot import Robot
 from ..ros.driver_types import require_types
-from ..ros.health import Level, Report, connection_report
+from ..ros.master_api import PartNames
 from ..ros.node import NodeProcess, own_as_node, robot_address, take_patience
 from ..ros.node_interface import NodeInterface
-from ..ros.part_names import PartNames
 from .base.driver_node import keep
 
 log = logging.getLogger(__name__)

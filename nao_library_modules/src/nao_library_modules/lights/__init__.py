@@ -1,6 +1,6 @@
 """The server NaoLights: LEDs."""
 
-from ..base.doors import door
+from ..core.lazy import door
 
 __all__ = ["NaoLights"]
 __getattr__ = door(__name__, {"NaoLights": "server"})

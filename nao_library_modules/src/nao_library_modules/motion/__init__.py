@@ -1,6 +1,6 @@
 """The server NaoMotion: joints, postures, effectors, recorded motions, walks."""
 
-from ..base.doors import door
+from ..core.lazy import door
 
 __all__ = ["NaoMotion"]
 __getattr__ = door(__name__, {"NaoMotion": "server"})

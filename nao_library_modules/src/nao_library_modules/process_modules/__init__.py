@@ -6,7 +6,7 @@ What plans are written with can be imported from here, and what starts the modul
 
 import types
 
-from ..base import doors
+from ..core import lazy
 from .control import (
     Policy,
     define_policy,
@@ -112,6 +112,6 @@ _LATER = {
     "NavigationProcessModule": "low_level:Navigation",
     "SpeechProcessModule": "low_level:Speech",
 }
-__getattr__ = doors.door(__name__, _LATER)
+__getattr__ = lazy.door(__name__, _LATER)
 __all__ = [name for name, value in globals().items() if not (name[0] == "_" or isinstance(value, types.ModuleType))]
 __all__ += _LATER

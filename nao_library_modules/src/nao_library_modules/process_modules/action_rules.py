@@ -12,8 +12,8 @@ from functools import partial
 from numbers import Real
 from typing import Any
 
-from ..base.limits import limit
-from ..base.places import ODOM, Place
+from ..core.fields import limit
+from ..core.geometry import ODOM, Place
 from .designators.designator import Designator, action, motion
 from .designators.objects_and_locations import Point3, Position
 from .designators.rules import (

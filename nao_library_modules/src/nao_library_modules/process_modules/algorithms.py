@@ -16,7 +16,7 @@ from std_msgs.msg import String
 
 from nao_library_actions.msg import JointTrajectoryAction, JointTrajectoryGoal
 
-from ..base.suggestion import of_those
+from ..core.errors import of_those
 from .action_rules import a_place, a_point, a_position
 from .designators.designator import Designator
 from .designators.objects_and_locations import Point3

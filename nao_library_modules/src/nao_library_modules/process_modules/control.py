@@ -39,8 +39,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, Callable, NoReturn, Tuple, Type, Union
 
-from ..base.clock import WallClock
-from ..base.suggestion import of_those
+from ..core.errors import of_those
+from ..core.waiting import WallClock
 from .failures import (
     CompositeFailure,
     PlanError,
@@ -100,7 +100,7 @@ def top_level(
 ) -> Any:
     """Run a plan, in this thread; its answer.
 
-    `clock`: see `nao_library_modules.base.clock`; default: the computer's. `observers`: called with each task of the
+    `clock`: see `nao_library_modules.core.waiting`; default: the computer's. `observers`: called with each task of the
     tree at every change. Raises PlanFailure if the plan failed, or its root was evaporated; PlanError if this thread
     runs a plan already.
     """

@@ -10,12 +10,11 @@ from std_msgs.msg import String
 
 from nao_library_actions.msg import PerformDesignatorAction, PerformDesignatorFeedback, PerformDesignatorResult
 
-from ..base.answers import json_of
-from ..base.cancellation import CancellationToken
-from ..base.yaml_values import Budget
-from ..processes.closing import close_all
-from ..ros.action_server import ActionServer
-from ..ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
+from ..core.memory_functions import json_of
+from ..core.processes import close_all
+from ..core.waiting import CancellationToken
+from ..core.yaml_values import Budget
+from ..ros.action_server import ActionServer, ConcurrentActionServer, GoalOutcome
 from .control import do, top_level
 from .designators.designator import Designator, designator, read_yaml, require_short, text_budget
 from .failures import PlanError, PlanFailure

@@ -21,7 +21,7 @@ from contextlib import contextmanager
 from functools import reduce
 from typing import Any, Callable
 
-from ..base.cancellation import CancellationToken
+from ..core.waiting import CancellationToken
 from .failures import PlanError
 
 Listener = Callable[[], None]

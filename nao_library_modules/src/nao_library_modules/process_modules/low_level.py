@@ -23,8 +23,8 @@ from typing import Any
 
 import rospy
 
-from ..base.places import ODOM, Place, wrapped
-from ..ros.ros_clock import RosClock
+from ..core.geometry import ODOM, Place, wrapped
+from ..ros.time_and_frames import RosClock
 from .action_rules import a_place, a_point, a_position
 from .designators.designator import action, an
 from .designators.objects_and_locations import Point3, Position

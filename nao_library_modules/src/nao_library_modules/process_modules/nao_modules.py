@@ -31,8 +31,8 @@ from nao_library_actions.msg import (
 )
 from nao_library_msgs.msg import LedFunction, VisionFunction
 
-from ..base.places import ODOM, Place, wrapped, yaw_of_quaternion
-from ..base.suggestion import of_those
+from ..core.errors import of_those
+from ..core.geometry import ODOM, Place, wrapped, yaw_of_quaternion
 from .designators.objects_and_locations import Point3, head_angles
 from .designators.rules import Command
 from .failures import (

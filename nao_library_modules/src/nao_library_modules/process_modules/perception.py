@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..base.places import Place, wrapped
+from ..core.geometry import Place, wrapped
 from .control import Branch, Step, do, do_retry, pursue, subtask, with_failure_handling, with_retry_counters
 from .designators.designator import Designator, action, an, current_desig, equate, location, object_
 from .designators.objects_and_locations import BELIEFS, next_different_location_solution

@@ -14,9 +14,9 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
-from ..base.suggestion import of_those
+from ..core.errors import of_those
 from ..ros.driver_types import spoken
-from ..ros.goal_tracker import SERVER_LIMIT, GoalTracker, server_connection
+from ..ros.goal_client import SERVER_LIMIT, GoalTracker, server_connection
 from .control import Step, subtask
 from .failures import ActionlibActionTimedOut, LowLevelFailure
 from .fluents import Fluent, retry_after_suspension, uninterrupted, wait_until

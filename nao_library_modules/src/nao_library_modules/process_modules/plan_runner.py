@@ -15,11 +15,11 @@ from std_srvs.srv import Empty
 
 from nao_library_msgs.msg import PlanTask, PlanTree
 
-from ..base.whole_file import NoPlaceForFile, require_new, write_whole
-from ..owners.line import OwnerLine
-from ..ros.goal_tracker import GoalTracker
+from ..core.files import NoPlaceForFile, require_new, write_whole
+from ..core.process_owners import OwnerLine
+from ..ros.goal_client import GoalTracker
 from ..ros.node import own_goals, robot_address, robot_beside
-from ..ros.ros_clock import RosClock
+from ..ros.time_and_frames import RosClock
 from .control import Branch, top_level
 from .failures import LowLevelFailure, PlanFailure
 from .low_level import make_process_modules, this_robot

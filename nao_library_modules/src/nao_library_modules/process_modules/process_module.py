@@ -19,8 +19,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Union
 
-from ..base.clock import WallClock
-from ..base.suggestion import of_those
+from ..core.errors import of_those
+from ..core.waiting import WallClock
 from .control import Step, do, subtask, top_level
 from .designators.designator import Designator, current_desig
 from .designators.rules import Command

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..processes.own_stack import OwnStack, StackFailed
+from ..ros.own_stack import OwnStack, StackFailed
 from .failures import PlanFailure
 from .trace import Record, Trace
 

@@ -22,11 +22,9 @@ from sensor_msgs.msg import JointState
 
 from naoqi.errors import NaoError
 
-from ..base.places import FOOTPRINT, Place, yaw_of_quaternion
-from ..base.rotations import Quaternion, about, from_roll_pitch_yaw, rotate
+from ..core.geometry import FOOTPRINT, Place, Quaternion, about, from_roll_pitch_yaw, rotate, yaw_of_quaternion
 from ..ros.driver_types import spoken
-from ..ros.robot_frames import tf_prefix
-from ..ros.ros_clock import RosClock
+from ..ros.time_and_frames import RosClock, tf_prefix
 from .designators.objects_and_locations import Point3
 from .designators.rules import Settings, load_settings
 from .failures import LowLevelFailure

@@ -15,7 +15,7 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from ..base.suggestion import of_those
+from ..core.errors import of_those
 from .failures import PlanError, PlanFailure, TaskEvaporatedFailure
 from .fluents import Evaporated, Flow, Fluent, here, set_here
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from naoqi.errors import NaoError
 
-from ..base.whole_file import WholeFile
+from ..core.files import WholeFile
 from .failures import cut, short_numbers, short_repr
 from .tasks import Task
 

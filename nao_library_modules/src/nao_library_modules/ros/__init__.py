@@ -1,1 +1,1 @@
-"""What actionlib and rospy leave to be done: servers and clients of actions, time, nodes, diagnostics."""
+"""ROS nodes: action servers and clients, the driver's interface, time, frames, diagnostics, bags and whole stacks."""

@@ -25,9 +25,9 @@ import rosbag
 
 from naoqi.errors import NaoError
 
-from ..base.whole_file import draft_in, move_whole, require_new
-from ..nao.type_names import OURS, type_names
+from ..core.files import draft_in, move_whole, require_new
 from .driver_types import as_theirs
+from .type_names import OURS, type_names
 
 
 @dataclass

@@ -10,7 +10,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from diagnostic_updater import DiagnosticStatusWrapper, Updater
 
-from .health import Level, Report
+from ..core.health import Level, Report
 
 log = logging.getLogger(__name__)
 

@@ -19,7 +19,7 @@ from roslib.message import get_message_class
 
 from naoqi.errors import NaoError
 
-from ..nao.type_names import AUTO, OURS, THEIRS, choose, installed, type_names, unfit
+from .type_names import AUTO, OURS, THEIRS, choose, installed, type_names, unfit
 
 PARAMETER = "nao_driver/messages"
 ACTION_SLOTS = {"action_goal", "action_result", "action_feedback"}

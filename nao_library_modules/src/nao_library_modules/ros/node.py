@@ -1,31 +1,101 @@
-"""What all nodes do alike: arguments and parameters, log, spin."""
+"""What all nodes do alike: arguments and parameters, log, spin, and the watch of process owners."""
 
 from __future__ import annotations
 
 import argparse
+import logging
 import os
 import signal
 import sys
+import threading
 import time
+from collections import defaultdict, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from typing import Any
 
 import rosgraph
 import rospy
+from actionlib_msgs.msg import GoalID
+from std_srvs.srv import Empty
 
 from naoqi.errors import NaoError
 from naoqi.limits import DEFAULT_TIMING, SERVER_PATIENCE, Timing
 
-from ..base.field_checks import number_parameter
-from ..base.limits import limit
-from ..owners.host import watch_owners
-from ..owners.line import OwnerLine
-from ..processes.closing import exit_in_time
-from .goal_tracker import GoalTracker
+from ..core.fields import limit, number_parameter
+from ..core.process_owners import GOAL, SERVICE, OwnerLine, OwnerWatch, Stops
+from ..core.processes import exit_in_time
+from ..core.robot import require_start_patience
+from .goal_client import GoalTracker
 from .master_api import GONE, Api, MasterCheck, Refused, node_runs
 from .server_node import forward_logs
-from .startup_grace import require_start_patience
+
+log = logging.getLogger(__name__)
+
+QUEUE = 20
+"""Cancelled goals of an action that a server which is found late still gets."""
+
+
+class GoalCanceller(rospy.SubscribeListener):
+    """Cancels goals of others. Any thread.
+
+    ROS API:
+        Publishes `ACTION/cancel` (actionlib_msgs/GoalID) of the actions whose clients have died.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lock = threading.Lock()
+        self._publishers: dict[str, rospy.Publisher] = {}
+        self._cancelled: dict[str, deque[str]] = defaultdict(partial(deque, maxlen=QUEUE))
+
+    def cancel(self, topic: str, goal: str) -> None:
+        """Cancel a goal; a server that is not connected yet gets the cancellation when it is.
+
+        A server that is connected to another publisher of this process causes no `peer_subscribe`: it gets it at once.
+        """
+        with self._lock:
+            self._cancelled[topic].append(goal)
+            publisher = self._publishers.get(topic)
+            if publisher is None:
+                publisher = rospy.Publisher(topic, GoalID, subscriber_listener=self, queue_size=QUEUE)
+                self._publishers[topic] = publisher
+        publisher.publish(GoalID(id=goal))
+
+    def peer_subscribe(self, topic_name: str, _publish: Any, peer_publish: Any) -> None:
+        for goal in tuple(self._cancelled[topic_name]):
+            peer_publish(GoalID(id=goal))
+
+
+def call_for(service: str, node: str) -> None:
+    """Call a service without arguments in the name of a node that has died.
+
+    Raises NaoError if nobody offers it, or it failed.
+    """
+    try:
+        rospy.ServiceProxy(service, Empty, headers={"callerid": node})()
+    except (rospy.ServiceException, rospy.ROSException) as error:
+        raise NaoError(f"{service} failed: {error}") from error
+
+
+def _call_in_thread(service: str, node: str) -> None:
+    """Call it without waiting: to stop a walk takes a second, and the next thing is to be stopped meanwhile."""
+
+    def call() -> None:
+        try:
+            call_for(service, node)
+        except NaoError as error:
+            log.error("what %s has left may go on: %s", node, error)
+
+    threading.Thread(target=call, name=service, daemon=True).start()
+
+
+def watch_owners(robot: Any) -> None:
+    stops = Stops(robot, {GOAL: GoalCanceller().cancel, SERVICE: _call_in_thread})
+    watch = OwnerWatch(robot.address, stops.stop)
+    rospy.on_shutdown(watch.close)
+
 
 DEFAULT_IP = "127.0.0.1"
 DEFAULT_PORT = 9559

@@ -11,10 +11,9 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from ..base.document_names import names_of
-from ..base.error_codes import with_code
-from ..base.errors import Preempted
-from ..processes.closing import close_all
+from ..core.errors import Preempted, with_code
+from ..core.processes import close_all
+from ..core.server_types import names_of
 from .action_server import ActionServer
 from .driver_types import spoken
 

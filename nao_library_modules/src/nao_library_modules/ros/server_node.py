@@ -14,15 +14,14 @@ from nao_library_msgs.msg import MemoryEvent
 from nao_library_msgs.srv import DescribeFunctions
 from naoqi.errors import NaoError
 
-from ..base.answers import json_of
-from ..base.kept import Kept
-from ..base.places import Place
-from ..functions.server_types import DESCRIBE
+from ..core.files import Kept
+from ..core.geometry import Place
+from ..core.health import Report
+from ..core.memory_functions import json_of
+from ..core.server_types import DESCRIBE
 from .action_server import SOONEST_END, PromptActionServer
 from .diagnostics import DiagnosticsPublisher
-from .health import Report
-from .robot_frames import RobotFrames, tf_prefix
-from .ros_clock import RosClock
+from .time_and_frames import RobotFrames, RosClock, tf_prefix
 
 if TYPE_CHECKING:
     from .nao_robot_driver import NaoRobotDriver

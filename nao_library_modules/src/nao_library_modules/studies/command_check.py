@@ -14,16 +14,15 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.errors import FunctionFailed
-from ..base.paths import config_file
-from ..base.suggestion import of_those
 from ..behaviors.behavior_errors import NoSuchBehavior, Problem
 from ..behaviors.behavior_reader import read
 from ..behaviors.behavior_store import BehaviorStore
 from ..behaviors.checking import preview_facts
 from ..behaviors.model import Behavior
 from ..behaviors.server_functions import FunctionTables, NotDescribed
-from ..functions.server_types import ServerType
+from ..core.errors import FunctionFailed, of_those
+from ..core.files import config_file
+from ..core.server_types import ServerType
 from .commands import BEHAVIORS, RUN, Describe, NotThere, RobotCommand, command_problems, goal_of, type_of
 
 SERVICE = "NaoBehavior/list"
@@ -115,7 +114,7 @@ class StoredBehaviors:
 
     @staticmethod
     def _ask_nobody(_server: str, _goals: Sequence[Any]) -> Any:
-        from ..functions.check_service import NotValidated
+        from ..core.describe import NotValidated
 
         raise NotValidated(ALONE)
 
@@ -220,6 +219,6 @@ def _declared() -> Mapping[str, Callable[[], Any]]:
     """Servers of this package -> what they say of themselves, as the code has it."""
     from nao_library_msgs.srv import DescribeFunctionsRequest
 
-    from ..functions.describe_offline import offline_servers
+    from ..core.describe import offline_servers
 
     return {each.name: partial(each.service.answer, DescribeFunctionsRequest()) for each in offline_servers()}

@@ -21,15 +21,14 @@ from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
-from ..base.errors import BadGoal, cut
-from ..base.field_checks import UNUSUAL
-from ..base.suggestion import did_you_mean, of_those
 from ..behaviors.behavior_errors import BehaviorError, Problem
 from ..behaviors.parameters import text_of
 from ..behaviors.server_functions import message_of
 from ..behaviors.strict_yaml import Mapping as FileMapping
 from ..behaviors.strict_yaml import line_in, line_of, load
-from ..functions.server_types import ACTIONS, ServerType, described_type, server_type
+from ..core.errors import BadGoal, cut, did_you_mean, of_those
+from ..core.fields import UNUSUAL
+from ..core.server_types import ACTIONS, ServerType, described_type, server_type
 
 LONGEST = 400_000
 """Characters of a text that pages and files of the console take: some 8 s of reading."""
@@ -329,7 +328,7 @@ def _read_posture(reader: FileReader, holder: Any, where: str) -> RobotCommand |
 
 
 def _read_walk(reader: FileReader, holder: Any, where: str) -> RobotCommand | None:
-    from ..base.degrees import in_rad, is_in_degrees
+    from ..core.geometry import in_rad, is_in_degrees
 
     way = holder["walk_to"]
     try:

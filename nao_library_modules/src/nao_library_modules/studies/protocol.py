@@ -11,9 +11,9 @@ from typing import Any, ClassVar
 
 from naoqi.errors import NaoError
 
-from ..base.suggestion import of_those
 from ..behaviors.parameters import BadExpression, names_in, substitute, text_of
-from ..nao.touch_names import names_of, sensors_of
+from ..core.errors import of_those
+from ..core.nao_facts import names_of, sensors_of
 from .commands import RobotCommand
 
 

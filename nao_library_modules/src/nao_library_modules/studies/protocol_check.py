@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from ..base.suggestion import of_those
 from ..behaviors.behavior_errors import Problem
 from ..behaviors.parameters import text_of
+from ..core.errors import of_those
 from .command_check import SERVICE, CommandCheck
 from .protocol import (
     COUNTED,

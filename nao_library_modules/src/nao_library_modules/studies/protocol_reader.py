@@ -8,13 +8,12 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..base.errors import BadGoal
-from ..base.limits import limit
-from ..base.suggestion import of_those
 from ..behaviors.behavior_errors import Problem
 from ..behaviors.parameters import IDENTIFIER
 from ..behaviors.strict_yaml import line_in
-from ..nao.touch_names import sensors_of
+from ..core.errors import BadGoal, of_those
+from ..core.fields import limit
+from ..core.nao_facts import sensors_of
 from .commands import FORMS, ConsoleFileError, FileReader, place_of_field, read_command
 from .commands import KEYS as COMMAND_KEYS
 from .protocol import (

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..nao.touch_names import SENSORS
+from ..core.nao_facts import SENSORS
 from .protocol import COUNTED
 
 log = logging.getLogger(__name__)

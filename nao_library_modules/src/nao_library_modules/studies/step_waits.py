@@ -12,7 +12,7 @@ from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
-from ..nao.touch_names import names_of, sensors_of
+from ..core.nao_facts import names_of, sensors_of
 from . import trial_log as told
 from .commands import BEHAVIORS, SPEECH, RobotCommand, Stopped, call
 from .protocol import (

@@ -16,9 +16,8 @@ from xml.etree import ElementTree
 
 from naoqi.errors import NaoError
 
-from ..base.paths import config_file
-from ..base.suggestion import of_those
-from ..base.whole_file import FileTrouble
+from ..core.errors import of_those
+from ..core.files import FileTrouble, config_file
 from .command_check import SERVICE
 from .protocol import StudyError, StudyProtocol, WantedRecordings, filled
 from .protocol_reader import hash_of

@@ -16,10 +16,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..base.paths import config_file
-from ..base.suggestion import of_those
-from ..base.whole_file import FileTrouble, make_folder, sync_folder, write_durable
 from ..behaviors.strict_yaml import dump, load
+from ..core.errors import of_those
+from ..core.files import FileTrouble, config_file, make_folder, sync_folder, write_durable
 from .commands import ConsoleFileError
 from .protocol import StudyError, StudyProtocol
 from .protocol_reader import NAME, NAME_FORM, read_protocol, read_protocol_file

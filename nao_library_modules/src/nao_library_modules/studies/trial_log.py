@@ -21,7 +21,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ..base.whole_file import FileTrouble, sync_folder, write_whole
+from ..core.files import FileTrouble, sync_folder, write_whole
 from .protocol import DONE, NOTHING, StudyError
 from .robot_events import ALARM, STATE, ConsoleEvent
 from .schedule import is_inside

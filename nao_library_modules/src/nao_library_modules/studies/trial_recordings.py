@@ -20,7 +20,7 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ..base.whole_file import FileTrouble, move_whole
+from ..core.files import FileTrouble, move_whole
 from ..ros.master_api import GONE, Api, Refused
 from . import trial_log as told
 from .commands import call

@@ -24,8 +24,7 @@ from nao_sim_bridge.base.readings import FALLEN, Pose
 from nao_sim_bridge.core.scene import Scene
 from nao_sim_bridge.sweep import Table, sweep
 
-from ..processes.own_master import OwnMaster
-from ..processes.own_stack import START_LIMIT, OwnStack, StackFailed
+from ..ros.own_stack import START_LIMIT, OwnMaster, OwnStack, StackFailed
 from .subjects import LATE, Outcome, Subject
 
 NODE = "nao_sweep"

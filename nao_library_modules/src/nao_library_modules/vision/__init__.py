@@ -1,6 +1,6 @@
 """Vision: the module NaoVision, and its threads for pictures of any camera, which need neither a NAO nor NAOqi."""
 
-from ..base.doors import door
+from ..core.lazy import door
 
 __all__ = ["CAMERAS", "PARAMETERS", "ImageThreads", "NaoVision"]
 # Threads for another camera import nothing of the robot's.

@@ -17,14 +17,10 @@ from typing import Any
 
 from nao_library_msgs.msg import RecordedVideo, VisionThread
 
-from ..ros.ros_clock import RosClock
-from .capture.files import DEFAULT_RECORD_DIR, VisionFiles
-from .capture.job import CaptureJob
-from .capture.jobs import CaptureJobs
-from .capture.recorder import VideoRecording, VideoSpec
-from .capture.stream import Stream
-from .capture.topics import VisionTopics
-from .capture.video import VIDEO_TYPES, codec_name
+from ..ros.time_and_frames import RosClock
+from .capture_jobs import CaptureJob, CaptureJobs, Stream, VideoRecording, VideoSpec
+from .video import DEFAULT_RECORD_DIR, VIDEO_TYPES, VisionFiles, codec_name
+from .vision_topics import VisionTopics
 
 
 class ImageThread:

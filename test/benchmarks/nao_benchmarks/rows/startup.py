@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from nao_library_modules.processes.own_stack import OwnStack
+from nao_library_modules.ros.own_stack import OwnStack
 
 from ..errors import BenchmarkError
 from ..row import Figures, Row, at_most

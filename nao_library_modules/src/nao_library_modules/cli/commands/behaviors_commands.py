@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...base.suggestion import did_you_mean
+from ...core.errors import did_you_mean
 from .. import completion
 from ..chain_text import Number
 from ..cli_settings import CliSettings, NaoCommand, SignedCommand, settings_of
@@ -32,12 +32,12 @@ def check_offline(stack: Stack, request: Any) -> Any:
     """What `NaoBehavior/list` would answer; behaviours of the user are those in the usual folder."""
     from nao_library_msgs.srv import ListBehaviorsResponse
 
-    from ...base.paths import config_file
     from ...behaviors import BehaviorStore, read
     from ...behaviors.behavior_functions import info_message
     from ...behaviors.checking import preview_facts
     from ...behaviors.server import PARAMETERS, SHIPPED
     from ...behaviors.server_functions import FunctionTables
+    from ...core.files import config_file
 
     store = BehaviorStore(Path(PARAMETERS["behavior_dir"]).expanduser(), config_file(SHIPPED))
     name = PurePath(request.file).stem if request.text else request.name

@@ -13,8 +13,8 @@ from typing import Protocol
 
 import click
 
-from ...base.whole_file import NoPlaceForFile, draft_in, move_whole, require_new
-from ...nao.robot_files import HOME, full_path
+from ...core.files import NoPlaceForFile, draft_in, move_whole, require_new
+from ...core.nao_facts import HOME, full_path
 from ..cli_settings import CliSettings, NaoGroup, address_of, settings_of, url_option
 from ..direct_robot import DirectRobot
 from ..output import CommandFailed, StackMissing, overwrite_option, say_json, say_lines, table, wanted_file

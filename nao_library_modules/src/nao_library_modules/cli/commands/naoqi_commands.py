@@ -13,9 +13,9 @@ import click
 
 from naoqi.translate import readable_call, readable_type
 
-from ...base.answers import value_of_json
-from ...base.limits import limit
-from ...base.suggestion import did_you_mean
+from ...core.errors import did_you_mean
+from ...core.fields import limit
+from ...core.memory_functions import value_of_json
 from .. import completion
 from ..chain_text import Number
 from ..cli_settings import CliSettings, NaoCommand, NaoGroup, SignedCommand, address_of, settings_of, url_option
@@ -54,7 +54,7 @@ def get_command(context: click.Context, keys: tuple[str, ...]) -> None:
 @click.pass_context
 def set_command(context: click.Context, key: str, value: str, event: bool) -> None:
     """Write VALUE, JSON or plain text, into KEY."""
-    from ...functions.memory_functions import parse_assignment
+    from ...core.memory_functions import parse_assignment
 
     settings = settings_of(context)
     _, content = parse_assignment(f"key={value}")

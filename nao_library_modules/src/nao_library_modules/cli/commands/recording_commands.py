@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from ...base.limits import limit
+from ...core.fields import limit
 from ..chain_text import Number
 from ..cli_settings import CliSettings, NaoCommand, NaoGroup, OneOf, settings_of
 from ..goals import GoalEnd, GoalRun, fail, function_message, run_functions, show
@@ -126,8 +126,8 @@ def sound(context: click.Context, file: str, seconds: float | None, channels: st
 
     A real robot keeps it there in any case.
     """
-    from ...audio_in.fields import FILE_TYPES
-    from ...nao.robot_files import full_path
+    from ...audio_in.audio_in_fields import FILE_TYPES
+    from ...core.nao_facts import full_path
 
     settings = settings_of(context)
     target = wanted_file(file, overwrite, FILE_TYPES)

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from ...base.suggestion import did_you_mean
+from ...core.errors import did_you_mean
 from .. import completion
 from ..chain_text import NEXT, TypedFunction, build_message, read_chain
 from ..cli_settings import CliSettings, NaoCommand, SignedCommand, settings_of
@@ -62,7 +62,7 @@ def _server_state(stack: Stack, name: str) -> dict[str, Any]:
 def _driver_parts(stack: Stack) -> dict[str, list[str]]:
     """Node of the driver -> the nodes of nao_robot that are parts of it; relative names."""
     from ...driver.nao_driver import PARTS
-    from ...ros.part_names import parts_among
+    from ...ros.master_api import parts_among
 
     nodes, found = parts_among(stack.graph.services()), {}
     for part, _ in PARTS.values():
@@ -73,7 +73,7 @@ def _driver_parts(stack: Stack) -> dict[str, list[str]]:
 
 
 def _robot_state(address: tuple[str, int]) -> dict[str, Any]:
-    from ...nao.body_devices import CHARGE
+    from ...core.nao_facts import CHARGE
 
     try:
         with DirectRobot(address, limit=3.0) as robot:
@@ -138,7 +138,7 @@ class _Diagnostics:
 
 def silent_robots(reports: Iterable[Any]) -> dict[str, str]:
     """Address -> what a node reports of the robot there, of those that do not answer for the moment."""
-    from ...ros.health import SILENT
+    from ...core.health import SILENT
 
     told = [({each.key: each.value for each in status.values}, status.message) for status in reports]
     return {values["address"]: text for values, text in told if values.get("state") == SILENT and "address" in values}
@@ -149,7 +149,7 @@ def _level_number(level: Any) -> int:
 
 
 def status_lines(found: Mapping[str, Any]) -> Iterator[str]:
-    from ...ros.part_names import PART_OF
+    from ...ros.master_api import PART_OF
 
     stiffness = found["stiffness"]
     reached = "SILENT" if found["silent"] else "connected" if found["connected"] else "NOT REACHED"
@@ -384,7 +384,7 @@ def _tell_dry_run(settings: CliSettings, server: str, functions: Sequence[Any]) 
 
     Raises CommandFailed if it could not be carried out, or the server does not say.
     """
-    from ...functions.check_service import NotValidated
+    from ...core.describe import NotValidated
 
     goal = message_class(f"{settings.stack.describe(server, brief=True).action}Goal")
     try:

@@ -6,9 +6,9 @@ from typing import Any
 
 import click
 
-from ...base.errors import BadGoal
-from ...base.limits import limit
-from ...nao.touch_names import GROUPS, SENSORS, devices_of, names_of
+from ...core.errors import BadGoal
+from ...core.fields import limit
+from ...core.nao_facts import GROUPS, SENSORS, devices_of, names_of
 from ..chain_text import Number
 from ..cli_settings import CliSettings, NaoGroup, OneOf, SignedCommand, settings_of
 from ..goals import start_node

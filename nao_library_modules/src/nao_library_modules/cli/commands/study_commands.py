@@ -14,8 +14,8 @@ import click
 
 from naoqi.errors import NaoError
 
-from ...base.suggestion import of_those
-from ...base.whole_file import FileTrouble, write_whole
+from ...core.errors import of_those
+from ...core.files import FileTrouble, write_whole
 from ..cli_settings import CliSettings, NaoCommand, NaoGroup, settings_of
 from ..output import CommandFailed, CommandInterrupted, overwrite_option, say_json, say_lines, table, wanted_file
 from .console_commands import command_check

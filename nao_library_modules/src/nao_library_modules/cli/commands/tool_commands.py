@@ -12,9 +12,8 @@ from click.shell_completion import get_completion_class
 
 from naoqi.errors import NaoError
 
-from ...base.paths import config_file
-from ...base.whole_file import write_whole
-from ...nao.type_names import OURS, THEIRS
+from ...core.files import config_file, write_whole
+from ...ros.type_names import OURS, THEIRS
 from ..cli_settings import NaoCommand, NaoGroup, OneOf, settings_of
 from ..completion import register
 from ..output import CommandFailed, overwrite_option, say_json, say_lines

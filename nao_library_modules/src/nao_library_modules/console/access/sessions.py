@@ -24,9 +24,9 @@ from pathlib import Path
 
 from naoqi.errors import NaoError
 
-from ...base.whole_file import draft_in, put_aside, write_whole
 from ...behaviors.behavior_errors import Problem
 from ...behaviors.strict_yaml import dump, line_in
+from ...core.files import draft_in, put_aside, write_whole
 from ...studies.commands import ConsoleFileError, FileReader
 from .connections import address_group
 

@@ -20,7 +20,7 @@ from starlette.requests import ClientDisconnect
 
 from naoqi.errors import NaoError
 
-from ...base.paths import config_file
+from ...core.files import config_file
 from ...studies.commands import RobotCommand
 from ...studies.robot_events import namespace_of
 from ..access.connections import refusal_of_late

@@ -8,8 +8,8 @@ from typing import Any
 from nicegui import ui
 from starlette.requests import Request
 
-from ...base.suggestion import closest
 from ...behaviors.strict_yaml import dump
+from ...core.errors import closest
 from ...studies.commands import RobotCommand
 from ..robots.forms import as_command, as_python, as_yaml, form_of
 from .field_inputs import FieldInputs

@@ -20,8 +20,8 @@ from nicegui import ui
 
 from naoqi.errors import NaoError
 
-from ...base.suggestion import did_you_mean
-from ...nao.touch_names import SENSORS
+from ...core.errors import did_you_mean
+from ...core.nao_facts import SENSORS
 from ...studies.robot_events import ConsoleEvent
 from ..access.guard import session_of
 from ..robots.robot_goals import Run

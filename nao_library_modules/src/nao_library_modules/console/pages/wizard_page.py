@@ -19,7 +19,7 @@ from nicegui import context, ui
 
 from naoqi.errors import NaoError
 
-from ...base.paths import config_file
+from ...core.files import config_file
 from ...studies.commands import ConsoleFileError, RobotCommand
 from ...studies.studies import Studies
 from ..access.guard import session_of

@@ -13,13 +13,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Tuple
 
-from ...base.degrees import ANGLES, in_rad, is_in_degrees
-from ...base.suggestion import did_you_mean
 from ...behaviors.behavior_errors import BehaviorError
 from ...behaviors.model import Behavior
 from ...behaviors.parameters import UNKNOWN, escaped, text_of
 from ...behaviors.strict_yaml import dump, dump_line, load
-from ...functions.server_types import ServerType, described_type, server_type
+from ...core.errors import did_you_mean
+from ...core.geometry import ANGLES, in_rad, is_in_degrees
+from ...core.server_types import ServerType, described_type, server_type
 
 if TYPE_CHECKING:
     from ...studies.commands import RobotCommand

@@ -19,13 +19,12 @@ from std_srvs.srv import Empty
 from nao_library_msgs.srv import DescribeFunctions
 from naoqi.errors import NaoError
 
-from ...base.suggestion import of_those
 from ...cli.output import plain, progress_text
-from ...functions.server_types import DESCRIBE, ServerType, servers_among, those_in
-from ...owners.line import OwnerLine
-from ...ros.check_client import NoService, NotAnswered, call_service
+from ...core.errors import of_those
+from ...core.process_owners import OwnerLine
+from ...core.server_types import DESCRIBE, ServerType, servers_among, those_in
 from ...ros.driver_types import spoken
-from ...ros.goal_tracker import SERVER_LIMIT, GoalTracker, server_connection
+from ...ros.goal_client import SERVER_LIMIT, GoalTracker, NoService, NotAnswered, call_service, server_connection
 from ...ros.master_api import GONE
 from ...studies.commands import CommandGoal, NotThere, RobotCommand, ServiceRefused, Stopped, goal_of, type_of
 from ...studies.robot_events import EventStream, namespace_of, within

@@ -14,7 +14,7 @@ import rospy
 from actionlib_msgs.msg import GoalID, GoalStatusArray
 
 from ...cli.output import plain, progress_text
-from ...functions.server_types import ACTIONS, server_type
+from ...core.server_types import ACTIONS, server_type
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,11 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ...base.errors import BadGoal
 from ...behaviors.behavior_errors import BehaviorError, Problem
 from ...behaviors.behavior_reader import KINDS, read
 from ...behaviors.model import Behavior, at_of
 from ...behaviors.strict_yaml import load
+from ...core.errors import BadGoal
 from ...studies.commands import LONGEST
 from .yaml_places import (
     EditRefused,

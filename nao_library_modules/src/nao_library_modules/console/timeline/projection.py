@@ -19,7 +19,7 @@ from typing import Any, Tuple
 
 from naoqi.errors import NaoError
 
-from ...processes.own_stack import OwnStack, StackFailed
+from ...ros.own_stack import OwnStack, StackFailed
 
 LIMIT = 600.0
 """s of this computer that a projected behaviour may take."""

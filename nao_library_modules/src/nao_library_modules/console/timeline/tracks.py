@@ -14,7 +14,6 @@ import yaml
 
 from naoqi.errors import NaoError
 
-from ...base.paths import config_file
 from ...behaviors.behavior_errors import Problem
 from ...behaviors.behavior_reader import name_on_timeline
 from ...behaviors.binder import Library, bind_what_can_be
@@ -45,6 +44,7 @@ from ...behaviors.model import (
 from ...behaviors.parameters import UNKNOWN, given_as_text
 from ...behaviors.server_functions import FunctionTables
 from ...behaviors.strict_yaml import dump_line
+from ...core.files import config_file
 from ...motion.recorded_motion import motion_of
 from .document import BehaviorDocument, can_shift, can_stretch, step_path
 

@@ -39,9 +39,9 @@ from typing import Any, Deque, Tuple, Union
 
 from naoqi.errors import NaoError
 
-from ...base.places import yaw_of_quaternion
-from ...base.suggestion import did_you_mean
-from ...nao.camera_facts import CAMERAS
+from ...core.errors import did_you_mean
+from ...core.geometry import yaw_of_quaternion
+from ...core.nao_facts import CAMERAS
 from .alarms import AlarmWatch
 from .background import in_background
 from .robot_state import BodyWatch

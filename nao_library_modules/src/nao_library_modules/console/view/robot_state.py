@@ -13,9 +13,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from ...nao.body_devices import CHARGING_BIT
-from ...ros.body_reports import BATTERY_FLAGS
-from ...ros.health import RECORDINGS, SILENT_FOR, STARTED
+from ...core.health import BATTERY_FLAGS, RECORDINGS, SILENT_FOR, STARTED
+from ...core.nao_facts import CHARGING_BIT
 from .background import Subscriptions, Takers
 from .senses import CONNECTED, TEXT, Latched, MemoryTopics, Perception, felt
 

@@ -17,8 +17,8 @@ from typing import Any, Mapping
 
 from naoqi.errors import NaoError
 
-from ...base.suggestion import did_you_mean
-from ...nao.touch_names import SENSORS
+from ...core.errors import did_you_mean
+from ...core.nao_facts import SENSORS
 from .background import Subscriptions, Takers
 
 CONNECTED = frozenset({"connected", "silent"})

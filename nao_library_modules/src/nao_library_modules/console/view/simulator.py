@@ -8,8 +8,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ...base.errors import BadGoal
 from ...cli.stack import SIMULATOR
+from ...core.errors import BadGoal
 
 KINDS = ("ball", "box", "cylinder", "landmark", "qr", "face", "person")
 """Things that the page places."""

@@ -18,10 +18,9 @@ from sensor_msgs.msg import CameraInfo, JointState
 from nao_library_msgs.msg import JointAnglesWithSpeed
 from naoqi.errors import NaoError
 
-from ...base.rotations import about, product, rotate
-from ...functions.known_robot import robot_facts
-from ...nao.camera_facts import CAMERA_NAMES, CAMERAS
-from ...nao.gaze import CameraMount, Head, load_head, look_at
+from ...core.geometry import about, product, rotate
+from ...core.goal_checks import robot_facts
+from ...core.nao_facts import CAMERA_NAMES, CAMERAS, CameraMount, Head, load_head, look_at
 from ...ros.driver_types import spoken
 from ...studies.commands import Stopped
 

@@ -31,10 +31,9 @@ from typing import Any, Union
 
 from naoqi.errors import NaoError
 
-from ...base.colours import is_colour, parse_colour, to_integer
-from ...base.errors import BadGoal
-from ...base.suggestion import did_you_mean
 from ...behaviors.strict_yaml import dump_line, line_in, line_of
+from ...core.errors import BadGoal, did_you_mean
+from ...core.lights_and_colours import is_colour, parse_colour, to_integer
 from ...driver.teleop.teleop_nao_keyboard import ARROWS, DIRECTIONS
 from ...studies.commands import FORMS, KEYS, FileReader, RobotCommand, place_of_field, read_command, revision_of
 from ..robots.robot_goals import GOAL_ENDS, NOT_SENT

@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 
 from naoqi.errors import NaoError
 
-from ...base.suggestion import of_those
-from ...base.whole_file import write_whole
 from ...behaviors.behavior_errors import Problem
 from ...behaviors.server_functions import FunctionTables
+from ...core.errors import of_those
+from ...core.files import write_whole
 from ...studies.command_check import CommandCheck, value_problems
 from ...studies.commands import BEHAVIORS, RUN, ConsoleFileError, RobotCommand, command_problems, revision_of, type_of
 from .layout import EditConflict, WizardButton, WizardLayout, read_layout

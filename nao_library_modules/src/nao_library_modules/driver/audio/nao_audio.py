@@ -22,16 +22,14 @@ from nao_library_msgs.srv import (
 from naoqi.errors import NaoError, UnknownModule
 from naoqi.limits import ANSWER_LIMIT, FILE_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal
-from ...base.field_checks import number_parameter
-from ...base.limits import limit
-from ...nao.robot_files import READ, WRITTEN, full_path, is_in
-from ...robot.robot_task import ask, run_task
-from ...ros.health import Report
+from ...core.errors import BadGoal
+from ...core.fields import limit, number_parameter
+from ...core.health import Report
+from ...core.nao_facts import READ, WRITTEN, full_path, is_in
+from ...core.robot import ask, run_task
+from ...core.waiting import CancellationToken
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import pose_of, tf_prefix
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock, pose_of, tf_prefix
 from ..base.driver_node import LazyTopic, name_for_robot, publish
 from ..base.lazy_subscription import Extractor, ExtractorKind
 

@@ -18,10 +18,10 @@ from naoqi import ALBroker, ALModule
 from naoqi.errors import NaoError, UnknownModule
 from naoqi.limits import STREAM_LIMIT
 
-from ...robot.robot_task import ask
-from ...ros.health import Level, Report
+from ...core.health import Level, Report
+from ...core.robot import ask
 from ...ros.node_interface import NodeInterface
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import LazyTopic, frame_parameter, name_for_robot, publish
 from ..base.lazy_subscription import LazySubscription
 from ..base.reconfigure import ReconfigureField, serve

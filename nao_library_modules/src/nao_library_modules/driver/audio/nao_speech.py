@@ -21,14 +21,13 @@ from nao_library_actions.msg import (
 from nao_library_msgs.msg import WordRecognized
 from naoqi.errors import NaoError, UnknownModule
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal
-from ...base.suggestion import of_those
-from ...robot.robot_task import ask
-from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
-from ...ros.health import Report
+from ...core.errors import BadGoal, of_those
+from ...core.health import Report
+from ...core.robot import ask
+from ...core.waiting import CancellationToken
+from ...ros.action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.node_interface import NodeInterface, node_that_offers
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import name_for_robot, publish, whenever
 from ..base.reconfigure import ReconfigureField, serve, update
 from .robot_speech import (

@@ -13,12 +13,12 @@ from typing import Any
 from naoqi.errors import NaoError
 from naoqi.limits import LOST_WORD_LIMIT, TEXT_PATIENCE
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import Preempted, RobotLost
-from ...base.limits import limit
-from ...robot.event_relay import EventRelay
-from ...robot.robot_task import ask, end_call
-from ...ros.health import Level, Report
+from ...core.errors import Preempted, RobotLost
+from ...core.fields import limit
+from ...core.health import Level, Report
+from ...core.robot import ask, end_call
+from ...core.robot_events import EventRelay
+from ...core.waiting import CancellationToken
 
 log = logging.getLogger(__name__)
 

@@ -10,9 +10,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ...robot.event_relay import EventRelay
-from ...robot.robot_task import ask
-from ...ros.health import Report
+from ...core.health import Report
+from ...core.robot import ask
+from ...core.robot_events import EventRelay
 from ..base.lazy_subscription import LazySubscription
 from .robot_speech import SpeechSettings
 

@@ -11,18 +11,17 @@ import rospy
 
 from naoqi.errors import NaoError
 
-from ...base.errors import RobotLost
-from ...base.field_checks import number_parameter
-from ...base.limits import limit
-from ...processes.closing import close_all
-from ...robot.robot import Robot
-from ...ros.concurrent_action_server import ConcurrentActionServer
+from ...core.errors import RobotLost
+from ...core.fields import limit, number_parameter
+from ...core.health import connection_report
+from ...core.processes import close_all
+from ...core.robot import Robot
+from ...ros.action_server import ConcurrentActionServer
 from ...ros.diagnostics import DiagnosticsPublisher, Reports
 from ...ros.driver_types import require_types
-from ...ros.health import connection_report
 from ...ros.node import NodeProcess, being_made, own_as_node, robot_address, take_patience
 from ...ros.node_interface import AlreadyOffered, NodeInterface
-from ...ros.robot_frames import tf_prefix
+from ...ros.time_and_frames import tf_prefix
 
 
 class LazyTopic(rospy.SubscribeListener):

@@ -10,8 +10,8 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ...robot.event_relay import EventRelay
-from ...ros.health import Level, Report
+from ...core.health import Level, Report
+from ...core.robot_events import EventRelay
 
 log = logging.getLogger(__name__)
 
@@ -44,7 +44,7 @@ class LazySubscription:
         """Nothing is wanted yet.
 
         Args:
-            robot: Its connection, see `nao_library_modules.robot`.
+            robot: Its connection, see `nao_library_modules.core.robot`.
             name: Of what is started, for the log.
             start: Starts it. It may have been started before, on a robot that was lost since.
             alive: Whether it still works; if not, it is stopped and started. Asked once a second.

@@ -10,9 +10,8 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
-from ...base.cancellation import CancellationToken
-from ...base.clock import WallClock
-from ...ros.health import Level, Report
+from ...core.health import Level, Report
+from ...core.waiting import CancellationToken, WallClock
 
 log = logging.getLogger(__name__)
 

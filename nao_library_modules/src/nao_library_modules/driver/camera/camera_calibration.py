@@ -16,9 +16,8 @@ import yaml
 
 from naoqi.errors import NaoError
 
-from ...base.paths import ros_home
-from ...base.whole_file import put_aside, write_whole
-from ...base.yaml_values import Budget, load_within
+from ...core.files import put_aside, ros_home, write_whole
+from ...core.yaml_values import Budget, load_within
 
 log = logging.getLogger(__name__)
 

@@ -14,8 +14,8 @@ from std_msgs.msg import Header
 import vision_definitions as vision
 from naoqi.errors import NaoError
 
-from ...base.doors import Later
-from ...nao.camera_facts import CAMERAS, SIZES
+from ...core.lazy import Later
+from ...core.nao_facts import CAMERAS, SIZES
 from .camera_calibration import NO_ROTATION, PLUMB_BOB, Calibration
 
 RESOLUTIONS = {number: f"{width}x{height}" for number, (width, height) in SIZES.items()}

@@ -14,7 +14,7 @@ from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
-from ...nao.camera_facts import CAMERAS
+from ...core.nao_facts import CAMERAS
 from .camera_calibration import Calibration, ideal, read, scaled
 from .camera_images import to_info
 

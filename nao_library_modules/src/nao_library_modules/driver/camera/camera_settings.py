@@ -11,7 +11,7 @@ from typing import Any
 import vision_definitions as vision
 from naoqi.errors import CallTimeout, NaoError, RobotUnreachable, UnknownModule
 
-from ...nao.camera_facts import BOTTOM, CAMERA_NAMES, CAMERAS, TOP
+from ...core.nao_facts import BOTTOM, CAMERA_NAMES, CAMERAS, TOP
 from ..base.reconfigure import ReconfigureField
 from .camera_images import COLOR_SPACES, RESOLUTIONS
 from .camera_stream import StreamSettings

@@ -11,13 +11,12 @@ from typing import Any
 from naoqi.errors import NaoError, RobotError, RobotUnreachable
 from naoqi.limits import FIRST_PICTURE_LIMIT, STREAM_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import Preempted
-from ...nao.camera_facts import CAMERA_NAMES
-from ...robot.image_clock import ImageClock
-from ...robot.robot import wait_for_calls
-from ...robot.robot_task import ask
-from ...ros.health import Level, Report
+from ...core.errors import Preempted
+from ...core.health import Level, Report
+from ...core.nao_facts import CAMERA_NAMES
+from ...core.robot import ask, wait_for_calls
+from ...core.robot_events import ImageClock
+from ...core.waiting import CancellationToken
 from ..base.lazy_subscription import CLOSE_LIMIT, LazySubscription
 from ..base.polling import RateMeter
 from .camera_images import RESOLUTIONS, SPACES, Picture, read_picture

@@ -14,12 +14,12 @@ from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
-from ...base.suggestion import did_you_mean
-from ...nao.camera_facts import CAMERA_NAMES, CAMERAS, SIZES, TOP
-from ...robot.robot_task import ask
-from ...ros.health import Report
+from ...core.errors import did_you_mean
+from ...core.health import Report
+from ...core.nao_facts import CAMERA_NAMES, CAMERAS, SIZES, TOP
+from ...core.robot import ask
 from ...ros.node_interface import NodeInterface
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import LazyTopic, frame_parameter, name_for_robot, publish
 from ..base.reconfigure import ReconfigureField, serve, update
 from .camera_calibration import CameraInfos, camera_name

@@ -11,13 +11,12 @@ from typing import Any
 from naoqi.errors import NaoError
 from naoqi.limits import MOVE_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal, Preempted
-from ...base.field_checks import number_parameter, require_within
-from ...base.limits import limit
-from ...functions.joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
-from ...nao.joint_names import MOTION, JointNames
-from ...robot.robot_task import ask, run_task
+from ...core.errors import BadGoal, Preempted
+from ...core.fields import limit, number_parameter, require_within
+from ...core.joint_trajectory import KeyFrames, check_range, expand_names, one_each, read_trajectory
+from ...core.nao_facts import MOTION, JointNames
+from ...core.robot import ask, run_task
+from ...core.waiting import CancellationToken
 
 log = logging.getLogger(__name__)
 

@@ -19,11 +19,10 @@ from typing import Any, Tuple
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT
 
-from ...base.paths import config_file
-from ...base.places import ORIGIN, Place
-from ...base.rotations import Quaternion, Vector, about, from_roll_pitch_yaw, inverse, rotate
-from ...nao.joint_names import MOTION
-from ...robot.robot_task import ask
+from ...core.files import config_file
+from ...core.geometry import ORIGIN, Place, Quaternion, Vector, about, from_roll_pitch_yaw, inverse, rotate
+from ...core.nao_facts import MOTION
+from ...core.robot import ask
 
 MEMORY = "ALMemory"
 DEVICE = "Device/SubDeviceList/{}/Value"

@@ -20,9 +20,9 @@ from nao_library_actions.msg import (
 from nao_library_msgs.msg import JointAnglesWithSpeed
 from naoqi.errors import NaoError
 
-from ...base.cancellation import CancellationToken
-from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
-from ...ros.health import Report
+from ...core.health import Report
+from ...core.waiting import CancellationToken
+from ...ros.action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import interrupt_when_lost, whenever
 from .joint_controller import InitialStiffness, JointController, Reached

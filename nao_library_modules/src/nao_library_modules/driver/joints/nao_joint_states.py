@@ -16,14 +16,12 @@ from tf2_msgs.msg import TFMessage
 
 from nao_library_msgs.srv import SetTransform
 
-from ...base.once_per_connection import OncePerConnection
-from ...base.places import BASE_LINK, FOOTPRINT, ODOM
-from ...base.rotations import from_roll_pitch_yaw, inverse, rotate
-from ...nao.joint_names import JointNames
-from ...ros.health import Report
+from ...core.geometry import BASE_LINK, FOOTPRINT, ODOM, from_roll_pitch_yaw, inverse, rotate
+from ...core.health import Report
+from ...core.nao_facts import JointNames
+from ...core.waiting import OncePerConnection
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import pose_of
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock, pose_of
 from ..base.driver_node import LazyTopic, frame_parameter, number, publish
 from ..base.polling import Polling
 from .joint_sensors import LEG_JOINTS, JointSensors, OdometryOffset, Reading, SlopeEstimator, footprint

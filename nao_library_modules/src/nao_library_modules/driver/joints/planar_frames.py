@@ -18,12 +18,10 @@ from std_msgs.msg import Header
 
 from naoqi.errors import NaoError
 
-from ...base.errors import BadGoal
-from ...base.field_checks import require_length, require_within
-from ...base.limits import limit
-from ...base.places import Place, yaw_of_quaternion
-from ...base.rotations import product, rotate
-from ...ros.robot_frames import pose_of, seen_from_above
+from ...core.errors import BadGoal
+from ...core.fields import limit, require_length, require_within
+from ...core.geometry import Place, product, rotate, yaw_of_quaternion
+from ...ros.time_and_frames import pose_of, seen_from_above
 
 PLACE, PLACES = limit("place"), limit("places")
 PATIENCE = 2.0

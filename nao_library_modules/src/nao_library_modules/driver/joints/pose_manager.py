@@ -24,18 +24,18 @@ from nao_library_actions.msg import (
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.error_codes import CodedError, ErrorCode
-from ...base.field_checks import require_within
-from ...nao.joint_names import MOTION
-from ...nao.pose_tables import Pose, UnknownPose, built_in, library, pose_table
-from ...robot.robot_task import run_task
-from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
+from ...core.errors import CodedError, ErrorCode
+from ...core.fields import require_within
+from ...core.health import Report
+from ...core.nao_facts import MOTION
+from ...core.poses import Pose, UnknownPose, built_in, library, pose_table
+from ...core.robot import run_task
+from ...core.waiting import CancellationToken
+from ...ros.action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.driver_types import spoken
-from ...ros.goal_tracker import SERVER_LIMIT, GoalTracker
-from ...ros.health import Report
+from ...ros.goal_client import SERVER_LIMIT, GoalTracker
 from ...ros.node_interface import NodeInterface
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import interrupt_when_lost
 from .joint_controller import FRACTION, STIFFEN_TIME
 

@@ -13,9 +13,9 @@ from std_srvs.srv import Empty, SetBool, SetBoolResponse, Trigger, TriggerRespon
 from naoqi.errors import NaoError, UnknownModule
 from naoqi.limits import MOVE_LIMIT
 
-from ...robot.event_relay import EventRelay
-from ...robot.robot_task import ask
-from ...ros.health import Level, Report
+from ...core.health import Level, Report
+from ...core.robot import ask
+from ...core.robot_events import EventRelay
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import publish
 from ..base.lazy_subscription import LazySubscription

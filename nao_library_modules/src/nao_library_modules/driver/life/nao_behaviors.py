@@ -11,12 +11,11 @@ from nao_library_msgs.srv import GetInstalledBehaviors, GetInstalledBehaviorsRes
 from naoqi.errors import NaoError
 from naoqi.limits import CLEAN_UP_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal, Preempted
-from ...base.suggestion import did_you_mean
-from ...robot.robot_task import ask, run_task
-from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
-from ...ros.health import Report
+from ...core.errors import BadGoal, Preempted, did_you_mean
+from ...core.health import Report
+from ...core.robot import ask, run_task
+from ...core.waiting import CancellationToken
+from ...ros.action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import interrupt_when_lost
 

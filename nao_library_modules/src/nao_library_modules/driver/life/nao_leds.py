@@ -15,18 +15,16 @@ from nao_library_msgs.msg import FadeRGB, LedStates
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT, CLEAN_UP_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal, Preempted
-from ...base.field_checks import require_within, require_zero_or
-from ...base.limits import limit
-from ...base.once_per_connection import OncePerConnection
-from ...nao.body_devices import PREFIX
-from ...nao.light_names import COLOUR_PARTS, colour_part
-from ...robot.robot_task import run_task
-from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome, Replaced
-from ...ros.health import Report
+from ...core.errors import BadGoal, Preempted
+from ...core.fields import limit, require_within, require_zero_or
+from ...core.health import Report
+from ...core.lights_and_colours import COLOUR_PARTS, colour_part
+from ...core.nao_facts import PREFIX
+from ...core.robot import run_task
+from ...core.waiting import CancellationToken, OncePerConnection
+from ...ros.action_server import ConcurrentActionServer, GoalOutcome, Replaced
 from ...ros.node_interface import NodeInterface
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import LazyTopic, interrupt_when_lost, number, publish
 from ..base.polling import Polling
 

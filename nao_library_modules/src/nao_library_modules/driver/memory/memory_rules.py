@@ -11,12 +11,10 @@ from typing import Any
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT
 
-from ...base.answers import json_of, value_of_json
-from ...base.errors import BadGoal
-from ...base.field_checks import require_zero_or
-from ...base.limits import limit
-from ...base.suggestion import did_you_mean
-from ...robot.robot_task import ask
+from ...core.errors import BadGoal, did_you_mean
+from ...core.fields import limit, require_zero_or
+from ...core.memory_functions import json_of, value_of_json
+from ...core.robot import ask
 
 FIRST = "key_"
 """Before a name that does not begin with a letter, which ROS asks for."""

@@ -11,10 +11,10 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotUnreachable
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal
-from ...robot.event_relay import EventRelay
-from ...ros.health import Level, Report
+from ...core.errors import BadGoal
+from ...core.health import Level, Report
+from ...core.robot_events import EventRelay
+from ...core.waiting import CancellationToken
 from ..base.polling import FASTEST, RETRY, RateMeter
 from .memory_rules import MEMORY, TEXT, MemoryAccess, MemoryRule, MemoryRules, converted, kind_of, matching, topics_of
 

@@ -32,13 +32,13 @@ from nao_library_msgs.srv import (
 )
 from naoqi.errors import NaoError
 
-from ...base.answers import json_of
-from ...base.suggestion import did_you_mean
+from ...core.errors import did_you_mean
+from ...core.health import Report
+from ...core.memory_functions import json_of
 from ...ros.driver_types import spoken
-from ...ros.health import Report
 from ...ros.node_interface import NodeInterface
-from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import LazyTopic, number, publish
 from .memory_rules import (
     BOOL,

@@ -20,13 +20,13 @@ from nao_library_actions.msg import (
 )
 from naoqi.errors import NaoError
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import RobotLost
-from ...base.places import FOOTPRINT, ODOM, Place
-from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome, Replaced
-from ...ros.health import Report
+from ...core.errors import RobotLost
+from ...core.geometry import FOOTPRINT, ODOM, Place
+from ...core.health import Report
+from ...core.waiting import CancellationToken
+from ...ros.action_server import ConcurrentActionServer, GoalOutcome, Replaced
 from ...ros.node_interface import NodeInterface
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import frame_parameter, interrupt_when_lost
 from ..joints.planar_frames import PlanarFrames, pose_stamped, read_path, read_place
 from .path_courses import Aim, FollowerSettings, PathCourse, TargetCourse, WalkPath

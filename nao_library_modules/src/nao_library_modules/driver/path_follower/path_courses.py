@@ -10,10 +10,9 @@ from typing import Any
 
 from naoqi.errors import NaoError
 
-from ...base.errors import BadGoal
-from ...base.field_checks import number_parameter
-from ...base.limits import limit
-from ...base.places import Place, wrapped
+from ...core.errors import BadGoal
+from ...core.fields import limit, number_parameter
+from ...core.geometry import Place, wrapped
 from ..walk.walk_commands import require_way
 
 

@@ -15,14 +15,11 @@ from std_srvs.srv import Empty
 from naoqi.errors import NaoError, RobotError
 from naoqi.limits import STOP_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.clock import WallClock
-from ...base.places import Place, wrapped
-from ...nao.joint_names import MOTION, MOVE_FAILED
-from ...nao.stiff_legs import ask_for_stiff_legs
-from ...nao.walk_speed import top_speeds
-from ...owners.line import SERVICE
-from ...robot.robot_task import ask, run_task
+from ...core.geometry import Place, wrapped
+from ...core.nao_facts import MOTION, MOVE_FAILED, ask_for_stiff_legs, top_speeds
+from ...core.process_owners import SERVICE
+from ...core.robot import ask, run_task
+from ...core.waiting import CancellationToken, WallClock
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import LazyTopic
 from ..base.polling import Rate

@@ -14,12 +14,11 @@ from nao_library_msgs.msg import ConnectionState, RobotInfo, StringStamped
 from nao_library_msgs.srv import GetRobotInfo, GetRobotInfoResponse
 from naoqi.errors import NaoError, UnknownMethod, UnknownModule
 
-from ...base.answers import json_of
-from ...base.cancellation import CancellationToken
-from ...nao.joint_names import JointNames
-from ...robot.robot_task import ask
-from ...ros.body_reports import Thresholds, body_reports, keys_of, network_reports, part_of
-from ...ros.health import Report
+from ...core.health import Report, Thresholds, body_reports, keys_of, network_reports, part_of
+from ...core.memory_functions import json_of
+from ...core.nao_facts import JointNames
+from ...core.robot import ask
+from ...core.waiting import CancellationToken
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import number, publish
 

@@ -11,12 +11,11 @@ from sensor_msgs.msg import Range
 
 from naoqi.errors import NaoError
 
-from ...nao.body_devices import FARTHEST, NEAREST, SONAR_CONE, SONARS, echo_of
-from ...robot.robot_task import ask
-from ...ros.health import Level, Report
+from ...core.health import Level, Report
+from ...core.nao_facts import FARTHEST, NEAREST, SONAR_CONE, SONARS, echo_of
+from ...core.robot import ask
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import tf_prefix
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock, tf_prefix
 from ..base.driver_node import LazyTopic, name_for_robot, number, publish
 from ..base.lazy_subscription import LazySubscription
 from ..base.polling import Polling

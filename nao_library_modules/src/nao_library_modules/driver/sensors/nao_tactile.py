@@ -15,14 +15,12 @@ from std_msgs.msg import Bool
 from nao_library_msgs.msg import Bumper, ChestButton, Fsr, HandTouch, HeadTouch, TactileTouch
 from naoqi.errors import NaoError
 
-from ...nao.body_devices import FOOT_CONTACT, SIDES, sensor_key, weight_keys
-from ...nao.touch_names import BY_EVENT
-from ...robot.event_relay import EventRelay
-from ...robot.robot_task import ask
-from ...ros.health import Report
+from ...core.health import Report
+from ...core.nao_facts import BY_EVENT, FOOT_CONTACT, SIDES, sensor_key, weight_keys
+from ...core.robot import ask
+from ...core.robot_events import EventRelay
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import tf_prefix
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock, tf_prefix
 from ..base.driver_node import LazyTopic, number, publish
 from ..base.lazy_subscription import LazySubscription
 from ..base.polling import Polling

@@ -21,18 +21,12 @@ from nao_library_msgs.srv import LearnFace, LearnFaceResponse, VisionMotionSensi
 from naoqi.errors import BadArguments, NaoError, UnknownMethod
 from naoqi.limits import LEARN_LIMIT
 
-from ...nao.camera_facts import CAMERA_NAMES, TOP, camera_number
-from ...robot.image_clock import ImageClock
-from ...ros.health import Report
+from ...core.health import Report
+from ...core.nao_facts import CAMERA_NAMES, TOP, camera_number
+from ...core.robot_events import ImageClock
 from ...ros.node_interface import NodeInterface
-from ...ros.robot_frames import pose_of, tf_prefix
-from ...vision.detection.events import (
-    Detection,
-    DetectionArray,
-    face_detections,
-    landmark_detections,
-    movement_detections,
-)
+from ...ros.time_and_frames import pose_of, tf_prefix
+from ...vision.detections import Detection, DetectionArray, face_detections, landmark_detections, movement_detections
 from ..base.driver_node import name_for_robot, publish
 from ..base.lazy_subscription import Extractor, ExtractorKind
 from ..camera.camera_images import header_of

@@ -16,7 +16,7 @@ from nao_library_actions.msg import BodyPoseAction, BodyPoseGoal
 from nao_library_msgs.msg import JointAnglesWithSpeed
 
 from ...ros.driver_types import spoken
-from ...ros.simple_action_client import SimpleActionClient
+from ...ros.goal_client import SimpleActionClient
 from ..walk.walk_commands import Velocity
 
 HEAD = ("HeadYaw", "HeadPitch")

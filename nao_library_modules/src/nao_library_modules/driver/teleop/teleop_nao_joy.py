@@ -14,11 +14,9 @@ from sensor_msgs.msg import Joy
 
 from naoqi.errors import NaoError
 
-from ...base.cancellation import CancellationToken
-from ...base.clock import WallClock
-from ...base.field_checks import number_parameter
-from ...base.limits import limit
-from ...ros.health import Level, Report
+from ...core.fields import limit, number_parameter
+from ...core.health import Level, Report
+from ...core.waiting import CancellationToken, WallClock
 from ..base.polling import Rate
 from ..walk.walk_commands import STANDSTILL, Velocity
 from .teleop_clients import TeleopClients

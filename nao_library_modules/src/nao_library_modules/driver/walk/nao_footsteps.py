@@ -21,17 +21,15 @@ from nao_library_msgs.srv import ClipFootstep, ClipFootstepResponse, StepTargetS
 from naoqi.errors import NaoError
 from naoqi.limits import ANSWER_LIMIT, STOP_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.errors import BadGoal, Preempted
-from ...base.field_checks import require_length, require_within
-from ...base.limits import limit
-from ...base.places import Place
-from ...nao.joint_names import MOTION
-from ...nao.stiff_legs import ask_for_stiff_legs
-from ...ros.concurrent_action_server import ConcurrentActionServer, GoalOutcome
-from ...ros.health import Report
+from ...core.errors import BadGoal, Preempted
+from ...core.fields import limit, require_length, require_within
+from ...core.geometry import Place
+from ...core.health import Report
+from ...core.nao_facts import MOTION, ask_for_stiff_legs
+from ...core.waiting import CancellationToken
+from ...ros.action_server import ConcurrentActionServer, GoalOutcome
 from ...ros.node_interface import NodeInterface
-from ...ros.ros_clock import RosClock
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import interrupt_when_lost, whenever
 from ..joints.joint_controller import InitialStiffness, JointController
 from .walk_commands import LEFT, LEGS, RIGHT, FootStep, read_step

@@ -21,16 +21,16 @@ from nao_library_msgs.msg import StepTarget
 from nao_library_msgs.srv import CmdPoseService, CmdVelService, SetArmsEnabled, StepTargetService
 from naoqi.errors import NaoError
 
-from ...base.cancellation import CancellationToken
-from ...base.kept import Kept
-from ...functions.joint_trajectory import KeyFrames
-from ...nao.joint_names import MOTION, MOVE_FAILED
-from ...robot.event_relay import EventRelay
-from ...robot.robot_task import ask
-from ...ros.health import Level, Report
+from ...core.files import Kept
+from ...core.health import Level, Report
+from ...core.joint_trajectory import KeyFrames
+from ...core.nao_facts import MOTION, MOVE_FAILED
+from ...core.robot import ask
+from ...core.robot_events import EventRelay
+from ...core.waiting import CancellationToken
 from ...ros.node_interface import AlreadyOffered, NodeInterface
-from ...ros.ros_clock import RosClock
 from ...ros.server_node import node_file
+from ...ros.time_and_frames import RosClock
 from ..base.driver_node import number, whenever
 from ..joints.joint_controller import InitialStiffness, JointController
 from ..joints.joint_sensors import MEMORY

@@ -15,11 +15,10 @@ from std_msgs.msg import Empty
 from naoqi.errors import NaoError
 from naoqi.limits import STOP_LIMIT
 
-from ...base.places import FOOTPRINT, ODOM, Place
-from ...nao.joint_names import MOTION
-from ...nao.stiff_legs import ask_for_stiff_legs
-from ...robot.robot_task import ask
-from ...ros.health import Level, Report
+from ...core.geometry import FOOTPRINT, ODOM, Place
+from ...core.health import Level, Report
+from ...core.nao_facts import MOTION, ask_for_stiff_legs
+from ...core.robot import ask
 from ...ros.node_interface import NodeInterface
 from ..base.driver_node import frame_parameter
 from ..joints.planar_frames import PlanarFrames, read_place

@@ -12,11 +12,9 @@ from typing import Any, List, Union
 
 from naoqi.errors import NaoError
 
-from ...base.error_codes import CodedError, ErrorCode
-from ...base.errors import BadGoal
-from ...base.field_checks import number_parameter, require_within
-from ...base.limits import limit
-from ...base.places import Place
+from ...core.errors import BadGoal, CodedError, ErrorCode
+from ...core.fields import limit, number_parameter, require_within
+from ...core.geometry import Place
 
 WAY, ANGLE = limit("way"), limit("angle")
 NO_VELOCITY = 1e-3

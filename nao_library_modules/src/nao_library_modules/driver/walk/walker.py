@@ -12,12 +12,10 @@ from typing import Any
 from naoqi.errors import NaoError, RobotUnreachable
 from naoqi.limits import ANSWER_LIMIT, CLEAN_UP_LIMIT
 
-from ...base.cancellation import CancellationToken
-from ...base.clock import WallClock
-from ...base.errors import Preempted
-from ...nao.joint_names import MOTION
-from ...nao.stiff_legs import ask_for_stiff_legs
-from ...robot.robot_task import run_task
+from ...core.errors import Preempted
+from ...core.nao_facts import MOTION, ask_for_stiff_legs
+from ...core.robot import run_task
+from ...core.waiting import CancellationToken, WallClock
 from .walk_commands import (
     Command,
     FootStep,

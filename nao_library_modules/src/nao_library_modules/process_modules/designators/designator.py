@@ -26,8 +26,8 @@ from typing import Any, ClassVar, Iterable, Mapping, Union
 
 import yaml
 
-from ...base.limits import limit
-from ...base.yaml_values import Budget, load_within
+from ...core.fields import limit
+from ...core.yaml_values import Budget, load_within
 from ..failures import DesignatorError, MadeToBeUsed, PlanError, short_repr, use_all
 
 KINDS = ("action", "motion", "location", "object")

@@ -24,7 +24,7 @@ from dataclasses import dataclass, field, replace
 from itertools import islice
 from typing import Any, Callable, Iterable, NamedTuple
 
-from ...base.places import ODOM, Place, wrapped
+from ...core.geometry import ODOM, Place, wrapped
 from ..failures import AmbiguousPerception, DesignatorError, short_repr
 from .designator import Designator, location, object_
 from .rules import Mismatch, number, numbers_of_nao, plain, rule

@@ -24,9 +24,9 @@ import yaml
 
 from naoqi.errors import NaoError
 
-from ...base.limits import limit
-from ...base.paths import config_file
-from ...base.suggestion import did_you_mean
+from ...core.errors import did_you_mean
+from ...core.fields import limit
+from ...core.files import config_file
 from ..failures import DesignatorError, PlanError, short_repr
 from .designator import KINDS, Designator, plain_key
 

@@ -1,1 +1,0 @@
-"""What speech, sounds and hearing share."""

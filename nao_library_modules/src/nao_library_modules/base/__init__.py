@@ -1,1 +1,0 @@
-"""What everything here stands on and what knows nothing of the robot: errors, limits, places, cancellation, files."""

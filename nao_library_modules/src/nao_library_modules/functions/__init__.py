@@ -1,1 +1,0 @@
-"""Chains of functions: binding to parameters, checks, running, and what describes them."""

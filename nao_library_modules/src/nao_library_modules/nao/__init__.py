@@ -1,1 +1,0 @@
-"""Facts of the robot: its joints, lights, sensors, cameras and poses."""

@@ -1,1 +1,0 @@
-"""Programs that this one starts, watches and ends, and its own end."""

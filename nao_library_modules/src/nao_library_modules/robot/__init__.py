@@ -1,1 +1,0 @@
-"""Calls to the robot's NAOqi, its clock and its events."""

@@ -1,1 +1,0 @@
-"""NaoBasic, and what the action servers share."""

@@ -1,1 +1,0 @@
-"""Pictures, streams and recordings of cameras."""

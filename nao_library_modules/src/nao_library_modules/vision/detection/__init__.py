@@ -1,1 +1,0 @@
-"""What NaoVision sees: objects, landmarks, faces; and following them."""
