@@ -49,8 +49,7 @@ class Layer:
 
 ROOMS = {
     "nao_library_modules": """
-    . base nao processes owners robot functions ros server
-    lights audio audio_out audio_in motion vision.capture vision.detection vision tactile
+    . core ros lights audio_out audio_in motion vision tactile
     driver.base driver.joints driver.walk driver.path_follower driver.camera driver.audio driver.memory driver.sensors
     driver.life driver.teleop driver
     process_modules

@@ -1,21 +1,33 @@
 """Action servers that play chains of NAOqi functions: NaoBasic and the modules that inherit it."""
 
-from .core.lazy import Former
+from .core.lazy import Former, door
+
+__all__ = ["FORMER", "NaoBasic"]
+__getattr__ = door(__name__, {"NaoBasic": "core.nao_basic"})
 
 FORMER = {
-    "answers": "base.answers",
-    "check_client": "ros.check_client",
-    "colours": "base.colours",
-    "errors": "base.errors",
-    "field_checks": "base.field_checks",
-    "function_chain": "functions.chain",
-    "light_checks": "lights.checks",
-    "nao_audio": "audio.sound_card",
-    "nao_basic": "server.nao_basic",
-    "new_functions": "server.new_functions",
+    "answers": "core.memory_functions",
+    "base": "core",
+    "base.errors": "core.errors",
+    "base.suggestion": "core.errors",
+    "base.whole_file": "core.files",
+    "check_client": "ros.goal_client",
+    "colours": "core.lights_and_colours",
+    "errors": "core.errors",
+    "field_checks": "core.fields",
+    "function_chain": "core.chain",
+    "functions": "core",
+    "functions.fields": "core.fields",
+    "light_checks": "lights.light_fields",
+    "lights.fields": "lights.light_fields",
+    "nao": "core",
+    "nao.touch_names": "core.nao_facts",
+    "nao_audio": "core.audio_device",
+    "nao_basic": "core.nao_basic",
+    "new_functions": "core.new_functions",
     "node": "ros.node",
-    "paths": "base.paths",
-    "places": "base.places",
+    "paths": "core.files",
+    "places": "core.geometry",
     "process_modules.designators.locations": "process_modules.designators.objects_and_locations",
     "process_modules.designators.objects": "process_modules.designators.objects_and_locations",
     "process_modules.designators.patterns": "process_modules.designators.rules",
@@ -27,8 +39,13 @@ FORMER = {
     "process_modules.registry": "process_modules.process_module",
     "process_modules.space": "process_modules.designators.objects_and_locations",
     "process_modules.waiting": "process_modules.control",
-    "simple_action_client": "ros.simple_action_client",
-    "whole_file": "base.whole_file",
+    "processes": "ros",
+    "processes.own_stack": "ros.own_stack",
+    "simple_action_client": "ros.goal_client",
+    "vision.capture": "vision",
+    "vision.capture.pictures": "vision.pictures",
+    "vision.capture.video": "vision.video",
+    "whole_file": "core.files",
 }
 """Module, as programs of others may import it -> where it is; both relative to this package."""
 

@@ -51,4 +51,4 @@ def test_what_packages_load_when_it_is_asked_for_is_there():
 
 def test_a_name_that_no_module_has_is_told():
     with pytest.raises(AttributeError, match="module 'nao_library_modules.lights' has no attribute 'NaoLamps'"):
-        door("nao_library_modules.lights", {"NaoLights": "server"})("NaoLamps")
+        door("nao_library_modules.lights", {"NaoLights": "lights_server"})("NaoLamps")

@@ -3,4 +3,4 @@
 from ..core.lazy import door
 
 __all__ = ["NaoAudioInput"]
-__getattr__ = door(__name__, {"NaoAudioInput": "server"})
+__getattr__ = door(__name__, {"NaoAudioInput": "audio_in_server"})

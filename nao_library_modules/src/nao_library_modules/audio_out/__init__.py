@@ -3,4 +3,4 @@
 from ..core.lazy import door
 
 __all__ = ["NaoAudioOutput"]
-__getattr__ = door(__name__, {"NaoAudioOutput": "server"})
+__getattr__ = door(__name__, {"NaoAudioOutput": "audio_out_server"})

@@ -56,6 +56,8 @@ from .audio_out_fields import (
 )
 from .played_sounds import ANIMATED, PLAYER, SPEECH, Sounds
 
+log = logging.getLogger(__name__)
+
 
 class Synthesiser(Part):
     """Calls of ALTextToSpeech.
@@ -96,8 +98,6 @@ class Synthesiser(Part):
             known[method] = [str(name) for name in self.call(method)]
         return known[method]
 
-
-log = logging.getLogger(__name__)
 
 WORD, SENTENCE = "ALTextToSpeech/CurrentWord", "ALTextToSpeech/CurrentSentence"
 STARTED = "ALTextToSpeech/TextStarted"

@@ -30,6 +30,8 @@ from .memory_functions import MemoryFunctions
 from .server_types import ACTIONS, server_type
 from .waiting import OncePerConnection
 
+log = logging.getLogger(__name__)
+
 _NUMBER = re.compile(r"u?int\d+|float\d+")
 _TIMES = ("duration", "time")
 _FIELD = re.compile(r"(?P<type>[\w/]+(?:\[\d*\])?)\s+(?P<name>\w+)\s*(?:#\s*(?P<comment>.*))?")
@@ -73,9 +75,6 @@ def read_fields(definition: str) -> dict[str, MessageField]:
         else:
             last = ""
     return fields
-
-
-log = logging.getLogger(__name__)
 
 
 LIGHTS: Sequence[Question] = (("ALLeds", "listGroups"), ("ALLeds", "listLEDs"))

@@ -20,6 +20,8 @@ from naoqi.errors import NaoError
 from .errors import BadGoal, did_you_mean
 from .files import config_file
 
+log = logging.getLogger(__name__)
+
 FILE = "limits.json"
 
 
@@ -222,7 +224,6 @@ class FailurePolicy:
 
 __all__ = ["Annotated", "Field", "fields_of", "flag", "free", "moments", "number", "numbers", "text", "whole", "word"]
 
-log = logging.getLogger(__name__)
 
 Bounds = Union[str, Limit, Tuple[float, float]]
 """A kind of number in config/limits.json, its limit, or the least and the greatest number."""

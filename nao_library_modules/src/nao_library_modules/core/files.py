@@ -21,6 +21,8 @@ from typing import Any, TypeVar
 
 from naoqi.errors import NaoError
 
+log = logging.getLogger(__name__)
+
 PACKAGE = "nao_library_modules"
 
 
@@ -47,8 +49,6 @@ def ros_home() -> Path:
     """The folder of what ROS and its programs keep for a user."""
     return Path(os.environ.get("ROS_HOME") or Path.home() / ".ros")
 
-
-log = logging.getLogger(__name__)
 
 PART, BROKEN = ".part", ".broken"
 _DRAFT = re.compile(r"\.nao_library-[0-9a-f]{32}\.draft")

@@ -30,6 +30,8 @@ from naoqi.state import Worker
 from .files import config_file
 from .nao_facts import MOTION
 
+log = logging.getLogger(__name__)
+
 FILE = "owned_calls.json"
 FIRST, NONE = "first", "none"
 
@@ -78,8 +80,6 @@ def _rule(entry: dict[str, Any]) -> OwnershipRule:
     fields["cure"] = tuple(fields["cure"])
     return OwnershipRule(**fields)
 
-
-log = logging.getLogger(__name__)
 
 PEER = struct.Struct("3i")
 """Process, user and group at the other end of a line."""

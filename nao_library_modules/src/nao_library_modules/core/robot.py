@@ -20,6 +20,8 @@ from .fields import limit, number_parameter
 from .process_owners import OwnerLine
 from .waiting import CancellationToken
 
+log = logging.getLogger(__name__)
+
 # Most calls are answered within this time (s). Waiting for the answer alone is quicker than waiting for
 # answer or interrupt, which then comes that much later at most.
 QUICK_ANSWER = 0.005
@@ -111,9 +113,6 @@ def _cancel(calls: Iterable[Any]) -> None:
         call.cancel()
     for event in ended:
         event.wait(STOPPED_LIMIT)
-
-
-log = logging.getLogger(__name__)
 
 
 def ask(robot: Any, module: str, method: str, *arguments: Any, limit: float = ANSWER_LIMIT) -> Any:

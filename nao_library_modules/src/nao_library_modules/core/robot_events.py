@@ -20,6 +20,8 @@ from .memory_functions import MEMORY
 from .robot import wait_for_call
 from .waiting import CancellationToken
 
+log = logging.getLogger(__name__)
+
 CLOCKS_AGREE = 5.0
 """s between the robot's clock and simulated ROS time; more, and it is another clock. Ours may be a little late."""
 SAMPLES = 12
@@ -182,8 +184,6 @@ class ImageClock:
         self._last = (robot, ros)
         return ros
 
-
-log = logging.getLogger(__name__)
 
 COUNTED = (type(None), bool, int, float, str)
 """Types of values that come again and again; a list is hardly ever raised twice."""

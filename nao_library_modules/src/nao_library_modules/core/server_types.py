@@ -52,12 +52,12 @@ FIELDS = {
 }
 """What each action of a server has, whoever wrote it."""
 SERVERS = {
-    "NaoLights": ("NaoLed", "lights.server.NaoLights"),
-    "NaoMotion": ("NaoMotion", "motion.server.NaoMotion"),
-    "nao_audio_out": ("NaoAudioOut", "audio_out.server.NaoAudioOutput"),
-    "nao_audio_in": ("NaoAudioIn", "audio_in.server.NaoAudioInput"),
-    "NaoVision": ("NaoVision", "vision.server.NaoVision"),
-    "NaoTactile": ("NaoTactile", "tactile.server.NaoTactile"),
+    "NaoLights": ("NaoLed", "lights.lights_server.NaoLights"),
+    "NaoMotion": ("NaoMotion", "motion.motion_server.NaoMotion"),
+    "nao_audio_out": ("NaoAudioOut", "audio_out.audio_out_server.NaoAudioOutput"),
+    "nao_audio_in": ("NaoAudioIn", "audio_in.audio_in_server.NaoAudioInput"),
+    "NaoVision": ("NaoVision", "vision.vision_server.NaoVision"),
+    "NaoTactile": ("NaoTactile", "tactile.tactile_server.NaoTactile"),
     "NaoBehavior": ("NaoBehavior", "behaviors.server.NaoBehavior"),
 }
 """Relative name of each server -> its action in nao_library_actions, and the class behind it in this package."""

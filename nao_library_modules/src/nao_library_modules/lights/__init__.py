@@ -3,4 +3,4 @@
 from ..core.lazy import door
 
 __all__ = ["NaoLights"]
-__getattr__ = door(__name__, {"NaoLights": "server"})
+__getattr__ = door(__name__, {"NaoLights": "lights_server"})

@@ -3,4 +3,4 @@
 from ..core.lazy import door
 
 __all__ = ["NaoMotion"]
-__getattr__ = door(__name__, {"NaoMotion": "server"})
+__getattr__ = door(__name__, {"NaoMotion": "motion_server"})

@@ -32,6 +32,8 @@ from ..core.waiting import OncePerConnection
 if TYPE_CHECKING:
     from ..core.nao_basic import NaoBasic
 
+log = logging.getLogger(__name__)
+
 
 BODY = "Body"
 ARMS = ("LArm", "RArm")
@@ -80,8 +82,6 @@ def one_each(values: Sequence[float], joints: Sequence[str], field: str) -> list
         raise BadGoal(field, list(values), f"one value, or one for each of {', '.join(joints)}", problem=problem)
     return list(values)
 
-
-log = logging.getLogger(__name__)
 
 HOT_SPEED = 0.5
 """Largest fraction of the top speed that goals give hot motors."""

@@ -32,6 +32,8 @@ from .walk import WalkFunctions, WalkState
 if TYPE_CHECKING:
     from ..ros.nao_robot_driver import NaoRobotDriver
 
+log = logging.getLogger(__name__)
+
 
 MOTION, POSTURE = "ALMotion", "ALRobotPosture"
 WALKS = ("moveTo", "moveToward")
@@ -162,8 +164,6 @@ def _hermite(names: Any, times: Any, points: Any) -> KeyFrames | None:
         velocities.append(tuple(row_velocities))
     return KeyFrames(frames.joints, frames.times, frames.values, tuple(velocities), False)
 
-
-log = logging.getLogger(__name__)
 
 DRIVER = ("nao_library", "nao_driver.launch")
 MOTIONS = Path("~/.ros/nao_motions")

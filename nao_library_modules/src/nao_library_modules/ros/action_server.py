@@ -29,6 +29,8 @@ from ..core.robot import StartupGrace
 from ..core.server_types import names_of
 from ..core.waiting import CancellationToken
 
+log = logging.getLogger(__name__)
+
 PERIOD = 5.0
 """s between two returns: one takes some ms where there are many holes."""
 
@@ -62,8 +64,6 @@ def processors_are_short() -> bool:
         return False
     return runnable > (os.cpu_count() or 1)
 
-
-log = logging.getLogger(__name__)
 
 SOONEST_END = 0.005
 """Least time, s, from a goal to the first message about it and to its end; docs/functions.md has the cost."""

@@ -112,7 +112,7 @@ class GoalTracker:
 
 
 def _cure(handle: Any) -> list[Any]:
-    """What cancels a goal whose client has died: see `owners/stops.py`."""
+    """What cancels a goal whose client has died: see `core/process_owners.py`."""
     goal = handle.comm_state_machine
     return [GOAL, goal.send_cancel_fn.__self__.resolved_name, goal.action_goal.goal_id.id]
 

@@ -43,6 +43,8 @@ from .goal_client import GoalTracker, server_connection
 from .master_api import GONE
 from .time_and_frames import pose_of, tf_prefix
 
+log = logging.getLogger(__name__)
+
 CONNECT_LOOK_PERIOD = 0.005
 """s of this computer between two looks whether a server is connected."""
 
@@ -224,8 +226,6 @@ class DriverAction(rospy.SubscribeListener):
                 call.lose()
 
 
-log = logging.getLogger(__name__)
-
 ACTIONS = {
     "joint_trajectory": JointTrajectoryAction,
     "joint_angles_action": JointAnglesWithSpeedAction,
@@ -243,7 +243,7 @@ CONNECT_LIMIT = 2.0
 
 
 class NaoRobotDriver:
-    """The driver by the names of nao_robot, relative to the namespace of the node, for `motion/by_driver.py`.
+    """The driver by the names of nao_robot, relative to the namespace of the node, for `motion/motion_server.py`.
 
     Clients are made when the first call goes that way.
     """

@@ -3,4 +3,4 @@
 from ..core.lazy import door
 
 __all__ = ["NaoTactile"]
-__getattr__ = door(__name__, {"NaoTactile": "server"})
+__getattr__ = door(__name__, {"NaoTactile": "tactile_server"})

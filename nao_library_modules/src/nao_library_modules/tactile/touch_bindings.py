@@ -70,7 +70,7 @@ class BindingState:
 
 
 class BehaviorRunner(Protocol):
-    """Runs behaviours; see `runner.py`."""
+    """Runs behaviours; see `ros/behavior_client.py`."""
 
     def run(self, behavior: str, parameters: Sequence[str], done: Callable[[str, str], None]) -> None:
         """Start a behaviour and go on; `done` gets how it ended and a text, in any thread, exactly once."""

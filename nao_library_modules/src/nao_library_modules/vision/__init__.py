@@ -5,5 +5,11 @@ from ..core.lazy import door
 __all__ = ["CAMERAS", "PARAMETERS", "ImageThreads", "NaoVision"]
 # Threads for another camera import nothing of the robot's.
 __getattr__ = door(
-    __name__, {"ImageThreads": "threads", "CAMERAS": "server", "PARAMETERS": "server", "NaoVision": "server"}
+    __name__,
+    {
+        "ImageThreads": "threads",
+        "CAMERAS": "vision_server",
+        "PARAMETERS": "vision_server",
+        "NaoVision": "vision_server",
+    },
 )

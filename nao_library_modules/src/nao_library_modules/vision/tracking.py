@@ -40,6 +40,8 @@ from .vision_fields import (
     wanted_thing,
 )
 
+log = logging.getLogger(__name__)
+
 Angles = Tuple[float, float]
 """HeadYaw and HeadPitch, rad."""
 
@@ -103,8 +105,6 @@ def the_one(detections: Sequence[LocalizedDetection], last: LocalizedDetection |
         return same[0]
     return min(detections, key=lambda s: math.dist(s.in_robot, last.in_robot))
 
-
-log = logging.getLogger(__name__)
 
 LOST = 0.7
 """s without a detection after which a thing is lost: single pictures may show nothing."""

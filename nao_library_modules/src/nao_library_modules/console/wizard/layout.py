@@ -214,7 +214,7 @@ class WizardLayout:
 
 
 def hex_colour(text: str) -> str:
-    """A colour as #RRGGBB. `text`: as `base.colours.parse_colour` takes it, which raises BadGoal."""
+    """A colour as #RRGGBB. `text`: as `lights_and_colours.parse_colour` takes it, which raises BadGoal."""
     return f"#{to_integer(parse_colour(text, 'color')):06x}"
 
 
