@@ -136,8 +136,7 @@ class FaultLab:
         (self.protocols / f"{self.study}.yaml").write_text(f"{text}record: {record}\n")
         self.browser.open("/study", protocol=self.study, participant="P01")
         self.browser.reads(f"For {self.study}.")
-        self.browser.click("button", "Start trial")
-        self.trial = self.browser.until(lambda: next(iter(self.files.trials(self.study)), None), "the trial")
+        self.trial = self._press("Start trial", lambda: next(iter(self.files.trials(self.study)), None))
         self.logged("trial", what="step began", path="1.1")
         self.logged("state")
         self.browser.one("button", "Deviation")
@@ -149,10 +148,21 @@ class FaultLab:
             self.program.start()
         if self.trial is not None:
             self.browser.open("/study")
-            self.browser.click("button", "Abort")
-            self.browser.click("button", "Abort the trial")
-            self.browser.until(lambda: self.trial.state().over, "the end of the trial")
+            self._press("Abort", lambda: self.browser.all(".q-dialog button", "Abort the trial"))
+            self._press("Abort the trial", lambda: self.trial.state().over)
         self.browser.leave()
+
+    def _press(self, button, done):
+        """Press, and again where the page refuses that on a busy computer; returns what `done` gives."""
+        self.browser.click("button", button)
+
+        def is_done():
+            if self.browser.all(".nao-failed", f"{button}: not sent"):
+                self.browser.until(self._see_all, "no line of what has failed")
+                self.browser.click("button", button)
+            return done()
+
+        return self.browser.until(is_done, button)
 
     def events(self):
         return read_events(self.trial.path)
