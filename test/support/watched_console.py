@@ -4,15 +4,14 @@
 
 A callback of a loop may take LONGEST s of the processor, and more by as much as a piece of reference work takes longer
 just then, where others share the caches. And it neither opens files, connects sockets, starts programs or sleeps, nor
-waits for another thread or for ROS. Imports, each of which happens once, are let be, and tracebacks, which the console
-prints with their sources, and the collections of garbage, which come where they like.
+waits for another thread or for ROS. Imports, each of which happens once, are let be, and the collections of garbage,
+which come where they like.
 """
 
 from __future__ import annotations
 
 import asyncio
 import gc
-import linecache
 import os
 import runpy
 import sys
@@ -110,10 +109,8 @@ class Watch:
 
 
 def _is_harmless(frame):
-    """Whether it is an import, a traceback that is printed, or the start of a thread, which waits until that runs."""
-    if frame.filename.startswith(IMPORT) or frame.filename == linecache.__file__:
-        return True
-    return frame.filename == threading.__file__ and frame.name == "start"
+    """Whether it is an import, or the start of a thread, which waits until that runs."""
+    return frame.filename.startswith(IMPORT) or (frame.filename == threading.__file__ and frame.name == "start")
 
 
 if __name__ == "__main__":
