@@ -3,7 +3,7 @@
 from .core.lazy import Former, door
 
 __all__ = ["FORMER", "NaoBasic"]
-__getattr__ = door(__name__, {"NaoBasic": "core.nao_basic"})
+__getattr__ = door(__name__, {"NaoBasic": "nao_basic"})
 
 FORMER = {
     "answers": "core.memory_functions",
@@ -22,8 +22,6 @@ FORMER = {
     "lights.fields": "lights.light_fields",
     "nao": "core",
     "nao.touch_names": "core.nao_facts",
-    "nao_audio": "core.audio_device",
-    "nao_basic": "core.nao_basic",
     "new_functions": "core.new_functions",
     "node": "ros.node",
     "paths": "core.files",

@@ -2,8 +2,8 @@
 
 import pytest
 
-from nao_library_modules.core.audio_device import require_file
 from nao_library_modules.core.nao_facts import READ, full_path, is_in
+from nao_library_modules.nao_audio import require_file
 from nao_sim_bridge.base import record_dir
 
 

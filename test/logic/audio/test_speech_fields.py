@@ -9,11 +9,11 @@ from goal_functions import audio_out as f
 
 from nao_library_actions.msg import NaoAudioOutGoal
 from nao_library_modules.audio_out.audio_out_server import NaoAudioOutput
-from nao_library_modules.core.audio_device import DeviceParameter, DeviceSetting, OutputRate
 from nao_library_modules.core.chain import FunctionChain, declared_fields, fields_taken
 from nao_library_modules.core.describe import LANGUAGES, VOICES
 from nao_library_modules.core.errors import BadGoal
 from nao_library_modules.core.goal_checks import check_goals, offline_module
+from nao_library_modules.nao_audio import DeviceParameter, DeviceSetting, OutputRate
 from nao_library_msgs.msg import AudioOutFunction
 
 FUNCTIONS = NaoAudioOutput.declared_functions()

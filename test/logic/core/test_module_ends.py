@@ -6,8 +6,8 @@ import pytest
 from recorded_node import RecordedNode
 
 from nao_library_modules.core.goal_checks import KnownRobot
-from nao_library_modules.core.nao_basic import NaoBasic
 from nao_library_modules.core.server_types import ACTIONS, server_type
+from nao_library_modules.nao_basic import NaoBasic
 
 
 @pytest.mark.parametrize("name", ACTIONS)

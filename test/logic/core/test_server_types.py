@@ -11,7 +11,6 @@ from actionlib.msg import TestAction
 from nao_library_modules.core.chain import OF_THE_SERVER
 from nao_library_modules.core.errors import BadGoal
 from nao_library_modules.core.memory_functions import MemoryFunctions
-from nao_library_modules.core.nao_basic import NaoBasic
 from nao_library_modules.core.server_types import (
     ACTIONS,
     described_type,
@@ -21,6 +20,7 @@ from nao_library_modules.core.server_types import (
     server_type,
     servers_among,
 )
+from nao_library_modules.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
 from naoqi.errors import NaoError
 

@@ -10,9 +10,10 @@ from genpy import Duration
 from recorded_node import RecordedNode
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
-from nao_library_modules.core import nao_basic, robot
-from nao_library_modules.core.nao_basic import NaoBasic
+from nao_library_modules import nao_basic
+from nao_library_modules.core import robot
 from nao_library_modules.core.robot import require_start_patience
+from nao_library_modules.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
 from nao_library_msgs.srv import DescribeFunctionsRequest
 from naoqi.errors import NaoError, RobotUnreachable

@@ -11,7 +11,7 @@ from goal_functions import led_with_text as f
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_modules.core.errors import BadGoal, Preempted, UnknownFunction
-from nao_library_modules.core.nao_basic import NaoBasic
+from nao_library_modules.nao_basic import NaoBasic
 from naoqi.errors import NaoError, RobotUnreachable
 
 BRAIN0 = "Head/Led/Front/Right/1"

@@ -10,10 +10,10 @@ from recorded_node import RecordedNode
 
 from nao_library_actions.msg import NaoLedAction, NaoLedGoal
 from nao_library_modules.core.health import Level
-from nao_library_modules.core.nao_basic import NaoBasic
 from nao_library_modules.core.waiting import WallClock
 from nao_library_modules.driver.base.lazy_subscription import LazySubscription
 from nao_library_modules.driver.base.polling import Polling
+from nao_library_modules.nao_basic import NaoBasic
 from nao_library_msgs.msg import LedFunction
 from naoqi.limits import Timing
 

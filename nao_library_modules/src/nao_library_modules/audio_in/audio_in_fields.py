@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import List
 
-from ..core.audio_device import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES, file_of_kind
 from ..core.describe import HEARD_LANGUAGES
 from ..core.errors import BadGoal
 from ..core.fields import Annotated, Field, flag, free, limit, number, numbers, require_known, text, word
 from ..core.nao_facts import WRITTEN
+from ..nao_audio import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES, file_of_kind
 
 MICROPHONES = ("left", "right", "front", "rear")
 """In the order in which NAOqi has them in recordings."""

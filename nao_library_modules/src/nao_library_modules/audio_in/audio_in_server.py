@@ -11,11 +11,11 @@ from typing import Any
 from nao_library_actions.msg import NaoAudioInAction
 from naoqi.errors import NaoError
 
-from ..core.audio_device import DEVICE_PARAMETERS, NaoAudio, Revert, check_device_setting, put_back
 from ..core.chain import checked_by
 from ..core.health import recordings_report
 from ..core.memory_functions import Outcome
 from ..core.processes import LaunchPath
+from ..nao_audio import DEVICE_PARAMETERS, NaoAudio, Revert, check_device_setting, put_back
 from .audio_in_fields import SENSES, Parameter, SetParameter, Value
 from .heard_sounds import EnergyFunctions, SoundFunctions, SoundRecordingFunctions
 from .hearing import Heard, Hearing, LeftGoing, Recognition, Recording

@@ -18,13 +18,13 @@ from std_msgs.msg import Header
 from nao_library_msgs.msg import HeardSound, RecordedFile
 from naoqi.errors import NaoError, RobotError
 
-from ..core.audio_device import DEVICE, NaoAudio
 from ..core.chain import Part, checked_by
 from ..core.errors import BadGoal
 from ..core.geometry import FOOTPRINT
-from ..core.nao_basic import NaoBasic
 from ..core.nao_facts import HOME, full_path, is_in
 from ..core.robot_events import Event, same_clock
+from ..nao_audio import DEVICE, NaoAudio
+from ..nao_basic import NaoBasic
 from .audio_in_fields import (
     MICROPHONES,
     SENSES,

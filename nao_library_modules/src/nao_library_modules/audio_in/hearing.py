@@ -13,8 +13,8 @@ from nao_library_msgs.msg import HeardSound, RecordedFile
 
 from ..core.chain import Part
 from ..core.files import Kept
-from ..core.nao_basic import NaoBasic
 from ..core.robot_events import ExtractorUse, subscriber_name
+from ..nao_basic import NaoBasic
 
 Vector = Tuple[float, float, float]
 

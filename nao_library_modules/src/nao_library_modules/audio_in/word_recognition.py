@@ -9,14 +9,14 @@ from typing import Any
 
 from naoqi.errors import NaoError, RobotError, UnknownMethod
 
-from ..core.audio_device import Revert, put_back
 from ..core.chain import Part, checked_by
 from ..core.errors import BadGoal
 from ..core.fields import require_known
 from ..core.memory_functions import MEMORY
-from ..core.nao_basic import NaoBasic
 from ..core.robot_events import Event, Events, SimulatedKey
 from ..core.waiting import OncePerConnection
+from ..nao_audio import Revert, put_back
+from ..nao_basic import NaoBasic
 from .audio_in_fields import (
     PHRASES_OR_SET,
     AudioExpression,

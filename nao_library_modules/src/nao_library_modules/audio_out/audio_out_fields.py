@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from typing import List
 from urllib.parse import urlsplit
 
-from ..core.audio_device import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES, file_of_kind
 from ..core.describe import LANGUAGES, VOICES
 from ..core.errors import BadGoal
 from ..core.fields import CONTROL, Annotated, flag, free, limit, number, require_known, require_text, text, whole, word
 from ..core.nao_facts import WRITTEN
+from ..nao_audio import DEVICE_PARAMETERS, RATES, SET_PARAMETERS, SOUND_FILES, file_of_kind
 
 STREAMS = ("http", "https")
 SIDES = (-1.0, 0.0, 1.0)

@@ -9,9 +9,9 @@ from typing import Any
 from nao_library_actions.msg import NaoAudioOutAction
 from naoqi.errors import NaoError
 
-from ..core.audio_device import DEVICE, NaoAudio
 from ..core.memory_functions import MemoryFunctions, Outcome
 from ..core.processes import LaunchPath
+from ..nao_audio import DEVICE, NaoAudio
 from .played_sounds import PlayerFunctions, Sounds
 from .speech import SpeechFunctions, SpokenWords, Synthesiser, VoiceFunctions
 

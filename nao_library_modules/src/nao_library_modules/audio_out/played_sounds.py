@@ -10,15 +10,15 @@ from typing import Any
 
 from naoqi.errors import CallCanceled, NaoError
 
-from ..core.audio_device import Revert, decimal, put_back
 from ..core.chain import Part, checked_by
 from ..core.errors import BadGoal, Preempted, did_you_mean
 from ..core.fields import require_known
-from ..core.nao_basic import NaoBasic
 from ..core.nao_facts import without_sign
 from ..core.robot import QUICK_ANSWER, end_call, wait_for_call
 from ..core.robot_events import SimulatedKey
 from ..core.waiting import CancellationToken, OncePerConnection
+from ..nao_audio import Revert, decimal, put_back
+from ..nao_basic import NaoBasic
 from .audio_out_fields import (
     Address,
     Background,

@@ -12,15 +12,15 @@ from typing import Any
 from naoqi.errors import NaoError, RobotError
 from naoqi.limits import WORD_TIMES_LIMIT, wait_while_answering
 
-from ..core.audio_device import DEVICE_PARAMETERS, NaoAudio, Revert, check_device_setting, decimal, put_back
 from ..core.chain import Part, checked_by
 from ..core.errors import BadGoal
 from ..core.fields import require_known
 from ..core.memory_functions import MEMORY
-from ..core.nao_basic import NaoBasic
 from ..core.nao_facts import without_sign
 from ..core.robot_events import EventRelay, SimulatedKey, checked_span
 from ..core.waiting import OncePerConnection
+from ..nao_audio import DEVICE_PARAMETERS, NaoAudio, Revert, check_device_setting, decimal, put_back
+from ..nao_basic import NaoBasic
 from .audio_out_fields import (
     ALL_PARAMETERS,
     EFFECTS,

@@ -17,7 +17,7 @@ from ..core.errors import BadGoal, Preempted
 from ..core.fields import Annotated, flag, free, number
 from ..core.files import written
 from ..core.goal_checks import GoalCheck
-from ..core.nao_basic import NaoBasic
+from ..nao_basic import NaoBasic
 from ..process_modules.failures import PlanFailure
 from .behavior_reader import NAME_ALLOWED, read, require_name
 from .behavior_store import BehaviorStore, PlannedStore, UnknownYet, from_goal, text_of

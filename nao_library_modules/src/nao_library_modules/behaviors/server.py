@@ -13,8 +13,8 @@ from naoqi.errors import NaoError
 from ..core.chain import joined
 from ..core.files import config_file
 from ..core.memory_functions import Outcome
-from ..core.nao_basic import NaoBasic
 from ..core.processes import LaunchPath
+from ..nao_basic import NaoBasic
 from .behavior_functions import (
     BehaviorRecordingFunctions,
     LibraryFunctions,

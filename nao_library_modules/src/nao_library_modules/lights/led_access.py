@@ -12,8 +12,8 @@ from naoqi.limits import CLEAN_UP_LIMIT
 from ..core.chain import Part
 from ..core.lights_and_colours import COLOUR_PARTS, LightNames, colour_part
 from ..core.memory_functions import MEMORY
-from ..core.nao_basic import NaoBasic
 from ..core.nao_facts import PREFIX
+from ..nao_basic import NaoBasic
 
 Values = Mapping[str, float]
 """Device name -> intensity 0..1."""

@@ -10,8 +10,8 @@ from nao_library_actions.msg import NaoLedAction
 
 from ..core.chain import checked_by
 from ..core.lights_and_colours import to_integer
-from ..core.nao_basic import NaoBasic
 from ..core.processes import LaunchPath
+from ..nao_basic import NaoBasic
 from .led_access import LedAccess, mean_colour, mean_intensity
 from .light_fields import (
     Angle,

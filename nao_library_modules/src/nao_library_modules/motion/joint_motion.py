@@ -46,7 +46,7 @@ from .motion_fields import (
 from .motion_plan import BODY, DEFAULT_SPEED, MOTION, POSTURE_TIME, POSTURES, BodyPart, MotionFacts, RobotBody, one_each
 
 if TYPE_CHECKING:
-    from ..core.nao_basic import NaoBasic
+    from ..nao_basic import NaoBasic
     from ..ros.nao_robot_driver import NaoRobotDriver
 
 

@@ -30,7 +30,7 @@ from ..core.nao_facts import MOTION as MOTION
 from ..core.waiting import OncePerConnection
 
 if TYPE_CHECKING:
-    from ..core.nao_basic import NaoBasic
+    from ..nao_basic import NaoBasic
 
 log = logging.getLogger(__name__)
 

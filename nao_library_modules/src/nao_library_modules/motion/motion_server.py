@@ -18,10 +18,10 @@ from ..core.geometry import Place
 from ..core.goal_checks import NotKnownHere
 from ..core.joint_trajectory import KeyFrames
 from ..core.memory_functions import MEMORY, Outcome
-from ..core.nao_basic import NaoBasic
 from ..core.nao_facts import MOVE_FAILED
 from ..core.processes import LaunchPath
 from ..core.robot_events import EventRelay
+from ..nao_basic import NaoBasic
 from .body_switches import MotionState, MotionSwitches
 from .effectors import CartesianFunctions, GazeFunctions
 from .joint_motion import JointMotion, NamedPoses, PostureFunctions, StiffnessFunctions

@@ -35,7 +35,7 @@ from .motion_fields import (
 from .motion_plan import BODY, DEFAULT_SPEED, BodyPart, RobotBody
 
 if TYPE_CHECKING:
-    from ..core.nao_basic import NaoBasic
+    from ..nao_basic import NaoBasic
 
 
 # Between two key frames of a replayed motion a joint may be off the recording by this, rad: what the encoders tell

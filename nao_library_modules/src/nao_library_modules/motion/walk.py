@@ -52,7 +52,7 @@ from .walk_fields import (
 )
 
 if TYPE_CHECKING:
-    from ..core.nao_basic import NaoBasic
+    from ..nao_basic import NaoBasic
     from ..ros.nao_robot_driver import NaoRobotDriver
 
 

@@ -15,7 +15,6 @@ from naoqi.errors import RobotError
 from ..core.chain import Part, checked_by
 from ..core.fields import require_known
 from ..core.memory_functions import MEMORY
-from ..core.nao_basic import NaoBasic
 from ..core.nao_facts import (
     BATTERY_STATUS,
     BY_EVENT,
@@ -34,6 +33,7 @@ from ..core.nao_facts import (
     weight_keys,
 )
 from ..core.robot_events import ExtractorUse, subscriber_name
+from ..nao_basic import NaoBasic
 from .tactile_fields import (
     CLICKS,
     DEFAULT_DISTANCE,

@@ -10,9 +10,9 @@ from nao_library_actions.msg import NaoTactileAction
 from naoqi.errors import NaoError
 
 from ..core.memory_functions import MEMORY, Outcome
-from ..core.nao_basic import NaoBasic
 from ..core.processes import LaunchPath
 from ..core.robot_events import EventTimes
+from ..nao_basic import NaoBasic
 from .readings import Measurements, ReadingFunctions, Senses, WaitingFunctions
 from .touch_bindings import BindingFunctions, TouchBindings
 

@@ -53,7 +53,7 @@ from .vision_fields import (
 )
 
 if TYPE_CHECKING:
-    from ..core.nao_basic import NaoBasic
+    from ..nao_basic import NaoBasic
 
 
 log = logging.getLogger(__name__)

@@ -16,7 +16,7 @@ from ..core.nao_facts import CAMERA_NAMES, RESOLUTIONS
 from ..core.processes import LaunchPath, launched_nodes
 
 if TYPE_CHECKING:
-    from ..core.nao_basic import NaoBasic
+    from ..nao_basic import NaoBasic
 
 
 VIDEO = "ALVideoDevice"

@@ -46,7 +46,7 @@ from .vision_fields import (
 )
 
 if TYPE_CHECKING:
-    from ..core.nao_basic import NaoBasic
+    from ..nao_basic import NaoBasic
 
 
 log = logging.getLogger(__name__)

@@ -9,9 +9,9 @@ from nao_library_actions.msg import NaoVisionAction
 
 from ..core.health import recordings_report
 from ..core.memory_functions import Outcome
-from ..core.nao_basic import NaoBasic
 from ..core.processes import LaunchPath
 from ..core.robot_events import subscriber_name
+from ..nao_basic import NaoBasic
 from .camera_functions import PictureFunctions, SettingFunctions
 from .cameras import CAMERA_TOPICS, Cameras, ChainResults
 from .cameras import CAMERAS_LAUNCH as CAMERAS

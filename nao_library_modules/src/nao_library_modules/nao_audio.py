@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import PurePosixPath
 from typing import Any, List
 
-from .errors import BadGoal
-from .fields import CONTROL, LONGEST_NAME, Annotated, Field, flag, free, require_known, require_text, whole, word
+from .core.errors import BadGoal
+from .core.fields import CONTROL, LONGEST_NAME, Annotated, Field, flag, free, require_known, require_text, whole, word
+from .core.nao_facts import HOME, READ, full_path, is_in
 from .nao_basic import NaoBasic
-from .nao_facts import HOME, READ, full_path, is_in
 
 OUTPUT_RATES = (16000, 22050, 44100, 48000)
 RATES = f"one of {', '.join(map(str, OUTPUT_RATES))} (Hz)"

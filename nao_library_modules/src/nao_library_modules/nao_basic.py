@@ -17,16 +17,16 @@ from nao_library_msgs.srv import CheckGoals
 from naoqi.errors import NaoError
 from naoqi.limits import START_PATIENCE, Timing
 
-from .chain import ChainStep, FunctionTable, Part, bound, copied, joined, require_callable
-from .describe import CHECK, CheckService, Choices, DescribeService, Description
-from .errors import FunctionFailed, Preempted, RobotLost, cut
-from .goal_checks import GoalCheck, check_goals
-from .health import BodyReporter, GoalCounter, Report, connection_report, launch_report
-from .memory_functions import MEMORY, MemoryFunctions, Outcome, values_of
-from .processes import LaunchPath, Supervisor, close_all, launch_supervisor
-from .robot import FunctionRunner, Robot, StartupGrace
-from .robot_events import EventRelay, RobotClock
-from .server_types import names_of, require_fields
+from .core.chain import ChainStep, FunctionTable, Part, bound, copied, joined, require_callable
+from .core.describe import CHECK, CheckService, Choices, DescribeService, Description
+from .core.errors import FunctionFailed, Preempted, RobotLost, cut
+from .core.goal_checks import GoalCheck, check_goals
+from .core.health import BodyReporter, GoalCounter, Report, connection_report, launch_report
+from .core.memory_functions import MEMORY, MemoryFunctions, Outcome, values_of
+from .core.processes import LaunchPath, Supervisor, close_all, launch_supervisor
+from .core.robot import FunctionRunner, Robot, StartupGrace
+from .core.robot_events import EventRelay, RobotClock
+from .core.server_types import names_of, require_fields
 
 log = logging.getLogger(__name__)
 
