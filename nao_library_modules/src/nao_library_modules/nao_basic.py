@@ -6,7 +6,6 @@ import logging
 import threading
 from collections.abc import Callable, Mapping, MutableMapping, Sequence
 from functools import wraps
-from importlib import import_module
 from typing import Any, ClassVar
 
 from genpy import Duration, Time
@@ -129,8 +128,9 @@ class NaoBasic(FunctionRunner):
         if not isinstance(autostart, bool):
             raise NaoError(f"autostart is {autostart!r}: True or False")
         if node is None:
-            # By its name: the core needs no ROS as long as it is given a node.
-            node = import_module("..ros.server_node", __package__).ServerNode()
+            from .ros.server_node import ServerNode
+
+            node = ServerNode()
         self.ip = ip
         self.port = port
         self.launchpath = launchpath
