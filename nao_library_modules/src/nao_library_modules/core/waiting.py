@@ -1,4 +1,4 @@
-"""Waits that can be interrupted, and what is asked once a connection. No polling, no ROS."""
+"""Waits that can be interrupted, what is asked once a connection, and who listens. No polling, no ROS."""
 
 from __future__ import annotations
 
@@ -83,6 +83,31 @@ class CancellationToken:
         finally:
             with self._lock:
                 self._wakers.remove(wake)
+
+
+class Listeners:
+    """Functions that are called when something happens: `for listener in listeners: listener()`. Any thread."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._all: dict[object, Callable[..., Any]] = {}
+
+    def add(self, listener: Callable[..., Any]) -> Callable[[], None]:
+        """Have a function called from now on, also one that is already; what comes back ends that."""
+        key = object()
+        with self._lock:
+            self._all[key] = listener
+
+        def end() -> None:
+            with self._lock:
+                self._all.pop(key, None)
+
+        return end
+
+    def __iter__(self) -> Iterator[Callable[..., Any]]:
+        """Those of this moment; the lock is not held meanwhile."""
+        with self._lock:
+            return iter(list(self._all.values()))
 
 
 class WallClock:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..core.nao_facts import SENSORS
+from ..core.waiting import Listeners
 from .protocol import COUNTED
 
 log = logging.getLogger(__name__)
@@ -45,15 +46,14 @@ class EventStream:
         self._clock = clock
         self._lock = threading.Lock()
         self._events: deque[ConsoleEvent] = deque(maxlen=KEPT)
-        self._listeners: dict[object, Callable[[ConsoleEvent], None]] = {}
+        self._listeners = Listeners()
 
     def add(self, kind: str, text: str, /, by: str = "", stamp: float | None = None, **data: Any) -> ConsoleEvent:
         """Something has happened, now or at `stamp`."""
         event = ConsoleEvent(self._clock() if stamp is None else stamp, kind, self._robot, text, by, data)
         with self._lock:
             self._events.append(event)
-            listeners = list(self._listeners.values())
-        for listener in listeners:
+        for listener in self._listeners:
             try:
                 listener(event)
             except Exception:  # the others, a trial's log among them, are told all the same
@@ -62,19 +62,12 @@ class EventStream:
 
     def subscribe(self, listener: Callable[[ConsoleEvent], None]) -> Callable[[], None]:
         """Have each event told in the thread that adds it; what comes back ends that."""
-        key = object()
-        with self._lock:
-            self._listeners[key] = listener
-        return lambda: self._forget(key)
+        return self._listeners.add(listener)
 
     def last(self, count: int = 200) -> list[ConsoleEvent]:
         """The newest events, the oldest of them first."""
         with self._lock:
             return list(self._events)[-count:]
-
-    def _forget(self, key: object) -> None:
-        with self._lock:
-            self._listeners.pop(key, None)
 
 
 def namespace_of(name: str) -> str:

@@ -18,6 +18,7 @@ from naoqi.errors import NaoError
 
 from ..core.errors import of_those
 from ..core.files import FileTrouble, config_file
+from ..core.waiting import Listeners
 from .command_check import SERVICE
 from .protocol import StudyError, StudyProtocol, WantedRecordings, filled
 from .protocol_reader import hash_of
@@ -53,7 +54,7 @@ class Studies:
         self._lock = threading.Lock()  # pages take it ten times a second: never held while anything is waited for
         self._runners: dict[str, TrialRunner] = {}
         self._beginning: set[str] = set()  # namespaces of robots
-        self._listeners: list[Callable[[], None]] = []
+        self._listeners = Listeners()
 
     def running(self, namespace: str) -> TrialRunner | None:
         """The trial that runs on a robot, or was the last one."""
@@ -222,8 +223,7 @@ class Studies:
 
     def on_change(self, listener: Callable[[], None]) -> Callable[[], None]:
         """Have a function called when a trial begins or is over; returns what ends that."""
-        self._listeners.append(listener)
-        return lambda: self._listeners.remove(listener)
+        return self._listeners.add(listener)
 
     def _start(
         self,
@@ -283,7 +283,7 @@ class Studies:
                 self._beginning.discard(robot.namespace)
 
     def _tell(self) -> None:
-        for listener in list(self._listeners):
+        for listener in self._listeners:
             listener()
 
 

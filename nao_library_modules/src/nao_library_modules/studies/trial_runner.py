@@ -11,6 +11,7 @@ from typing import Any, Callable
 
 from naoqi.errors import NaoError
 
+from ..core.waiting import Listeners
 from . import trial_log as told
 from .commands import RobotCommand, Stopped
 from .protocol import (
@@ -106,7 +107,7 @@ class TrialRunner:
         self.ahead = ListeningAhead(self, speaks)
         self._inbox: queue.Queue[tuple[str, Any, str]] = queue.Queue()
         self._lock = threading.RLock()
-        self._listeners: list[Callable[[TrialRunner], None]] = []
+        self._listeners = Listeners()
         # Stops of the robot when somebody last wanted it to move: after a further one no goal is sent.
         self._stops: int = robot.stops if stops is None else stops
         self.pauses = 0
@@ -132,15 +133,7 @@ class TrialRunner:
 
     def on_change(self, listener: Callable[[TrialRunner], None]) -> Callable[[], None]:
         """Have a function called after each event, quickly; returns what ends that."""
-        with self._lock:
-            self._listeners.append(listener)
-
-        def end() -> None:
-            with self._lock:
-                if listener in self._listeners:
-                    self._listeners.remove(listener)
-
-        return end
+        return self._listeners.add(listener)
 
     def wait(self, timeout: float | None = None) -> bool:
         """Wait until all is over, s of this computer; whether it is."""
@@ -260,9 +253,7 @@ class TrialRunner:
         self.robot.events.add("deviation", text, trial=self.id, **more, **times)
 
     def _notify(self) -> None:
-        with self._lock:
-            listeners = list(self._listeners)
-        for listener in listeners:
+        for listener in self._listeners:
             listener(self)
 
     def _run(self) -> None:

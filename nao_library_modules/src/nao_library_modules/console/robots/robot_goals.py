@@ -15,6 +15,7 @@ from actionlib_msgs.msg import GoalID, GoalStatusArray
 
 from ...cli.output import plain, progress_text
 from ...core.server_types import ACTIONS, server_type
+from ...core.waiting import Listeners
 
 
 @dataclass(frozen=True)
@@ -193,7 +194,7 @@ class Presses:
         self._lock = threading.Lock()
         self._numbers = itertools.count(1)
         self._failed: dict[str, dict[int, FailedPress]] = {}  # by user, the newest last
-        self._listeners: dict[object, Callable[[], None]] = {}
+        self._listeners = Listeners()
         self._ids: dict[str, None] = {}  # the newest last
 
     def is_new(self, press_id: str) -> bool:
@@ -258,19 +259,10 @@ class Presses:
 
     def subscribe(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Have changes told, in the thread that makes them; what comes back ends that."""
-        key = object()
-        with self._lock:
-            self._listeners[key] = callback
-        return lambda: self._forget(key)
-
-    def _forget(self, key: object) -> None:
-        with self._lock:
-            self._listeners.pop(key, None)
+        return self._listeners.add(callback)
 
     def _tell(self) -> None:
-        with self._lock:
-            listeners = list(self._listeners.values())
-        for listener in listeners:
+        for listener in self._listeners:
             listener()
 
 

@@ -15,6 +15,7 @@ from typing import Any, Protocol, Tuple
 
 from naoqi.errors import NaoError
 
+from ...core.waiting import Listeners
 from ...studies.commands import CommandGoal, RobotCommand, say
 from ...studies.robot_events import namespace_of
 from ..access.connections import refusal_of_late
@@ -118,7 +119,7 @@ class WizardDesk:
         self._lock = threading.RLock()
         self._pressed: dict[Place, _Pressed] = {}
         self._robots: dict[str, _RobotDesk] = {}
-        self._listeners: dict[object, Callable[[], None]] = {}
+        self._listeners = Listeners()
 
     def press(
         self,
@@ -258,10 +259,7 @@ class WizardDesk:
 
     def subscribe(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Have changes told, in the thread that makes them; what comes back ends that."""
-        key = object()
-        with self._lock:
-            self._listeners[key] = callback
-        return lambda: self._forget(key)
+        return self._listeners.add(callback)
 
     def leave(self, page: str) -> None:
         """A page is gone: repetitions that began on it end."""
@@ -364,14 +362,8 @@ class WizardDesk:
             return self._robots.setdefault(namespace, _RobotDesk())
 
     def _tell(self) -> None:
-        with self._lock:
-            listeners = list(self._listeners.values())
-        for listener in listeners:
+        for listener in self._listeners:
             listener()
-
-    def _forget(self, key: object) -> None:
-        with self._lock:
-            self._listeners.pop(key, None)
 
 
 def _send(sending: _Sending) -> Any:

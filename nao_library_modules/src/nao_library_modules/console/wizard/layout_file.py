@@ -13,6 +13,7 @@ from ...behaviors.behavior_errors import Problem
 from ...behaviors.server_functions import FunctionTables
 from ...core.errors import of_those
 from ...core.files import write_whole
+from ...core.waiting import Listeners
 from ...studies.command_check import CommandCheck, value_problems
 from ...studies.commands import BEHAVIORS, RUN, ConsoleFileError, RobotCommand, command_problems, revision_of, type_of
 from .layout import EditConflict, WizardButton, WizardLayout, read_layout
@@ -91,9 +92,9 @@ class CurrentLayout:
         self.layout = WizardLayout()
         self.problems: Sequence[Problem] = ()
         self._file = file
-        self._lock, self._looking = threading.Lock(), threading.Lock()  # nobody waits for the file with the first
+        self._looking = threading.Lock()
         self._mark: tuple[int, int] | None = None
-        self._listeners: dict[object, Callable[[], None]] = {}
+        self._listeners = Listeners()
         self.look()
 
     def look(self) -> None:
@@ -107,21 +108,12 @@ class CurrentLayout:
                 self.layout, self.problems = self._file.layout(), ()
             except ConsoleFileError as error:
                 self.problems = error.problems
-        with self._lock:
-            listeners = list(self._listeners.values())
-        for listener in listeners:
+        for listener in self._listeners:
             listener()
 
     def subscribe(self, callback: Callable[[], None]) -> Callable[[], None]:
         """Have changes told, in the thread that learns of them; what comes back ends that."""
-        key = object()
-        with self._lock:
-            self._listeners[key] = callback
-        return lambda: self._forget(key)
-
-    def _forget(self, key: object) -> None:
-        with self._lock:
-            self._listeners.pop(key, None)
+        return self._listeners.add(callback)
 
 
 def doubts(layout: WizardLayout, robot: Any, behaviors: Collection[str] | None) -> list[Problem]:
