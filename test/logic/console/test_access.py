@@ -6,10 +6,12 @@ import asyncio
 import stat
 import threading
 import time
+from contextlib import suppress
 from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from nao_library_modules.console.access.connections import address_group
 from nao_library_modules.console.access.guard import COOKIE, LARGEST, SESSION, Guard
@@ -138,6 +140,28 @@ def test_requests_of_other_pages_are_refused(door, operator):
 def test_a_websocket_comes_from_the_console_itself(door, operator, options, accepted):
     (told,) = door.ask(kind="websocket", cookie=operator.key, **options)
     assert told["type"] == ("websocket.accept" if accepted else "websocket.close")
+
+
+@pytest.mark.parametrize("reads", [False, True], ids=["answered", "read"])
+def test_a_websocket_whose_browser_has_left_ends_without_an_error(sessions, operator, reads):
+    ended = []
+
+    async def answers(scope, receive, _):
+        async def send(_):
+            raise OSError("gone")
+
+        socket = WebSocket(scope, receive, send)
+        socket.client_state = socket.application_state = WebSocketState.CONNECTED
+        try:
+            with suppress(WebSocketDisconnect if reads else ()):
+                await socket.send_text("to nobody")
+            await socket.receive_text()
+        finally:
+            ended.append(True)
+
+    door = Door(sessions)
+    door.guard.app = answers
+    assert door.ask(kind="websocket", cookie=operator.key, origin=ORIGIN) == [] and ended
 
 
 def test_a_websocket_without_a_session_is_closed(door):

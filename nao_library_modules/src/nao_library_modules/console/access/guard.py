@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import html
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import parse_qs, quote, urlencode, urlsplit
+
+from starlette.websockets import WebSocketDisconnect, WebSocketDisconnected
 
 from .connections import Connections
 from .sessions import Logins, Session, Sessions
@@ -14,6 +17,8 @@ from .sessions import Logins, Session, Sessions
 COOKIE = "nao_console"
 SESSION = "nao_session"
 """Key of the session in the scope of a connection."""
+LEFT = (WebSocketDisconnect, WebSocketDisconnected)
+"""What Starlette raises where a WebSocket is answered or read whose browser has left: that ends it, and is no error."""
 LARGEST = 8 * 2**20
 """Bytes of a request."""
 LOGIN, LOGOUT = "/login", "/logout"
@@ -92,7 +97,8 @@ class Guard:
                 reason = CROWDED if crowded else problem or "not logged in"
                 await send({"type": "websocket.close", "code": 4403, "reason": reason})
                 return
-            await self._behind(scope)({**scope, SESSION: session}, receive, send)
+            with suppress(*LEFT):
+                await self._behind(scope)({**scope, SESSION: session}, receive, send)
             return
         if problem:
             await _answer(send, 403, problem)

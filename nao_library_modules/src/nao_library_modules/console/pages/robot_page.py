@@ -14,7 +14,7 @@ from collections.abc import Awaitable, Callable
 from functools import partial
 from typing import Any, Deque
 
-from fastapi import HTTPException, Request, WebSocket, WebSocketDisconnect
+from fastapi import HTTPException, Request, WebSocket
 from fastapi.responses import FileResponse, Response
 from nicegui import ui
 
@@ -156,8 +156,6 @@ async def _serve(console: Any, socket: WebSocket, inbox: FrameInbox, read: Calla
         done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         for task in done:
             task.result()
-    except (WebSocketDisconnect, RuntimeError):
-        pass  # the browser has gone; Starlette says so by a RuntimeError to who still sends
     except (NaoError, ValueError) as error:
         await _end(socket, WRONG, str(error))
     finally:

@@ -14,7 +14,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from fastapi import Request, WebSocket, WebSocketDisconnect
+from fastapi import Request, WebSocket
 from nicegui import context, ui
 
 from naoqi.errors import NaoError
@@ -22,7 +22,7 @@ from naoqi.errors import NaoError
 from ...core.files import config_file
 from ...studies.commands import ConsoleFileError, RobotCommand
 from ...studies.studies import Studies
-from ..access.guard import session_of
+from ..access.guard import LEFT, session_of
 from ..access.sessions import Session
 from ..view.background import in_background
 from ..wizard.desk import HEAD, PLANS, STOP, WALK, PageRights, WizardDesk, WizardSession, read_message
@@ -451,11 +451,7 @@ class _DriveSocket:
         teller = asyncio.create_task(self._tell(wizard))
         try:
             while True:
-                try:
-                    text = await socket.receive_text()
-                except (WebSocketDisconnect, RuntimeError):  # Starlette's to who reads behind a send that failed
-                    break
-                self._take(wizard, text)
+                self._take(wizard, await socket.receive_text())
         finally:
             teller.cancel()
             for end in ends:
@@ -495,7 +491,7 @@ class _DriveSocket:
     async def _tell(self, wizard: WizardSession) -> None:
         """Tell the page its layout, the states of its buttons, and what was refused, as they change."""
         revision, states = None, None
-        with suppress(WebSocketDisconnect, RuntimeError):
+        with suppress(*LEFT):
             while True:
                 layout = self._parts.current.layout
                 message: dict[str, Any] = {}
