@@ -15,7 +15,7 @@ from typing import Any
 from ..core.fields import limit
 from ..core.geometry import ODOM, Place
 from .designators.designator import Designator, action, motion
-from .designators.objects_and_locations import Point3, Position
+from .designators.objects_and_locations import TORSO, Point3, Position
 from .designators.rules import (
     Command,
     Mismatch,
@@ -31,7 +31,6 @@ from .designators.rules import (
 )
 from .failures import DesignatorError
 
-TORSO = "torso"
 SIDE = one_of("left", "right")
 BOTH = (action, motion)
 

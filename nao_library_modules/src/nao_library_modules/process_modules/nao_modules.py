@@ -33,7 +33,7 @@ from nao_library_msgs.msg import LedFunction, VisionFunction
 
 from ..core.errors import of_those
 from ..core.geometry import ODOM, Place, wrapped, yaw_of_quaternion
-from .designators.objects_and_locations import Point3, head_angles
+from .designators.objects_and_locations import TORSO, Point3, head_angles
 from .designators.rules import Command
 from .failures import (
     GripperClosedCompletely,
@@ -53,7 +53,7 @@ from .failures import (
 )
 from .fluents import Fluent
 from .process_module import AsynchronousProcessModule
-from .robot_link import TORSO, Chain, RobotLink
+from .robot_link import Chain, RobotLink
 
 
 class RobotModule(AsynchronousProcessModule):

@@ -210,7 +210,6 @@ OLDEST = 10.0
 LISTENER_PERIOD = 0.02
 OTHERS_LIMIT = 2.0
 """s to wait, when the first listener is there, for others that the master knows: one that was killed never comes."""
-TORSO = "torso"
 
 
 class LatchedTopic:

@@ -32,13 +32,17 @@ from .rules import Mismatch, number, numbers_of_nao, plain, rule
 # --- points -----------------------------------------------------------------------------------------------------------
 
 
+TORSO = "torso"
+"""Frame of /tf on the torso."""
+
+
 class Point3(NamedTuple):
     """A point in a frame of /tf."""
 
     x: float
     y: float
     z: float
-    frame: str = "torso"
+    frame: str = TORSO
 
     def distance_to(self, other: Sequence[float]) -> float:
         """To a point of the same frame."""
