@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import queue
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -93,18 +94,27 @@ def watch_command(context: click.Context, names: tuple[str, ...], count: int | N
             _print_values(watch, settings, count)
 
 
-def _print_values(watch: _MemoryWatch, settings: Any, count: int | None) -> None:
+def _coming(
+    take: Callable[[float | None], tuple[str, Any]], settings: CliSettings, count: int | None
+) -> Iterator[tuple[str, Any]]:
+    """What comes until the command's time is up, `count` times at most.
+
+    `take`: waits so many s for the next one, None: for ever; raises queue.Empty if none came.
+    """
     deadline = None if settings.timeout is None else time.monotonic() + settings.timeout
-    told = 0
-    while count is None or told < count:
+    for _ in itertools.count() if count is None else range(count):
         left = None if deadline is None else deadline - time.monotonic()
         if left is not None and left <= 0.0:
             return
         try:
-            name, value = watch.next(left)
+            come = take(left)
         except queue.Empty:
             return
-        told += 1
+        yield come
+
+
+def _print_values(watch: _MemoryWatch, settings: Any, count: int | None) -> None:
+    for name, value in _coming(watch.next, settings, count):
         if settings.json:
             say_json({"time": time.time(), "name": name, "value": value}, compact=True)
         else:
@@ -334,14 +344,7 @@ def _watched(robot: DirectRobot, member: str, told: Callable[[Any], None]) -> tu
 
 
 def _print_news(came: queue.Queue[Any], settings: CliSettings, count: int | None) -> None:
-    deadline = None if settings.timeout is None else time.monotonic() + settings.timeout
-    told = 0
-    while count is None or told < count:
-        try:
-            member, values = came.get(timeout=None if deadline is None else max(0.0, deadline - time.monotonic()))
-        except queue.Empty:
-            return
-        told += 1
+    for member, values in _coming(lambda limit: came.get(timeout=limit), settings, count):
         if settings.json:
             say_json({"time": time.time(), "name": member, "values": values}, compact=True)
         else:
