@@ -1,5 +1,5 @@
 // What every page has: the stop, on a line of its own that is open already and by a request as well, what comes first
-// counts; and the console's pulse, by which a page knows whether what it shows is true. See console/stop_line.py.
+// counts; and the console's pulse, by which a page knows whether what it shows is true. See console/app.py.
 
 import { arrived, doubt, pressOf, refuse, sending, tell as tellUnsent } from "./presses.js";
 

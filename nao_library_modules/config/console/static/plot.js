@@ -1,5 +1,5 @@
 // <nao-plot robot="/" trace="joint:HeadYaw">: the last minute of a number that the robot tells. Joints come with the
-// pose; other traces are asked for: see console/view/traces.py for their names.
+// pose; other traces are asked for: see console/view/live_view.py for their names.
 
 import { LiveStream, isDark, watchTheme } from "./live.js";
 

@@ -1,5 +1,5 @@
 // A press is for the moment in which it is made: one that cannot reach the console now is refused, and never sent later.
-// It is said in a line until somebody has looked, and the console is told as soon as it can be: see pages/failed_presses.py.
+// It is said in a line until somebody has looked, and the console is told as soon as it can be: see pages/frame.py.
 // One that was sent when the connection broke may be lost on its way: it is told as well, and the console leaves out those
 // that it has, by their `press_id`.
 

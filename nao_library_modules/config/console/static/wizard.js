@@ -1,5 +1,5 @@
 // The wizard's page: <nao-wizard-buttons>, <nao-wizard-drive>, keys, gamepad and pointing on <nao-camera>.
-// All of it goes over one WebSocket a page, /console/drive; console/wizard/session.py tells the messages.
+// All of it goes over one WebSocket a page, /console/drive; console/wizard/desk.py tells the messages.
 
 import { consoleTime, trouble } from "./frame.js";
 import { refuse, sending } from "./presses.js";
