@@ -214,6 +214,16 @@ def test_what_was_recorded_until_it_was_cut_short_comes_to_where_the_user_is(
     assert len(sent.goals) == 2 * (1 + ended) + 1, "where nothing was begun nothing is stopped"
 
 
+def test_a_touch_that_lasts_longer_than_was_asked_is_reported(run, graph, monkeypatch):
+    pressed, times = [], iter((10.0, 11.0))
+    graph(services={"/nao_sim/press": lambda request: pressed.append(list(request.sensors))})
+    monkeypatch.setattr(simulator_commands, "start_node", lambda: None)
+    monkeypatch.setattr(rospy, "get_time", lambda: next(times))
+    monkeypatch.setattr(rospy, "sleep", lambda _: None)
+    result = run("sim", "touch", "Head/Touch/Front", "--for", "0.3")
+    assert "held for 1.00 s" in result.stderr and pressed == [["Head/Touch/Front"], []]
+
+
 def test_a_goal_that_ctrl_c_ended_is_one_document_with_its_state(run, graph, sent):
     graph()
     sent.lasting, sent.interrupted = ("rasta",), True

@@ -1,1 +1,1 @@
-"""What every action server uses and what needs no rospy: NaoBasic, chains, fields, errors, files, the NAO's facts."""
+"""What every action server uses and what needs no rospy: chains, fields, errors, files, the NAO's facts."""
