@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import resource
 import signal
 import sys
 from pathlib import Path
@@ -76,6 +77,11 @@ class ConsoleProgram:
         name = f"/nao_console_{self.process.pid}_"
         gone = [each for each in rosnode.get_node_names() if each.startswith(name)]
         rosnode.cleanup_master_blacklist(rosgraph.Master("/tests"), gone)
+
+    def limit_files(self, size):
+        """How long its files may become, in bytes, as on a disk that is full; None: as long as they like."""
+        limits = (resource.RLIM_INFINITY if size is None else size, resource.RLIM_INFINITY)
+        resource.prlimit(self.process.pid, resource.RLIMIT_FSIZE, limits)
 
     def close(self):
         if self.process.poll() is None:
@@ -170,6 +176,15 @@ class ConsoleBrowser:
     def text(self):
         """What is to be read on the page."""
         return self.script(TEXT)
+
+    def see_all(self):
+        """Take away the lines of what has failed, of which more may come."""
+
+        def none_left():
+            self.script("document.querySelector('.nao-failed button')?.click()")
+            return not self.all(".nao-failed button")
+
+        self.until(none_left, "no line of what has failed")
 
     def reads(self, *texts):
         """Wait until the page says all of these."""

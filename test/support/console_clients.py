@@ -14,6 +14,7 @@ import time
 import urllib.request
 from contextlib import ExitStack, contextmanager, suppress
 from urllib.parse import urlencode
+from xmlrpc.client import ServerProxy
 
 import yaml
 from websockets.exceptions import ConnectionClosed
@@ -242,25 +243,36 @@ def idle_connections(port, count=1200, address="127.0.0.1"):
             each.close()
 
 
+def is_sent_here(topic, publisher=""):
+    """Whether all publishers of a topic send it to this node, one of this name's beginning among them.
+
+    A subscriber that counts its connections does not know whether their publishers do: what comes just then is lost.
+    """
+    import rosgraph
+    import rospy
+
+    master = rosgraph.Master("/tests")
+    nodes = dict(master.getSystemState()[0]).get(topic, [])
+
+    def sends(node):
+        _, _, connections = ServerProxy(master.lookupNode(node)).getBusInfo("/tests")
+        return any((to, way, name) == (rospy.get_name(), "o", topic) for _, to, way, _, name, *_ in connections)
+
+    return any(node.startswith(publisher) for node in nodes) and all(map(sends, nodes))
+
+
 class StopWatch:
     """Times from a stop to its cancel at a server, s. `topic`: of the cancels."""
 
     def __init__(self, topic="NaoLights/cancel"):
-        import rosgraph
         import rospy
         from actionlib_msgs.msg import GoalID
 
         self._came = threading.Event()
         self._stamp = 0.0
         self._subscriber = rospy.Subscriber(topic, GoalID, self._take, tcp_nodelay=True)
-        master, full = rosgraph.Master("/stop_watch"), rospy.resolve_name(topic)
-
-        def all_connected():
-            publishers = dict(master.getSystemState()[0]).get(full, [])
-            of_the_console = any(name.startswith("/nao_console") for name in publishers)
-            return of_the_console and self._subscriber.get_num_connections() >= len(publishers)
-
-        wait_until(all_connected, LIMIT, f"the console at {topic}")
+        full = rospy.resolve_name(topic)
+        wait_until(lambda: is_sent_here(full, "/nao_console"), LIMIT, f"the console at {topic}")
 
     def _take(self, _):
         self._stamp = time.monotonic()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -121,14 +120,10 @@ class FaultLab:
         self.robot.reset()
         self._wait_for_family("Crouching")
         self.browser.open("/wizard")
-        self.browser.until(self._see_all, "no line of what has failed")
+        self.browser.see_all()
         if "fallen" in self.alarms():
             self.get_up()
         self.browser.until(lambda: not set(self.alarms()) - BUSY, "no alarm of the row before")
-
-    def _see_all(self):
-        self.browser.script("document.querySelector('.nao-failed button')?.click()")
-        return not self.browser.all(".nao-failed button")
 
     def begin(self, step=CHOICE, record="{}"):
         """Begin the trial of the row. `step`: its first one. `record`: what is recorded."""
@@ -158,7 +153,7 @@ class FaultLab:
 
         def is_done():
             if self.browser.all(".nao-failed", f"{button}: not sent"):
-                self.browser.until(self._see_all, "no line of what has failed")
+                self.browser.see_all()
                 self.browser.click("button", button)
             return done()
 
@@ -284,13 +279,10 @@ class FaultLab:
 
     def fill_disk(self):
         """The console's files get no longer than the log of the trial is."""
-        self._limit_files((self.trial.path / EVENTS).stat().st_size)
+        self.program.limit_files((self.trial.path / EVENTS).stat().st_size)
 
     def free_disk(self):
-        self._limit_files(resource.RLIM_INFINITY)
-
-    def _limit_files(self, size):
-        resource.prlimit(self.program.process.pid, resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+        self.program.limit_files(None)
 
 
 def _has(event, data):

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 import rospy
 from actionlib_msgs.msg import GoalID
-from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
-from console_clients import stopped
+from console_browser import LIMIT, ConsoleBrowser
+from console_clients import is_sent_here, stopped
 from ros_stack import start_program
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
@@ -42,7 +42,7 @@ class Heard:
     def __init__(self, topic, kind):
         self.messages = []
         self._subscriber = rospy.Subscriber(topic, kind, self.messages.append)
-        wait_until(lambda: self._subscriber.get_num_connections(), LIMIT, topic)
+        wait_until(lambda: is_sent_here(rospy.resolve_name(topic)), LIMIT, topic)
 
     def wait(self, fits=lambda message: True, what="a message"):
         """Wait for one that fits."""
@@ -51,22 +51,6 @@ class Heard:
 
     def close(self):
         self._subscriber.unregister()
-
-
-@pytest.fixture(scope="module")
-def program(stack, tmp_path_factory):
-    stack.ensure()
-    made = ConsoleProgram(tmp_path_factory.mktemp("console"))
-    yield made
-    made.close()
-
-
-@pytest.fixture(scope="module")
-def browser(program):
-    made = ConsoleBrowser(program)
-    made.enter()
-    yield made
-    made.close()
 
 
 @pytest.fixture
@@ -204,16 +188,6 @@ def test_a_key_presses_its_button_but_not_in_a_field(browser, heard):
     assert texts(goals.wait()) == [("say", "Yes.")]
 
 
-def see_all(browser):
-    """Take away the lines of what has failed, of which more may come."""
-
-    def none_left():
-        browser.script("document.querySelector('.nao-failed button')?.click()")
-        return not browser.all(".nao-failed button")
-
-    browser.until(none_left, "no line of what has failed")
-
-
 def ask_for_yes(browser):
     browser.open("/wizard")
     browser.one("nao-wizard-buttons button")
@@ -246,7 +220,7 @@ def test_what_is_pressed_while_the_console_does_not_answer_is_said_and_never_sen
         lambda: not browser.all(".nao-unsent p") and browser.all(".nao-failed", "not sent"), "what was pressed"
     )
     assert goals.messages == []
-    see_all(browser)
+    browser.see_all()
     browser.click(css, text)
     assert texts(goals.wait()) == [("say", "Yes.")] and len(goals.messages) == 1
 
@@ -266,7 +240,7 @@ def test_a_goal_that_fails_says_so_on_its_button_until_somebody_has_looked(brows
     browser.until(lambda: browser.all(failed, "Introduction") and browser.all(".nao-failed", "Introduction"), "both")
     browser.open("/functions")
     browser.until(lambda: browser.all(".nao-failed", "Introduction"), "the line on another page")
-    see_all(browser)
+    browser.see_all()
     browser.open("/wizard")
     browser.one("nao-wizard-buttons button", "Introduction")
     assert not browser.all(failed)
@@ -296,7 +270,7 @@ def test_a_goal_whose_server_dies_is_lost_and_says_what_died(browser):
         server.communicate(timeout=LIMIT)
     browser.one("nao-wizard-buttons button[data-failed]", "lost")
     browser.one(".nao-failed", "the server /perform_designator died")
-    see_all(browser)
+    browser.see_all()
 
 
 def test_it_walks_while_a_key_is_held_and_no_longer(stack, browser):

@@ -5,9 +5,8 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-import pytest
 import rospy
-from console_browser import LIMIT, ConsoleBrowser, ConsoleProgram
+from console_browser import LIMIT, ConsoleBrowser
 from console_clients import stopped
 from console_overlays import OVERLAYS, paths_in_code
 from selenium.webdriver.common.keys import Keys
@@ -40,22 +39,6 @@ stop.focus({ focusVisible: true });
 const { outlineStyle, outlineWidth } = getComputedStyle(stop);
 return [stop.matches(":focus-visible"), outlineStyle, parseFloat(outlineWidth) > 0];
 """
-
-
-@pytest.fixture(scope="module")
-def program(stack, tmp_path_factory):
-    stack.ensure()
-    made = ConsoleProgram(tmp_path_factory.mktemp("console"))
-    yield made
-    made.close()
-
-
-@pytest.fixture(scope="module")
-def browser(program):
-    made = ConsoleBrowser(program)
-    made.enter()
-    yield made
-    made.close()
 
 
 class StopLooks:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from statistics import median
 
 import pytest
-from console_browser import ConsoleProgram
 from console_clients import (
     StopLine,
     StopWatch,
@@ -20,14 +19,6 @@ from console_clients import (
 
 PATHS = [f"{path}?robot=/" for path in ("/", "/wizard", "/study", "/behaviors", "/functions")]
 STOPS = 5
-
-
-@pytest.fixture(scope="module")
-def program(stack, tmp_path_factory):
-    stack.ensure()
-    made = ConsoleProgram(tmp_path_factory.mktemp("console"))
-    yield made
-    made.close()  # and tells what its event loops should not have done
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,5 @@
 """A trial in a browser: a touch, a word and a choice; its console is killed, and the network lost."""
 
-import resource
 import shutil
 import subprocess
 import tempfile
@@ -163,19 +162,15 @@ class ConsoleStudy(RobotTestCase):
         self.at("1.3")
         folder = self.files.trial(TRIAL).path
         self.browser.type("input[aria-label='Note']", "looks away")
-        self.limit_files((folder / EVENTS).stat().st_size)  # as a disk that is full
+        self.program.limit_files((folder / EVENTS).stat().st_size)  # as a disk that is full
         self.browser.keys(Keys.ENTER)  # what is said of the disk moves buttons
         self.browser.reads("events wait in memory", "looks away")  # the note among them
         self.assertNotIn("looks away", (folder / EVENTS).read_text())
-        self.limit_files(resource.RLIM_INFINITY)
+        self.program.limit_files(None)
         self.browser.reads("waited in memory, and were written then")
         self.assertIn("looks away", (folder / EVENTS).read_text())
         self.browser.click("button", "Seen")
         self.browser.until(lambda: not self.browser.all("[role=alert]", "waited in memory"), "what was seen to go")
-
-    def limit_files(self, size):
-        """How long files of the console may become, in bytes."""
-        resource.prlimit(self.program.process.pid, resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
 
     def test_who_looks_on_begins_no_trial(self):
         observer = ConsoleBrowser(self.program).enter(self.program.observer)
