@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import runpy
@@ -17,10 +18,11 @@ from wrong_behaviors import GOOD, LINE, WRONG, wrong_text
 
 from nao_library_modules.cli.app import COMMANDS, nao
 from nao_library_modules.cli.chain_text import Angle, build_message, read_chain, read_value
-from nao_library_modules.cli.commands import simulator_commands
+from nao_library_modules.cli.commands import robot_commands, simulator_commands
 from nao_library_modules.cli.completion import LineComplete
 from nao_library_modules.cli.output import say_result
 from nao_library_modules.cli.stack import START
+from nao_library_modules.ros import master_api
 from nao_library_msgs.msg import (
     BehaviorInfo,
     BehaviorParameter,
@@ -222,6 +224,30 @@ def test_a_touch_that_lasts_longer_than_was_asked_is_reported(run, graph, monkey
     monkeypatch.setattr(rospy, "sleep", lambda _: None)
     result = run("sim", "touch", "Head/Touch/Front", "--for", "0.3")
     assert "held for 1.00 s" in result.stderr and pressed == [["Head/Touch/Front"], []]
+
+
+def test_a_stop_reaches_all_who_listen_and_waits_for_no_dead_one(monkeypatch):
+    """A console that hears of a stop late would go on with its trial."""
+    sent, connections = [], {"/NaoLights/cancel": iter((0, 1, 1, 2)), "/NaoMotion/cancel": itertools.repeat(1)}
+
+    class Publisher:
+        def __init__(self, topic, kind, queue_size):
+            self._topic = topic
+
+        def get_num_connections(self):
+            return next(connections[self._topic])
+
+        def publish(self, message):
+            sent.append((self._topic, message.id))
+
+    monkeypatch.setattr(rospy, "Publisher", Publisher)
+    monkeypatch.setattr(robot_commands, "start_node", lambda: None)
+    monkeypatch.setattr(robot_commands, "GONE_AFTER", 0.1)
+    monkeypatch.setattr(master_api, "node_runs", {"/NaoMotion": True, "/dead": False}.get)
+    robot_commands._cancel(
+        {"/NaoLights/cancel": ["/NaoLights", "/console"], "/NaoMotion/cancel": ["/NaoMotion", "/dead"]}
+    )
+    assert sorted(sent) == [("/NaoLights/cancel", "")] * 2 + [("/NaoMotion/cancel", "")]
 
 
 def test_a_goal_that_ctrl_c_ended_is_one_document_with_its_state(run, graph, sent):

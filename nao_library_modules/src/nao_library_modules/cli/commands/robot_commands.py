@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import threading
+import time
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import click
@@ -146,8 +148,10 @@ rest_command = _one_function("rest", "rest", "Go to a safe posture and switch th
 # --- nao stop ---------------------------------------------------------------------------------------------------------
 
 CANCEL = "/cancel"
-CONNECT_LIMIT = 3.0
-"""s until the servers must have been found."""
+CONNECT_LIMIT = 10.0
+"""s until all who listen must have been found; most are within 0.2."""
+GONE_AFTER = 1.0
+"""s after which those are left out that do not run any more: the master does not know."""
 FOUND_PERIOD = 0.02
 
 
@@ -161,7 +165,7 @@ def stop_command(context: click.Context) -> None:
     types = settings.stack.graph.topic_types()
     topics = [name for name in listened if name.endswith(CANCEL) and types.get(name) == "actionlib_msgs/GoalID"]
     actions = sorted(name for name in topics if name.startswith(space))
-    _cancel(actions)
+    _cancel({name: listened[name] for name in actions})
     walk = _stop_walk(settings)
     names = [name[len(space) : -len(CANCEL)] for name in actions]
     if settings.json:
@@ -170,22 +174,30 @@ def stop_command(context: click.Context) -> None:
         click.echo(f"cancelled: {', '.join(names) or 'nothing'}; {walk}")
 
 
-def _cancel(topics: list[str]) -> None:
-    """Send each server a cancel for all its goals, as soon as it listens."""
+def _cancel(listened: Mapping[str, Collection[str]]) -> None:
+    """Send a cancel for all goals to each node that listens, server or not, as soon as it is connected.
+
+    `listened`: topic of cancels -> the nodes.
+    """
     import rospy
     from actionlib_msgs.msg import GoalID
 
+    from ...ros.master_api import node_runs
+
     start_node()
-    waiting = [rospy.Publisher(topic, GoalID, queue_size=1) for topic in topics]
-    pause = threading.Event()
-    tries = int(CONNECT_LIMIT / FOUND_PERIOD)
-    for _ in range(tries):
-        found = [publisher for publisher in waiting if publisher.get_num_connections()]
-        for publisher in found:
-            publisher.publish(GoalID())
-        waiting = [publisher for publisher in waiting if publisher not in found]
-        if not waiting:
-            return
+    began, pause, looked = time.monotonic(), threading.Event(), False
+    waiting = {rospy.Publisher(topic, GoalID, queue_size=1): set(nodes) for topic, nodes in listened.items()}
+    reached = dict.fromkeys(waiting, 0)
+    while waiting and (lasted := time.monotonic() - began) < CONNECT_LIMIT:
+        if lasted > GONE_AFTER and not looked:
+            looked, runs = True, {node: node_runs(node) for node in set().union(*waiting.values())}
+            waiting = {each: {node for node in nodes if runs[node]} for each, nodes in waiting.items()}
+        for publisher in waiting:
+            there = publisher.get_num_connections()
+            if there > reached[publisher]:
+                reached[publisher] = there
+                publisher.publish(GoalID())
+        waiting = {publisher: nodes for publisher, nodes in waiting.items() if reached[publisher] < len(nodes)}
         pause.wait(FOUND_PERIOD)
 
 
