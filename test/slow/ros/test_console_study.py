@@ -61,7 +61,8 @@ class ConsoleStudy(RobotTestCase):
         """Wait until a step has begun: it may be over before anybody looks."""
 
         def begun():
-            return any(each.path == path for each in self.files.trial(TRIAL).state().outcomes)
+            trials = [trial for trial in self.files.trials(STUDY) if trial.id == TRIAL]  # none yet, at first
+            return any(each.path == path for trial in trials for each in trial.state().outcomes)
 
         def so_far():
             lines = (self.files.trial(TRIAL).path / EVENTS).read_text().splitlines()

@@ -35,8 +35,9 @@ CHOICE, RUN_ENDED, TIMER, HAPPENED = "choice", "run ended", "timer", "happened"
 """Messages to a trial: a choice of the wizard, the end of a goal, a time that is over, an event of the robot."""
 EVENT_OF = {"touch": TOUCHED, "word": "heard", "face": "seen"}
 """Sense -> kind of the events that tell of it."""
-STOP_LAG = 1.0
-"""s of ROS time by which a stop of another program may be heard later than the end of the goal that it cancelled."""
+STOP_LAG = 5.0
+"""s of ROS time by which a stop of another program may be heard later than the end of the goal that it cancelled: who
+stops is connected with one node after the other, which took more than 1 s on a busy computer."""
 GOAL_LAG = 0.5
 """s of ROS time by which a goal may tell of a touch later than the topics: its onset is the better one."""
 CANCELLED = ("preempted", "recalled")
