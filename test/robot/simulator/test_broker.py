@@ -26,9 +26,9 @@ from nao_sim_bridge.server.broker import Broker
 from nao_sim_bridge.server.wire import Wires
 from nao_sim_bridge.testing import wait_until
 
-END_LIMIT = 60.0
 SPEAKS = 0.01
 """s of processor time after which a copy of the speech process speaks: what comes before takes less than 1 ms."""
+END_LIMIT = 60.0
 """s within which a simulator that is told to end is over, and after a kill all that it has started."""
 LISTENS = re.compile(r"listens on 127\.0\.0\.1:(\d+)")
 
@@ -454,8 +454,17 @@ def stopped_copy(pid):
         for copy in descendants(worker.pid):
             if computed(copy.pid) > SPEAKS:
                 os.kill(copy.pid, signal.SIGSTOP)
-                return identify(copy.pid) is not None
+                wait_until(lambda: state(copy.pid) != "R", PATIENCE, "a copy that stops or ends")
+                return state(copy.pid) == "T"
     return False
+
+
+def state(pid):
+    """The letter of /proc for what a process does: R, T of one that was stopped, Z of one that ended; "" if it is gone."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return ""
 
 
 def computed(pid):
