@@ -67,7 +67,7 @@ WATCH = """
 const [css, text] = arguments;
 const now = () => Date.now() / 1000;
 sessionStorage.shown = sessionStorage.pressed = "";  // which outlive a page that is loaded again
-const shows = (each) => each.checkVisibility() && each.textContent.includes(text);
+const shows = (each) => each.checkVisibility() && text.split("|").some((one) => each.textContent.includes(one));
 const look = () => (sessionStorage.shown ||= [...document.querySelectorAll(css)].some(shows) ? now() : "");
 const all = { subtree: true, childList: true, characterData: true, attributes: true };
 new MutationObserver(look).observe(document, all);
@@ -164,11 +164,19 @@ class FaultLab:
 
     def logged(self, kind, **data):
         """Wait for the newest event of the log with these values; of `text` and of lists a part."""
+        return self.logged_one_of((kind, data))
+
+    def logged_one_of(self, *wanted):
+        """Wait for the newest event that is one of these, (kind, values)."""
 
         def found():
-            return [event for event in self.events() if event["kind"] == kind and _has(event, data)]
+            return [
+                event
+                for event in self.events()
+                if any(event["kind"] == kind and _has(event, data) for kind, data in wanted)
+            ]
 
-        wait_until(found, LIMIT, lambda: f"{kind} {data} among\n" + "\n".join(map(str, self.events())))
+        wait_until(found, LIMIT, lambda: f"{wanted} among\n" + "\n".join(map(str, self.events())))
         return found()[-1]
 
     # --- faults
@@ -176,7 +184,8 @@ class FaultLab:
     def shows(self, css, text, act, after=0.0):
         """Make a fault with `act`, and take the time until the page shows it.
 
-        `act`: may return when it was made, else it is made at once. `after`: s until it can be known.
+        `act`: may return when it was made, else it is made at once. `after`: s until it can be known. `text`: one of
+        several, with "|" between.
         """
         self.browser.script(WATCH, css, text)
         assert not self.browser.script(SHOWN)[0], f"{text} is there before"

@@ -290,6 +290,21 @@ def test_pages_look_at_a_robot_whose_trial_begins_and_nobody_begins_another(tria
     trial.end()
 
 
+def test_a_trial_is_not_shown_before_it_is_known_whose_it_is(trial):
+    subscribe, seen = trial.robot.events.subscribe, []
+
+    def look(listener):
+        runner = trial.studies.running(trial.robot.namespace)
+        seen.append(runner and runner.state.about.get("participant"))
+        return subscribe(listener)
+
+    trial.robot.events.subscribe = look
+    trial.begin()
+    assert seen == [None] and trial.studies.running(trial.robot.namespace).state.about["participant"] == "P01"
+    trial.runner.abort()
+    trial.end()
+
+
 def test_who_stops_the_robot_pauses_its_trial(trial):
     trial.begin().at("2.1").robot.events.add("stopped", "everything is told to stop", "ann")
     trial.until(lambda: trial.runner.state.status == "paused")

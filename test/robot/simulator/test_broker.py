@@ -454,13 +454,13 @@ def stopped_copy(pid):
         for copy in descendants(worker.pid):
             if computed(copy.pid) > SPEAKS:
                 os.kill(copy.pid, signal.SIGSTOP)
-                wait_until(lambda: state(copy.pid) != "R", PATIENCE, "a copy that stops or ends")
+                wait_until(lambda pid=copy.pid: state(pid) != "R", PATIENCE, "a copy that stops or ends")
                 return state(copy.pid) == "T"
     return False
 
 
 def state(pid):
-    """The letter of /proc for what a process does: R, T of one that was stopped, Z of one that ended; "" if it is gone."""
+    """What a process does, the letter of /proc: R runs, T was stopped, Z ended; "" if it is gone."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:

@@ -6,7 +6,7 @@ Each row has a trial of its own. Its times are printed; those that are asserted 
 import os
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,6 +41,7 @@ class Row:
         kind, data: The event that the log has then, and values of it.
         also: Kinds of further events that do happen, and codes of alarms.
         timed: Whether the event comes with the fault, not before it.
+        alternatives: Further events, one of which the log may have in its place: (kind, data).
     """
 
     name: str
@@ -49,6 +50,7 @@ class Row:
     data: dict[str, Any]
     also: tuple[str, ...] = ()
     timed: bool = True
+    alternatives: Sequence[tuple[str, dict[str, Any]]] = ()
 
 
 def on_button(name, label, word, state, fault=None, also=()):
@@ -165,6 +167,7 @@ DONE = {
     "choice": ("trial", {"what": "step ended", "answer": "one"}),
 }
 """Events of the log that it is done."""
+REFUSED = ("failed", {"state": "not sent"})
 
 
 def offline(seconds, what):
@@ -173,6 +176,8 @@ def offline(seconds, what):
     page, act, css, text = ACTS[what]
     if is_long:
         css, text = (".nao-told", "does not answer") if walks else (".nao-failed", "not sent")
+    elif not walks:
+        css, text = f"{css}, .nao-unsent", f"{text}|not sent"  # if the page has seen by then that the network is gone
 
     def make(lab):
         lab.begin()
@@ -202,8 +207,9 @@ def offline(seconds, what):
         if walks:
             lab.let_go()
 
-    kind, data = ("failed", {"state": "not sent"}) if is_long and not walks else DONE[what]
-    return Row(name, make, kind, data, ("felt", "walked"), timed=not walks)
+    kind, data = REFUSED if is_long and not walks else DONE[what]
+    alternatives = [] if walks or is_long else [REFUSED]
+    return Row(name, make, kind, data, ("felt", "walked"), timed=not walks, alternatives=alternatives)
 
 
 def latched(name, css, text, act, **state):
@@ -320,7 +326,7 @@ class TestFaults:
         lab.prepare(row.name)
         try:
             row.make(lab)
-            event = lab.logged(row.kind, **row.data)
+            event = lab.logged_one_of((row.kind, row.data), *row.alternatives)
             once = sum(each["kind"] in ONCE for each in lab.events())
         finally:
             lab.end()

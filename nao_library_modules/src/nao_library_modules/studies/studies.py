@@ -257,12 +257,12 @@ class Studies:
             stops,
             lru_cache(maxsize=None)(partial(behavior_speaks, robot)),
         )
-        with self._lock:
-            self._runners[robot.namespace] = runner
         if listener is not None:
             runner.on_change(listener)
         leave.append(self._watch(runner, recordings))
         runner.start(by)
+        with self._lock:
+            self._runners[robot.namespace] = runner  # not before it has begun: pages show whose trial it is
         self._tell()
         return runner
 

@@ -187,6 +187,7 @@ class _StudyPage:
         self._dirty = True
         self._leave: Any = None
         self._shown: tuple[bool, Any] | None = None
+        self._trouble: Any = None
         self._fresh: deque[Any] = deque(maxlen=SHOWN_EVENTS)  # events that are not shown yet
         self._recordings: tuple[str, ...] | None = None
         self._choices_of: tuple[str, int] | None = None
@@ -224,12 +225,12 @@ class _StudyPage:
         running = self.runner is not None and not self.runner.state.over
         if self._shown != (running, self.runner):
             self._shown = (running, self.runner)
-            self._area.clear()
-            with self._area:
-                if running:
+            if running:
+                self._area.clear()
+                with self._area:
                     self._build_trial()
-                else:
-                    await self._build_begin()
+            else:
+                await self._show_begin()
         elif self._dirty and running:
             self._dirty = False
             self._update_trial()
@@ -240,13 +241,24 @@ class _StudyPage:
 
     # A trial that is to begin
 
-    async def _build_begin(self) -> None:
+    async def _show_begin(self) -> None:
+        shown = self._shown
+        opened = await self.page.work(self._opened)
+        names = list(await self.page.ask(self.studies.files.protocols))
+        chosen = self._chosen or await self.page.work(self.studies.files.newest_protocol)
+        if self._shown is shown and not self._area.is_deleted:  # no trial has begun meanwhile
+            self._area.clear()
+            with self._area:
+                self._build_begin(opened, names)
+            if names:
+                self._choice.value = chosen if chosen in names else names[0]
+
+    def _build_begin(self, opened: list[tuple[Any, TrialState, bool]], names: list[str]) -> None:
         last = self.runner
         if last is not None:
             state = last.state
             ui.label(f"Trial {last.id} is {state.status_text}; {state.steps_text}.").props('role="status"')
             self._build_trouble()
-        opened = await self.page.work(self._opened)
         if opened:
             with ui.card().classes("w-full"):
                 ui.label("Trials that have not ended").classes("text-h6")
@@ -269,7 +281,6 @@ class _StudyPage:
                         ).props("no-caps outline")
         with ui.card().classes("w-full"):
             ui.label("New trial").classes("text-h6")
-            names = list(await self.page.ask(self.studies.files.protocols))
             with ui.row().classes("items-start w-full"):
                 self._choice = ui.select(names, label="Protocol", on_change=self._read).classes("min-w-[16rem]")
                 self._person = ui.input("Participant (pseudonym)", on_change=self._tell_order).classes("min-w-[12rem]")
@@ -295,9 +306,6 @@ class _StudyPage:
             self._editor = YamlEditor(self.page, "Protocol", "protocol", self._take_draft, offers=offers)
             self._editor.open(NEW, EXAMPLE)
         self._person.value = self._wanted.get("participant", "")
-        if names:
-            chosen = self._chosen or await self.page.work(self.studies.files.newest_protocol)
-            self._choice.value = chosen if chosen in names else names[0]
 
     def _opened(self) -> list[tuple[Any, TrialState, bool]]:
         """Trials that have not ended, their states, and whether another program runs them."""
@@ -521,6 +529,8 @@ class _StudyPage:
 
     def _show_trouble(self) -> None:
         runner = self.runner
+        if self._trouble is None:
+            return  # nothing is shown yet
         self._trouble.text = runner.trouble if runner is not None else ""
         self._trouble_row.set_visibility(bool(self._trouble.text))
         self._seen.set_enabled(runner is not None and bool(runner.state.trouble))
