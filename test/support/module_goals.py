@@ -31,17 +31,38 @@ class _WatchedProxy:
         self._lockstep = lockstep
 
     def call_async(self, method, *arguments):
-        self._lockstep.call_begins(self._proxy)
+        opened = self._lockstep.call_begins(self._proxy)
         try:
-            call = self._proxy.call_async(method, *arguments)
+            opened.call = self._proxy.call_async(method, *arguments)
         except BaseException:
-            self._lockstep.call_ended(self._proxy)
+            self._lockstep.call_ended(opened)
             raise
-        call.add_done_callback(lambda _: self._lockstep.call_ended(self._proxy))
-        return call
+        opened.call.add_done_callback(lambda _: self._lockstep.call_ended(opened))
+        return _WatchedCall(opened.call, self._proxy, self._lockstep)
 
     def __getattr__(self, name):
         return getattr(self._proxy, name)
+
+
+class _WatchedCall:
+    """A call whose callbacks the lockstep knows of."""
+
+    def __init__(self, call, proxy, lockstep):
+        self._call, self._proxy, self._lockstep = call, proxy, lockstep
+
+    def add_done_callback(self, callback):
+        opened = self._lockstep.call_begins(self._proxy, self._call)
+
+        def run(_):
+            try:
+                callback(self)
+            finally:
+                self._lockstep.call_ended(opened)
+
+        self._call.add_done_callback(run)
+
+    def __getattr__(self, name):
+        return getattr(self._call, name)
 
 
 class Goal:

@@ -154,14 +154,22 @@ class Simulator:
         sys.setswitchinterval(self._interval)
 
 
+class OpenCall:
+    """A call that is not answered, or a callback of it that has not run."""
+
+    def __init__(self, proxy, call=None):
+        self.proxy, self.call = proxy, call
+
+
 class Lockstep:
     """Lets time pass only while every goal under test waits for time or for the robot.
 
     So a goal sees the same times on a slow machine as on a fast one: what is waited for is counted, not timed. Whatever
     happens to a goal (a call begins or ends, a wait for time is over, something on the robot has ended) holds time.
     It passes again when, `ROUNDS` times in a row, the robot has answered a ping of every module that has not answered a
-    call of the goal, the simulation has run a command, and the threads of the goals have been seen waiting. A module
-    takes one call at a time, so a call that is still open then is one that takes simulated time.
+    call of the goal, the simulation has run a command, no callback of an answer is still to run, and the threads of the
+    goals have been seen waiting. A module takes one call at a time, so a call that is still open then is one that takes
+    simulated time.
     """
 
     ROUNDS = 4
@@ -210,11 +218,14 @@ class Lockstep:
     def goal_is_over(self, thread=None):
         self.changed(lambda: self._goals.remove(thread))
 
-    def call_begins(self, proxy):
-        self.changed(lambda: self._calls.append(proxy))
+    def call_begins(self, proxy, call=None):
+        """Hold time for a call, or for a callback of it; returns what `call_ended` takes."""
+        opened = OpenCall(proxy, call)
+        self.changed(lambda: self._calls.append(opened))
+        return opened
 
-    def call_ended(self, proxy):
-        self.changed(lambda: self._calls.remove(proxy))
+    def call_ended(self, opened):
+        self.changed(lambda: self._calls.remove(opened))
 
     def changed(self, change=lambda: None):
         """Something has happened to a goal: time holds until it waits again."""
@@ -263,10 +274,11 @@ class Lockstep:
                     return
                 rounds = rounds if seen == self._change else 0
                 seen, goals, calls = self._change, list(self._goals), list(self._calls)
-            self._round(calls)
+            self._round({id(opened.proxy): opened.proxy for opened in calls}.values())
             if seen != self._change:
                 continue
-            if not all(self._waits(goal, bool(calls)) for goal in goals):
+            heard = not any(opened.call is not None and opened.call.done() for opened in calls)
+            if not heard or not all(self._waits(goal, bool(calls)) for goal in goals):
                 rounds = 0
                 with self._news:
                     self._news.wait(self.PAUSE)
@@ -276,9 +288,9 @@ class Lockstep:
                 self._quiet, rounds = seen, 0
                 self._simulator.server.simulation.wake()
 
-    def _round(self, calls):
+    def _round(self, proxies):
         try:
-            for proxy in calls:
+            for proxy in proxies:
                 proxy.call("ping")
             self._simulator.settled()
         except (NaoError, SimulationError):
