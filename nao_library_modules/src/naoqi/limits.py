@@ -69,7 +69,8 @@ comes next for so long. On two processors with 80 busy programs a simulator that
 START_LIMIT = 0.5
 """After the connection, modules may still appear: a starting robot registers them in turn."""
 FIRST_MODULE_LIMIT = 10.0
-"""The same while it has no module of NAOqi at all: on a busy computer a simulator listens for seconds before it has."""
+"""The same while it has no module of NAOqi at all, and for one that it had before it went away: on a busy computer a
+simulator listens for seconds before it has its modules, and a robot that starts again registers them for longer."""
 READY_LIMIT = 1.0
 """A module that has just been registered may not be callable yet."""
 STANDING_LIMIT = 2.0

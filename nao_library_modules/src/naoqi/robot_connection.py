@@ -16,7 +16,7 @@ import sys
 import threading
 import time
 from types import FunctionType
-from typing import Any, Callable, Dict, List, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Set, Tuple
 
 from .calls import TaskTable, Witness
 from .errors import BadArguments, NaoError, RobotUnreachable
@@ -57,6 +57,7 @@ class Connection:
         tasks: The posted calls of all proxies on this connection.
         presence: Threads and callbacks inside libqi on behalf of this connection.
         subscriptions: Event subscriptions to renew after a loss.
+        used_modules: Names of the modules that programs have used, in any session.
         closers: Called first when it is closed, in its thread: they end what this process serves over it.
         witness: Called with module, method and arguments of each call before it is sent, where there is one; what it
             returns, if it is not None, is called at the end of the call, in a thread of libqi.
@@ -87,6 +88,7 @@ class Connection:
         self._listeners = Listeners(f"naoqi listeners {self.address}")
         self.subscriptions = EventSubscriptions(self)
         self.add_listener(self.subscriptions.on_state)
+        self.used_modules: Set[str] = set()
         self.closers: List[Callable[[], None]] = []
         self.witness: Optional[Witness] = None
         self._watcher = threading.Thread(target=self._run, name=f"naoqi {self.address}", daemon=True)
@@ -197,6 +199,7 @@ class Connection:
                 found = live.services.get(name)
                 if found is None:
                     found = live.services[name] = find_module(self, live, name)
+                    self.used_modules.add(name)
         return found
 
     def forget_service(self, name: str) -> None:
@@ -412,7 +415,8 @@ def find_module(connection: Connection, live: Live, name: str) -> Any:
         if is_unknown_service(text):
             names = module_names(connection, live)
             # It may also have appeared between the two questions.
-            starting = name in names or not any(each.startswith("AL") for each in names)
+            expected = name in names or name in connection.used_modules
+            starting = expected or not any(each.startswith("AL") for each in names)
             limit = FIRST_MODULE_LIMIT if starting else START_LIMIT
             if connection.answering_time() < live.connected_at + limit and not live.broken.wait(delay):
                 continue

@@ -116,16 +116,37 @@ def test_a_module_may_appear_a_moment_after_the_robot(robot, states, pool):
     assert answer.result(SOON) == 2
 
 
-def test_a_robot_without_any_module_is_still_starting(pool, monkeypatch):
+@pytest.fixture
+def missed(monkeypatch):
+    """Set when a module was looked for in vain; only a robot that is starting is asked again."""
     monkeypatch.setattr(robot_connection, "START_LIMIT", 0.0)
     find_names, asked = robot_connection.module_names, threading.Event()
     monkeypatch.setattr(robot_connection, "module_names", lambda *where: (asked.set(), find_names(*where))[1])
+    return asked
+
+
+def test_a_module_that_was_used_is_waited_for_when_the_robot_comes_back(robot, states, pool, missed):
+    robot.proxy("Switch").arrive("Visitor")
+    visitor = robot.proxy("Visitor")
+    assert visitor.add(1, 1) == 2
+    followed = states(visitor.connection)
+    robot.kill()
+    robot.start()
+    followed.wait_for("lost", "connected")
+    missed.clear()
+    answer = pool.submit(lambda: visitor.add(2, 2))
+    assert missed.wait(SOON)
+    robot.proxy("Switch").arrive("Visitor")
+    assert answer.result(SOON) == 4
+
+
+def test_a_robot_without_any_module_is_still_starting(pool, missed):
     session = qi.Session()
     session.listenStandalone("tcp://127.0.0.1:0")
     port = int(session.endpoints()[0].rpartition(":")[2])
     try:
         answer = pool.submit(lambda: naoqi.ALProxy("ALTest", "127.0.0.1", port).add(1, 1))
-        assert asked.wait(SOON)
+        assert missed.wait(SOON)
         session.registerService("ALTest", Adder())
         assert answer.result(SOON) == 2
     finally:
