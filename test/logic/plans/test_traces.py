@@ -46,6 +46,14 @@ def test_a_trace_is_drawn_with_a_bar_for_each_state_also_by_the_command(trace, t
     assert draw_trace_file([str(file), str(picture)]) == 0 and picture.read_bytes()[:4] == b"\x89PNG"
 
 
+def test_a_task_that_gave_a_message_is_drawn_in_one_line():
+    roots = []
+    p.top_level(lambda: p.seq(p.do(NaoLedAction, name="made")), observers=[roots.append])
+    trace = p.trace_of(roots[0])
+    assert "\n" in repr(NaoLedAction()) and "\n" not in trace.named("made")[0].result
+    draw_trace(trace)
+
+
 def test_what_came_out_otherwise_is_told_with_its_path(trace):
     assert compare(trace, trace).alike
     good = [replace(each, state="succeeded", failure="") if each.name == "bad" else each for each in trace.records]

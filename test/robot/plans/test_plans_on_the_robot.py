@@ -416,9 +416,10 @@ def test_what_is_seen_is_perceived_where_it_is(begin, link):
     ]  # fmt: skip
 
 
-def test_what_no_camera_sees_is_not_found_and_both_have_looked(begin, link):
+@pytest.mark.parametrize("search, hint", [(False, "; with `search` the head turns$"), (True, "$")])
+def test_what_no_camera_sees_is_not_found_and_both_have_looked(begin, link, search, hint):
     link.answers["NaoVision"] = ActionEnd(GoalStatus.SUCCEEDED, "", SimpleNamespace(objects=[]))
-    text = "no ball was seen in 2 s by the active camera, nor in 2 s by the bottom camera; with `search` the head turns"
+    text = f"no ball was seen in 2 s by the active camera, nor in 2 s by the bottom camera{hint}"
     with pytest.raises(PerceptionObjectNotFound, match=text):
-        begin(lambda: p.perceive(p.a(p.object_, type="ball"))).ended()
+        begin(lambda: p.perceive(p.a(p.object_, type="ball"), search=search)).ended()
     assert [goal.functions[0].camera for goal in link.goals["NaoVision"]] == ["", "bottom"]

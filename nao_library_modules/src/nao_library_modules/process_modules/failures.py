@@ -277,8 +277,9 @@ LONG_NUMBER = re.compile(r"-?\d+\.\d{4,}(?:e-?\d+)?")
 
 
 def short_repr(value: Any, longest: int = 160) -> str:
-    """The repr of a value with short numbers, cut to a length."""
-    return cut(short_numbers(repr(value)[: SHORTENED * longest]), longest)
+    """The repr of a value in one line, with short numbers, cut to a length."""
+    in_one_line = " ".join(line.strip() for line in repr(value)[: SHORTENED * longest].splitlines())
+    return cut(short_numbers(in_one_line), longest)
 
 
 def short_numbers(text: str) -> str:

@@ -545,7 +545,7 @@ class Vision(RobotModule):
             raise PerceptionLowLevelFailure(f"there is no detector for {type!r}{of_those(type, DETECTORS)}")
         kind = "face" if type == "person" else type
         function, wanted = ("lookFor", f"{kind} {name}".strip()) if search else (DETECTORS[type], name)
-        cameras = (camera,) if camera or search else NOT_CHOSEN
+        cameras = (camera,) if camera else NOT_CHOSEN
         for each in cameras:
             look = VisionFunction(function=function, str_param=wanted, camera=each, size=size, timeout=timeout)
             end = self.robot.action(VISION_ACTION, NaoVisionAction).call(NaoVisionGoal([look]), timeout + VISION_MARGIN)
