@@ -154,6 +154,12 @@ class Simulator:
         sys.setswitchinterval(self._interval)
 
 
+def _is_woken(frame):
+    """Whether a thread that waits for a condition has been notified, and only has had no processor since."""
+    waiter = frame.f_locals.get("waiter")
+    return waiter is not None and not waiter.locked()
+
+
 class OpenCall:
     """A call that is not answered, or a callback of it that has not run."""
 
@@ -300,7 +306,8 @@ class Lockstep:
         """Whether a goal does nothing now: its thread waits for another, or for an answer that is known of."""
         frame = thread and sys._current_frames().get(thread.ident)
         file = frame and frame.f_code.co_filename
-        if not frame or file == threading.__file__ or (called and file == naoqi.calls.__file__):
+        woken = file == threading.__file__ and _is_woken(frame)
+        if not frame or (file == threading.__file__ and not woken) or (called and file == naoqi.calls.__file__):
             self._looks.pop(thread, None)
             return True
         self._looks[thread] = self._looks.get(thread, 0) + 1
